@@ -1,0 +1,87 @@
+//! What can be wrong with the description of a body, or with the handle that names it.
+
+use super::handle::FlexBodyHandle;
+use crate::fe::material::MaterialError;
+use crate::fe::mesh::MeshError;
+use crate::fe::model::ModelError;
+use thiserror::Error;
+
+/// Why a body cannot be built. Nothing was changed.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum BuildError {
+    /// The mesh is not that of a body.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A material parameter is out of range.
+    #[error(transparent)]
+    Material(#[from] MaterialError),
+    /// Stiffness or mass cannot be assembled.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// No material was given.
+    #[error("the body has no material: call `.material(LinearElastic::plane_stress(E, nu).density(rho))`")]
+    NoMaterial,
+    /// A number is not finite or out of its range.
+    #[error("{name} is {value}: {cure}")]
+    Number {
+        /// Which setting.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+        /// What to do.
+        cure: &'static str,
+    },
+    /// A setting names a node that does not exist.
+    #[error("{name} names node {node} of a mesh with {n_nodes} nodes: use an index below {n_nodes}")]
+    Node {
+        /// Which setting.
+        name: &'static str,
+        /// The node named.
+        node: usize,
+        /// How many there are.
+        n_nodes: usize,
+    },
+    /// A list does not have one entry per node.
+    #[error("{name} has {found} entries for {n_nodes} nodes: give one per node")]
+    Length {
+        /// Which setting.
+        name: &'static str,
+        /// Entries given.
+        found: usize,
+        /// Nodes of the mesh.
+        n_nodes: usize,
+    },
+    /// The pins leave a rotation that the body's single frame cannot follow.
+    #[error(
+        "the pins hold some displacement but leave the body free to rotate: pin one node in both directions (a hinge), or add a pin that holds the rotation"
+    )]
+    RotatingPins,
+}
+
+/// Why a call that names a body failed. Nothing was changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum FlexBodyError {
+    /// The handle's body was removed.
+    #[error("{0:?} names a flexible body that was removed: drop the handle")]
+    Stale(FlexBodyHandle),
+    /// The handle came from another set.
+    #[error("{0:?} comes from another FlexBodySet: use the set that returned it")]
+    Foreign(FlexBodyHandle),
+    /// A node index is out of range.
+    #[error("node {node} of a body with {n_nodes} nodes: use an index below {n_nodes}")]
+    Node {
+        /// The node named.
+        node: usize,
+        /// How many there are.
+        n_nodes: usize,
+    },
+    /// A node is not pinned.
+    #[error("node {0} is not pinned: pin it in the builder before prescribing its displacement")]
+    NotPinned(usize),
+    /// A value is not finite.
+    #[error("{0} holds a number that is not finite: nothing was changed")]
+    NotFinite(&'static str),
+    /// The world does not hold the body's carrier.
+    #[error("the world given does not hold the carrier of {0:?}: use the world it was inserted into, and remove the body from its set first")]
+    NoCarrier(FlexBodyHandle),
+}

@@ -1,0 +1,439 @@
+//! A flexible body: its model, its committed motion, its loads, and what the last step told about it.
+
+use super::error::FlexBodyError;
+use super::frame::{Arms, Frame};
+use super::state::FlexState;
+use crate::fe::mesh::Mesh;
+use crate::fe::model::{Model, ModelError};
+use crate::fe::recovery::Stress;
+use crate::math::{Vec2, cross, node_vec, rotation};
+use crate::rapier::prelude::{
+    ActiveEvents, ColliderHandle, CoefficientCombineRule, InteractionGroups, RigidBodyHandle,
+};
+use std::sync::Arc;
+
+/// How a body's surface meets others; the names and meanings are rapier's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSettings {
+    /// Coulomb's coefficient μ (-).
+    pub friction: f64,
+    /// How friction coefficients combine.
+    pub friction_combine_rule: CoefficientCombineRule,
+    /// Newton's coefficient of restitution (-).
+    pub restitution: f64,
+    /// How coefficients of restitution combine.
+    pub restitution_combine_rule: CoefficientCombineRule,
+    /// Which colliders the body meets.
+    pub collision_groups: InteractionGroups,
+    /// Which events rapier reports.
+    pub active_events: ActiveEvents,
+}
+
+impl Default for ContactSettings {
+    fn default() -> Self {
+        Self {
+            friction: 0.5,
+            friction_combine_rule: CoefficientCombineRule::default(),
+            restitution: 0.0,
+            restitution_combine_rule: CoefficientCombineRule::default(),
+            collision_groups: InteractionGroups::all(),
+            active_events: ActiveEvents::empty(),
+        }
+    }
+}
+
+/// Energy of a body (J).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyEnergy {
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Elastic energy.
+    pub elastic: f64,
+}
+
+/// A flexible body.
+#[derive(Debug)]
+pub struct FlexBody {
+    model: Arc<Model>,
+    frame: Frame,
+    arms: Arms,
+    is_fixed: Vec<bool>,
+    prescribed: Vec<f64>,
+    nodal_force: Vec<f64>,
+    body_force: Vec2,
+    gravity_scale: f64,
+    contact: ContactSettings,
+    /// Anything the user wants to keep with the body.
+    pub user_data: u128,
+    state: FlexState,
+    is_started: bool,
+    contact_force: Vec<f64>,
+    reaction: Vec<f64>,
+    energy_reserve: f64,
+    carrier: RigidBodyHandle,
+    collider: ColliderHandle,
+}
+
+impl FlexBody {
+    pub(super) fn new(
+        model: Arc<Model>,
+        is_fixed: Vec<bool>,
+        frame: Frame,
+        contact: ContactSettings,
+        user_data: u128,
+    ) -> Self {
+        let zeros = vec![0.0; model.n_dofs()];
+        Self {
+            arms: Arms::new(&model, frame),
+            frame,
+            is_fixed,
+            prescribed: zeros.clone(),
+            nodal_force: zeros.clone(),
+            body_force: Vec2::zeros(),
+            gravity_scale: 1.0,
+            contact,
+            user_data,
+            state: FlexState {
+                position: model.rest_positions().to_vec(),
+                velocity: zeros.clone(),
+                acceleration: zeros.clone(),
+                angle: 0.0,
+            },
+            is_started: false,
+            contact_force: zeros.clone(),
+            reaction: zeros,
+            energy_reserve: 0.0,
+            carrier: RigidBodyHandle::invalid(),
+            collider: ColliderHandle::invalid(),
+            model,
+        }
+    }
+
+    pub(super) fn set_initial_velocity(&mut self, state: &FlexState) {
+        self.state.velocity.copy_from_slice(&state.velocity);
+        for (velocity, &is_fixed) in self.state.velocity.iter_mut().zip(&self.is_fixed) {
+            if is_fixed {
+                *velocity = 0.0;
+            }
+        }
+    }
+
+    pub(super) fn load(&mut self, nodal_force: Vec<f64>, body_force: Vec2, gravity_scale: f64) {
+        self.nodal_force = nodal_force;
+        self.body_force = body_force;
+        self.gravity_scale = gravity_scale;
+    }
+
+    /// The assembled model.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    /// The mesh, in its own coordinates.
+    pub fn mesh(&self) -> &Mesh {
+        self.model.mesh()
+    }
+
+    /// The rigid body that carries the surface in rapier.
+    pub fn rigid_body_handle(&self) -> RigidBodyHandle {
+        self.carrier
+    }
+
+    /// The collider that is the surface in rapier.
+    pub fn collider_handle(&self) -> ColliderHandle {
+        self.collider
+    }
+
+    /// How the surface meets others.
+    pub fn contact_settings(&self) -> &ContactSettings {
+        &self.contact
+    }
+
+    /// How the body's frame moves.
+    pub fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    /// Which dofs are pinned, interleaved.
+    pub fn fixed_dofs(&self) -> &[bool] {
+        &self.is_fixed
+    }
+
+    /// Number of nodes.
+    pub fn n_nodes(&self) -> usize {
+        self.model.n_nodes()
+    }
+
+    /// Position of a node in the world (m).
+    ///
+    /// # Panics
+    /// If the node does not exist, as the other accessors by node.
+    pub fn position(&self, node: usize) -> [f64; 2] {
+        node_vec(&self.state.position, node).into()
+    }
+
+    /// Positions of all nodes, interleaved (m).
+    pub fn positions(&self) -> &[f64] {
+        &self.state.position
+    }
+
+    /// Displacement of a node from where it was built (m).
+    pub fn displacement(&self, node: usize) -> [f64; 2] {
+        (node_vec(&self.state.position, node) - node_vec(self.model.rest_positions(), node)).into()
+    }
+
+    /// Velocity of a node (m/s).
+    pub fn velocity(&self, node: usize) -> [f64; 2] {
+        node_vec(&self.state.velocity, node).into()
+    }
+
+    /// Velocities of all nodes, interleaved (m/s).
+    pub fn velocities(&self) -> &[f64] {
+        &self.state.velocity
+    }
+
+    /// The committed motion.
+    pub fn state(&self) -> &FlexState {
+        &self.state
+    }
+
+    /// Angle of the co-rotating frame from where the body was built (rad).
+    pub fn angle(&self) -> f64 {
+        self.state.angle
+    }
+
+    /// Mass (kg).
+    pub fn mass(&self) -> f64 {
+        self.arms.mass
+    }
+
+    /// Centre of mass (m).
+    pub fn centre_of_mass(&self) -> [f64; 2] {
+        self.mean(&self.state.position).into()
+    }
+
+    /// Velocity of the centre of mass (m/s).
+    pub fn linvel(&self) -> [f64; 2] {
+        self.mean(&self.state.velocity).into()
+    }
+
+    fn mean(&self, dofs: &[f64]) -> Vec2 {
+        let masses = self.arms.node_mass.iter().enumerate();
+        let sum: Vec2 = masses.map(|(node, mass)| *mass * node_vec(dofs, node)).sum();
+        sum / self.arms.mass
+    }
+
+    /// Linear momentum (N s).
+    pub fn momentum(&self) -> [f64; 2] {
+        (self.arms.mass * self.mean(&self.state.velocity)).into()
+    }
+
+    /// Angular momentum about a point (N m s).
+    pub fn angular_momentum(&self, about: [f64; 2]) -> f64 {
+        self.model.mass().moment(about.into(), &self.state.position, &self.state.velocity)
+    }
+
+    /// Displacements in the body's frame, interleaved (m): deformation without rigid motion for a free body.
+    pub fn local_displacements(&self) -> Vec<f64> {
+        let centre = self.arms.centre(self.frame, &self.state.position);
+        let turn = rotation(-self.state.angle);
+        (0..self.n_nodes())
+            .flat_map(|node| {
+                let u = turn * (node_vec(&self.state.position, node) - centre)
+                    - node_vec(&self.arms.reference, node);
+                [u.x, u.y]
+            })
+            .collect()
+    }
+
+    /// Kinetic and elastic energy (J).
+    pub fn energy(&self) -> BodyEnergy {
+        BodyEnergy {
+            kinetic: 0.5 * self.model.mass().inner(&self.state.velocity, &self.state.velocity),
+            elastic: self.model.elastic_energy(&self.local_displacements()),
+        }
+    }
+
+    /// Smoothed stress at every node, in the body's frame (Pa).
+    ///
+    /// # Errors
+    /// If an element cannot evaluate its strain.
+    pub fn stress(&self) -> Result<Vec<Stress>, ModelError> {
+        self.model.nodal_stress(&self.local_displacements())
+    }
+
+    /// Smoothed von Mises stress at every node (Pa).
+    ///
+    /// # Errors
+    /// If an element cannot evaluate its strain.
+    pub fn von_mises(&self) -> Result<Vec<f64>, ModelError> {
+        Ok(self.stress()?.iter().map(Stress::von_mises).collect())
+    }
+
+    /// Contact force on a node in the last step (N).
+    pub fn contact_force(&self, node: usize) -> [f64; 2] {
+        node_vec(&self.contact_force, node).into()
+    }
+
+    /// Sum of the contact forces of the last step (N).
+    pub fn total_contact_force(&self) -> [f64; 2] {
+        sum_of_nodes(&self.contact_force).into()
+    }
+
+    /// Force that a pinned node's support exerts on the body at the end of the last step (N).
+    pub fn reaction(&self, node: usize) -> [f64; 2] {
+        node_vec(&self.reaction, node).into()
+    }
+
+    /// Sum of all support forces (N).
+    pub fn total_reaction(&self) -> [f64; 2] {
+        sum_of_nodes(&self.reaction).into()
+    }
+
+    /// Moment of all support forces about a point (N m).
+    pub fn reaction_moment(&self, about: [f64; 2]) -> f64 {
+        (0..self.n_nodes())
+            .map(|node| {
+                let arm = node_vec(&self.state.position, node) - Vec2::from(about);
+                cross(arm, node_vec(&self.reaction, node))
+            })
+            .sum()
+    }
+
+    /// Factor on the world's gravity (-).
+    pub fn gravity_scale(&self) -> f64 {
+        self.gravity_scale
+    }
+
+    /// Force per mass besides gravity (m/s²).
+    pub fn body_force(&self) -> [f64; 2] {
+        self.body_force.into()
+    }
+
+    /// Sets a constant force on a node (N), until it is set again.
+    ///
+    /// # Errors
+    /// If the node does not exist or the force is not finite.
+    pub fn set_nodal_force(&mut self, node: usize, force: [f64; 2]) -> Result<(), FlexBodyError> {
+        self.check_node(node)?;
+        check_finite("the force", &force)?;
+        self.nodal_force[2 * node..2 * node + 2].copy_from_slice(&force);
+        Ok(())
+    }
+
+    /// Sets the force per mass besides gravity (m/s²).
+    ///
+    /// # Errors
+    /// If it is not finite.
+    pub fn set_body_force(&mut self, acceleration: [f64; 2]) -> Result<(), FlexBodyError> {
+        check_finite("the body force", &acceleration)?;
+        self.body_force = acceleration.into();
+        Ok(())
+    }
+
+    /// Sets the factor on the world's gravity (-).
+    ///
+    /// # Errors
+    /// If it is not finite.
+    pub fn set_gravity_scale(&mut self, scale: f64) -> Result<(), FlexBodyError> {
+        check_finite("the gravity scale", &[scale])?;
+        self.gravity_scale = scale;
+        Ok(())
+    }
+
+    /// Prescribes the displacement of a pinned node (m); directions that are not pinned are ignored.
+    ///
+    /// # Errors
+    /// If the node does not exist, is not pinned, or the displacement is not finite.
+    pub fn set_pin_displacement(
+        &mut self,
+        node: usize,
+        displacement: [f64; 2],
+    ) -> Result<(), FlexBodyError> {
+        self.check_node(node)?;
+        if !(self.is_fixed[2 * node] || self.is_fixed[2 * node + 1]) {
+            return Err(FlexBodyError::NotPinned(node));
+        }
+        check_finite("the displacement", &displacement)?;
+        self.prescribed[2 * node..2 * node + 2].copy_from_slice(&displacement);
+        Ok(())
+    }
+
+    /// Sets all nodal velocities, interleaved (m/s); pinned directions stay at rest.
+    ///
+    /// # Errors
+    /// If the length is not two per node or a velocity is not finite.
+    pub fn set_velocities(&mut self, velocities: &[f64]) -> Result<(), FlexBodyError> {
+        if velocities.len() != self.state.velocity.len() {
+            return Err(FlexBodyError::Node { node: velocities.len() / 2, n_nodes: self.n_nodes() });
+        }
+        check_finite("the velocities", velocities)?;
+        for ((own, &new), &is_fixed) in
+            self.state.velocity.iter_mut().zip(velocities).zip(&self.is_fixed)
+        {
+            *own = if is_fixed { 0.0 } else { new };
+        }
+        Ok(())
+    }
+
+    fn check_node(&self, node: usize) -> Result<(), FlexBodyError> {
+        let n_nodes = self.n_nodes();
+        if node < n_nodes { Ok(()) } else { Err(FlexBodyError::Node { node, n_nodes }) }
+    }
+}
+
+/// Access for the step.
+impl FlexBody {
+    pub(crate) fn bind(&mut self, carrier: RigidBodyHandle, collider: ColliderHandle) {
+        self.carrier = carrier;
+        self.collider = collider;
+    }
+
+    pub(crate) fn nodal_force(&self) -> &[f64] {
+        &self.nodal_force
+    }
+
+    pub(crate) fn prescribed(&self) -> &[f64] {
+        &self.prescribed
+    }
+
+    pub(crate) fn state_mut(&mut self) -> &mut FlexState {
+        &mut self.state
+    }
+
+    pub(crate) fn is_started(&self) -> bool {
+        self.is_started
+    }
+
+    pub(crate) fn start(&mut self) {
+        self.is_started = true;
+    }
+
+    pub(crate) fn energy_reserve(&self) -> f64 {
+        self.energy_reserve
+    }
+
+    pub(crate) fn set_energy_reserve(&mut self, reserve: f64) {
+        self.energy_reserve = reserve;
+    }
+
+    pub(crate) fn contact_force_mut(&mut self) -> &mut [f64] {
+        &mut self.contact_force
+    }
+
+    pub(crate) fn reaction_mut(&mut self) -> &mut [f64] {
+        &mut self.reaction
+    }
+}
+
+fn sum_of_nodes(dofs: &[f64]) -> Vec2 {
+    dofs.chunks_exact(2).map(|value| Vec2::new(value[0], value[1])).sum()
+}
+
+fn check_finite(name: &'static str, values: &[f64]) -> Result<(), FlexBodyError> {
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(())
+    } else {
+        Err(FlexBodyError::NotFinite(name))
+    }
+}

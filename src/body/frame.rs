@@ -1,0 +1,119 @@
+//! The one co-rotating frame of a body: `f = R K (Rᵀ(x - c) - X) - τ ∂θ/∂x`.
+//!
+//! The angle follows the mass: `θ = atan2(Σ m X×(x - c), Σ m X·(x - c))`, so `∂θ/∂x = R J M X / D` with
+//! `D = Σ m X·Rᵀ(x - c)` is a rigid rotation, which `K` does not feel; the torque `τ` makes the internal forces
+//! free of a resultant torque, as the exact gradient of the elastic energy is.
+
+use crate::fe::model::Model;
+use crate::math::{Vec2, cross, node_vec};
+
+/// What a body's frame may do, decided by its pins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frame {
+    /// The pins hold the rotation: the frame keeps the orientation it was built with.
+    Fixed,
+    /// No pins: the frame follows the body's mass about its centre.
+    Free,
+    /// One node pinned in both directions: the frame turns about it.
+    Hinged(usize),
+}
+
+/// Reference arms of a frame: `X` about its centre, `M X`, and the nodal masses `M 1`.
+#[derive(Clone, Debug)]
+pub struct Arms {
+    /// Reference position about the frame's centre, interleaved (m).
+    pub reference: Vec<f64>,
+    /// `M X`, interleaved (kg m).
+    pub mass_moment: Vec<f64>,
+    /// `M 1` per node (kg).
+    pub node_mass: Vec<f64>,
+    /// Total mass (kg).
+    pub mass: f64,
+}
+
+impl Arms {
+    /// Measures a model about the centre that `frame` turns about.
+    pub fn new(model: &Model, frame: Frame) -> Self {
+        let rest = model.rest_positions();
+        let node_mass = model.mass().node_sums();
+        let mass: f64 = node_mass.iter().sum();
+        let origin = match frame {
+            Frame::Fixed => Vec2::zeros(),
+            Frame::Hinged(node) => node_vec(rest, node),
+            Frame::Free => weighted_mean(&node_mass, mass, rest),
+        };
+        let reference: Vec<f64> = rest
+            .chunks_exact(2)
+            .flat_map(|p| [p[0] - origin.x, p[1] - origin.y])
+            .collect();
+        let mut mass_moment = vec![0.0; reference.len()];
+        model.mass().multiply_add(1.0, &reference, &mut mass_moment);
+        Self { reference, mass_moment, node_mass, mass }
+    }
+
+    /// Centre of the frame for nodal positions (or velocities) `dofs`.
+    pub fn centre(&self, frame: Frame, dofs: &[f64]) -> Vec2 {
+        match frame {
+            Frame::Fixed => Vec2::zeros(),
+            Frame::Hinged(node) => node_vec(dofs, node),
+            Frame::Free => weighted_mean(&self.node_mass, self.mass, dofs),
+        }
+    }
+
+    /// The angle of the mass about `centre`, within half a turn of `near` (rad), and `D` (kg m²).
+    pub fn angle(&self, position: &[f64], centre: Vec2, near: f64) -> (f64, f64) {
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for (moment, x) in self.mass_moment.chunks_exact(2).zip(position.chunks_exact(2)) {
+            let (moment, x) = (Vec2::new(moment[0], moment[1]), Vec2::new(x[0], x[1]) - centre);
+            sine += cross(moment, x);
+            cosine += moment.dot(&x);
+        }
+        // A hinged centre is not the mass centre: Σ m X (x - c) needs no further term, c is exact there.
+        let angle = sine.atan2(cosine);
+        let turns = ((near - angle) / std::f64::consts::TAU).round();
+        (angle + turns * std::f64::consts::TAU, sine.hypot(cosine))
+    }
+}
+
+fn weighted_mean(weight: &[f64], total: f64, dofs: &[f64]) -> Vec2 {
+    let mut sum = Vec2::zeros();
+    for (weight, p) in weight.iter().zip(dofs.chunks_exact(2)) {
+        sum += *weight * Vec2::new(p[0], p[1]);
+    }
+    sum / total
+}
+
+/// The frame that a set of pinned dofs leaves to the body.
+///
+/// `is_fixed` has one entry per dof. A rotation is free if some rigid motion `v = t + ω J (X - c)` satisfies every
+/// pinned dof with `ω ≠ 0`.
+pub fn frame_of_pins(rest: &[f64], is_fixed: &[bool]) -> Option<Frame> {
+    let pinned: Vec<usize> = (0..rest.len() / 2)
+        .filter(|&node| is_fixed[2 * node] || is_fixed[2 * node + 1])
+        .collect();
+    match pinned.as_slice() {
+        [] => Some(Frame::Free),
+        [node] if is_fixed[2 * node] && is_fixed[2 * node + 1] => Some(Frame::Hinged(*node)),
+        _ if holds_rotation(rest, is_fixed) => Some(Frame::Fixed),
+        _ => None,
+    }
+}
+
+/// Whether the pinned dofs leave no rigid rotation about any centre.
+fn holds_rotation(rest: &[f64], is_fixed: &[bool]) -> bool {
+    // Rows [1, 0, -y] and [0, 1, x] act on (t_x, t_y, ω): the rotation is held when all x-rows do not share one y,
+    // or all y-rows do not share one x, up to round-off of the body's size.
+    let size = rest.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+    let spread = |axis: usize| {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for node in 0..rest.len() / 2 {
+            if is_fixed[2 * node + axis] {
+                let across = rest[2 * node + 1 - axis];
+                low = low.min(across);
+                high = high.max(across);
+            }
+        }
+        high - low
+    };
+    (0..2).any(|axis| spread(axis) > 1e-9 * size)
+}

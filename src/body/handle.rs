@@ -1,0 +1,16 @@
+//! Generational handles.
+
+/// Names a flexible body of one set; stays invalid for ever once the body is removed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct FlexBodyHandle {
+    pub(super) set: u32,
+    pub(super) index: u32,
+    pub(super) generation: u32,
+}
+
+impl FlexBodyHandle {
+    /// Position in the set and generation, for display and logs.
+    pub fn into_raw_parts(self) -> (u32, u32) {
+        (self.index, self.generation)
+    }
+}

@@ -1,0 +1,19 @@
+//! Flexible bodies: how they are described, what they remember, and the set that holds them.
+
+mod builder;
+mod error;
+mod flex_body;
+mod frame;
+mod handle;
+mod pin;
+mod set;
+mod state;
+
+pub use builder::{ContactInertia, FlexBodyBuilder};
+pub use error::{BuildError, FlexBodyError};
+pub use flex_body::{BodyEnergy, ContactSettings, FlexBody};
+pub use frame::{Arms, Frame, frame_of_pins};
+pub use handle::FlexBodyHandle;
+pub use pin::Pin;
+pub use set::FlexBodySet;
+pub use state::FlexState;

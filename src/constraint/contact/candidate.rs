@@ -1,0 +1,84 @@
+//! Candidates: pairs of a point and a target that may touch during the step.
+
+use super::law::ContactLaw;
+use crate::math::Vec2;
+
+/// What a point or a target belongs to, stable from step to step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Owner {
+    /// A flexible body, by its index in the set.
+    Flex(u32),
+    /// A collider of a rigid body, by its index in rapier's set.
+    Collider(u32),
+}
+
+/// Names a contact across steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ContactKey {
+    /// Owner of the point.
+    pub contactor: Owner,
+    /// Node, or part and vertex of the point.
+    pub point: u32,
+    /// Owner of the target.
+    pub target: Owner,
+    /// Part of the target; 0 for a flexible body.
+    pub part: u32,
+}
+
+/// How the point and the target of a candidate are held by the island's blocks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pair {
+    /// A node of a flexible block against a convex part of a rigid one.
+    NodeOnPart {
+        /// Flexible block and its node.
+        node: (usize, usize),
+        /// Rigid block.
+        rigid: usize,
+        /// Index into the island's parts.
+        part: usize,
+    },
+    /// A core vertex of a rigid part, with the part's radius, against the surface of a flexible block.
+    VertexOnSurface {
+        /// Rigid block.
+        rigid: usize,
+        /// The vertex from the centre of mass, in body axes (m).
+        arm: Vec2,
+        /// Radius around the vertex (m).
+        radius: f64,
+        /// Flexible block.
+        flex: usize,
+        /// Range of the island's list of near segments.
+        segments: (usize, usize),
+    },
+    /// A node of a flexible block against the surface of another.
+    NodeOnSurface {
+        /// Contactor block and its node.
+        node: (usize, usize),
+        /// Target block.
+        flex: usize,
+        /// Range of the island's list of near segments.
+        segments: (usize, usize),
+    },
+    /// A point of one rigid block against a face (or a point) of another.
+    PointOnFace {
+        /// Block and arm of the point.
+        point: (usize, Vec2),
+        /// Block of the face.
+        face: usize,
+        /// Ends of the face from the centre of mass, in body axes (m); equal ends mean a point.
+        ends: [Vec2; 2],
+        /// Sum of both radii (m).
+        radius: f64,
+    },
+}
+
+/// A point and a target that may touch, with their law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    /// Its name.
+    pub key: ContactKey,
+    /// Who holds it.
+    pub pair: Pair,
+    /// Friction and restitution.
+    pub law: ContactLaw,
+}

@@ -1,0 +1,219 @@
+//! Contact kinematics: gap `g = n·(x_point - x_target)` and the rows of `G` that move it (Eq. C.2).
+//!
+//! The normal points from the target to the point, so a compressive multiplier pushes the point along `+n`. At the
+//! closest point the change of the normal does not move the gap to first order: `∂g = n·(∂x_point - Σ N_i ∂x_i)`.
+
+use super::candidate::{Candidate, Pair};
+use super::memory::Remembered;
+use super::surface::{SurfacePoint, closest_surface_point};
+use crate::constraint::geometry::{ConvexPart, Feature, Pose2, separation};
+use crate::math::{Vec2, perp, rotation};
+use crate::system::{Block, FlexBlock, Grip, RigidBlock};
+use std::sync::Arc;
+
+/// One grip of a row with its weight: +1 at the point, `-N_i` at the target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Attachment {
+    /// Index of the block in the island.
+    pub block: usize,
+    /// Node or arm.
+    pub grip: Grip,
+    /// Weight (-).
+    pub weight: f64,
+}
+
+/// Gap, directions and attachments of one contact in one configuration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kinematics {
+    /// Gap, negative when overlapping (m).
+    pub gap: f64,
+    /// Unit normal, from the target to the point.
+    pub normal: Vec2,
+    /// Contact position (m).
+    pub position: Vec2,
+    /// Touched feature of a rigid target.
+    pub feature: Option<Feature>,
+    attachments: [Attachment; 3],
+    n_attachments: usize,
+}
+
+impl Kinematics {
+    /// The grips of the row.
+    pub fn attachments(&self) -> &[Attachment] {
+        &self.attachments[..self.n_attachments]
+    }
+
+    /// Unit tangent, a quarter turn from the normal.
+    pub fn tangent(&self) -> Vec2 {
+        perp(self.normal)
+    }
+
+    /// Relative motion `Σ w_i f(grip_i)` of the point against the target.
+    pub fn relative(&self, blocks: &[Block], value: impl Fn(&Block, Grip) -> Vec2) -> Vec2 {
+        self.attachments()
+            .iter()
+            .map(|a| a.weight * value(&blocks[a.block], a.grip))
+            .sum()
+    }
+
+    /// Whether some grip with a weight has no inertia.
+    pub fn is_soft(&self, blocks: &[Block]) -> bool {
+        self.attachments()
+            .iter()
+            .any(|a| a.weight.abs() > 1e-9 && blocks[a.block].is_massless(a.grip))
+    }
+
+    fn new(gap: f64, normal: Vec2, position: Vec2, grips: &[(usize, Grip, f64)]) -> Self {
+        let mut attachments = [Attachment { block: 0, grip: Grip::Node(0), weight: 0.0 }; 3];
+        for (slot, &(block, grip, weight)) in attachments.iter_mut().zip(grips) {
+            *slot = Attachment { block, grip, weight };
+        }
+        Self { gap, normal, position, feature: None, attachments, n_attachments: grips.len() }
+    }
+}
+
+/// A convex part and where it sits on its body.
+#[derive(Clone, Debug)]
+pub struct PlacedPart {
+    /// The part, in its own coordinates.
+    pub part: Arc<ConvexPart>,
+    /// Its pose in the body's axes about the centre of mass.
+    pub pose: Pose2,
+}
+
+/// What the kinematics of an island's candidates look at.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    /// The blocks, at their current iterate.
+    pub blocks: &'a [Block],
+    /// Convex parts of the rigid blocks.
+    pub parts: &'a [PlacedPart],
+    /// Lists of near segments.
+    pub segments: &'a [u32],
+}
+
+impl Candidate {
+    /// Gap and rows in the current configuration; `None` when the target is out of reach.
+    pub fn evaluate(&self, scene: &Scene<'_>, remembered: &Remembered) -> Option<Kinematics> {
+        match self.pair {
+            Pair::NodeOnPart { node, rigid, part } => {
+                node_on_part(scene, node, rigid, &scene.parts[part], remembered.feature)
+            }
+            Pair::VertexOnSurface { rigid, arm, radius, flex, segments } => {
+                let point = scene.blocks[rigid].position(Grip::Arm(arm));
+                let hit = surface_of(scene, flex, segments, point)?;
+                let position = point - (hit.distance) * hit.normal;
+                // The arm of the force ends where the force acts, on the flexible surface.
+                let grip = Grip::Arm(rigid_of(scene, rigid)?.current().arm(position));
+                Some(on_surface(scene, (rigid, grip), flex, &hit, radius, position))
+            }
+            Pair::NodeOnSurface { node: (block, node), flex, segments } => {
+                let point = scene.blocks[block].position(Grip::Node(node));
+                let hit = surface_of(scene, flex, segments, point)?;
+                Some(on_surface(scene, (block, Grip::Node(node)), flex, &hit, 0.0, point))
+            }
+            Pair::PointOnFace { point, face, ends, radius } => {
+                point_on_face(scene, point, face, ends, radius)
+            }
+        }
+    }
+}
+
+fn rigid_of<'a>(scene: &Scene<'a>, block: usize) -> Option<&'a RigidBlock> {
+    match &scene.blocks[block] {
+        Block::Rigid(rigid) => Some(rigid),
+        Block::Flex(_) => None,
+    }
+}
+
+fn flex_of<'a>(scene: &Scene<'a>, block: usize) -> Option<&'a FlexBlock> {
+    match &scene.blocks[block] {
+        Block::Flex(flex) => Some(flex),
+        Block::Rigid(_) => None,
+    }
+}
+
+fn node_on_part(
+    scene: &Scene<'_>,
+    (block, node): (usize, usize),
+    rigid: usize,
+    placed: &PlacedPart,
+    reference: Option<Feature>,
+) -> Option<Kinematics> {
+    let motion = rigid_of(scene, rigid)?;
+    let point = scene.blocks[block].position(Grip::Node(node));
+    let start = scene.blocks[block].start_position(Grip::Node(node));
+    let arm = motion.current().arm(point);
+    let local = placed.pose.inverse_transform(arm);
+    let local_start = placed.pose.inverse_transform(motion.start().arm(start));
+    let found = separation(&placed.part, local, reference, Some(local_start));
+    let normal = rotation(motion.current().angle) * placed.pose.rotate(found.normal);
+    let grips = [(block, Grip::Node(node), 1.0), (rigid, Grip::Arm(arm), -1.0)];
+    let mut kinematics = Kinematics::new(found.distance, normal, point, &grips);
+    kinematics.feature = Some(found.feature);
+    Some(kinematics)
+}
+
+fn surface_of(
+    scene: &Scene<'_>,
+    flex: usize,
+    segments: (usize, usize),
+    point: Vec2,
+) -> Option<SurfacePoint> {
+    closest_surface_point(flex_of(scene, flex)?, &scene.segments[segments.0..segments.1], point)
+}
+
+fn on_surface(
+    scene: &Scene<'_>,
+    (block, grip): (usize, Grip),
+    flex: usize,
+    hit: &SurfacePoint,
+    radius: f64,
+    position: Vec2,
+) -> Kinematics {
+    let [first, second] = match flex_of(scene, flex) {
+        Some(target) => target.model().mesh().boundary().segments()[hit.segment],
+        None => [0, 0],
+    };
+    let point = (block, grip, 1.0);
+    let gap = hit.distance - radius;
+    if hit.xi <= 0.0 || hit.xi >= 1.0 {
+        let node = if hit.xi <= 0.0 { first } else { second };
+        return Kinematics::new(gap, hit.normal, position, &[point, (flex, Grip::Node(node), -1.0)]);
+    }
+    let grips = [
+        point,
+        (flex, Grip::Node(first), hit.xi - 1.0),
+        (flex, Grip::Node(second), -hit.xi),
+    ];
+    Kinematics::new(gap, hit.normal, position, &grips)
+}
+
+fn point_on_face(
+    scene: &Scene<'_>,
+    (block, arm): (usize, Vec2),
+    face: usize,
+    ends: [Vec2; 2],
+    radius: f64,
+) -> Option<Kinematics> {
+    let motion = rigid_of(scene, face)?.current();
+    let point = scene.blocks[block].position(Grip::Arm(arm));
+    let [a, b] = ends.map(|end| motion.point(end));
+    let along = b - a;
+    let (gap, normal) = if along.norm() > 0.0 {
+        let normal = -perp(along).normalize();
+        (normal.dot(&(point - a)) - radius, normal)
+    } else {
+        let apart = point - a;
+        let distance = apart.norm();
+        if distance <= 0.0 {
+            return None;
+        }
+        (distance - radius, apart / distance)
+    };
+    // Both arms end at the same world point, so that the pair of forces has no couple.
+    let position = point - (gap + radius) * normal;
+    let own = rigid_of(scene, block)?.current().arm(position);
+    let grips = [(block, Grip::Arm(own), 1.0), (face, Grip::Arm(motion.arm(position)), -1.0)];
+    Some(Kinematics::new(gap, normal, position, &grips))
+}

@@ -1,0 +1,35 @@
+//! The contact law: Signorini's condition, Coulomb's cone and Newton's restitution; it knows no shape function.
+
+/// Coefficients of one contact, already combined from both colliders by rapier's rules.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactLaw {
+    /// Coulomb's coefficient μ (-).
+    pub friction: f64,
+    /// Newton's coefficient of restitution e (-), used where an impact is shorter than the step.
+    pub restitution: f64,
+}
+
+impl ContactLaw {
+    /// Normal velocity asked for after an impact that closes at `approach` (m/s, negative when closing):
+    /// `-e v⁻`, and nothing below `threshold`, so that resting contacts do not bounce.
+    pub fn rebound(&self, approach: f64, threshold: f64) -> f64 {
+        if approach < -threshold {
+            -self.restitution * approach
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_closing_contacts_faster_than_the_threshold_rebound() {
+        let law = ContactLaw { friction: 0.0, restitution: 0.5 };
+        assert_eq!(law.rebound(-2.0, 0.1), 1.0);
+        assert_eq!(law.rebound(-0.05, 0.1), 0.0);
+        assert_eq!(law.rebound(2.0, 0.1), 0.0);
+    }
+}

@@ -1,0 +1,48 @@
+//! What a contact remembers from one step to the next: multipliers for the warm start, the feature it touched.
+
+use super::candidate::ContactKey;
+use crate::constraint::geometry::Feature;
+use std::collections::HashMap;
+
+/// The last state of one contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Remembered {
+    /// Normal multiplier of the position stage, compressive positive (N).
+    pub normal: f64,
+    /// Tangential multiplier (N).
+    pub tangent: f64,
+    /// Feature of the target that was touched, for hysteresis.
+    pub feature: Option<Feature>,
+}
+
+/// All contacts of the last step that were closed or near.
+///
+/// Looked up by key only, never iterated, so that results do not depend on hashing.
+#[derive(Clone, Debug, Default)]
+pub struct ContactMemory {
+    last: HashMap<ContactKey, Remembered>,
+    next: HashMap<ContactKey, Remembered>,
+}
+
+impl ContactMemory {
+    /// The state of a contact in the last step.
+    pub fn recall(&self, key: &ContactKey) -> Remembered {
+        self.last.get(key).copied().unwrap_or_default()
+    }
+
+    /// Notes the state of a contact for the next step.
+    pub fn remember(&mut self, key: ContactKey, state: Remembered) {
+        self.next.insert(key, state);
+    }
+
+    /// Makes the noted states those of the last step.
+    pub fn turn_over(&mut self) {
+        std::mem::swap(&mut self.last, &mut self.next);
+        self.next.clear();
+    }
+
+    /// Throws away what was noted since the last turn-over.
+    pub fn discard_notes(&mut self) {
+        self.next.clear();
+    }
+}

@@ -1,0 +1,13 @@
+//! Contact: candidates, their kinematics (gap, normal, rows of `G`) and their law (friction, restitution).
+
+mod candidate;
+mod kinematics;
+mod law;
+mod memory;
+mod surface;
+
+pub use candidate::{Candidate, ContactKey, Owner, Pair};
+pub use kinematics::{Attachment, Kinematics, PlacedPart, Scene};
+pub use law::ContactLaw;
+pub use memory::{ContactMemory, Remembered};
+pub use surface::{SurfacePoint, closest_surface_point};

@@ -1,0 +1,274 @@
+//! Candidates of an island: every point that may touch a target during the step, found by swept boxes.
+
+use super::shapes::ShapePart;
+use crate::constraint::contact::{Candidate, ContactKey, ContactLaw, Owner, Pair, PlacedPart};
+use crate::constraint::geometry::{FaceOrVertex, Pose2, polygon_pair};
+use crate::kkt::Island;
+use crate::math::Vec2;
+use crate::system::{Block, FlexBlock, RigidBlock, RigidMotion};
+
+/// A box that grows.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    low: Vec2,
+    high: Vec2,
+}
+
+impl Bounds {
+    fn of(points: &[Vec2]) -> Self {
+        let mut bounds = Self { low: points[0], high: points[0] };
+        for point in points {
+            bounds.low = bounds.low.inf(point);
+            bounds.high = bounds.high.sup(point);
+        }
+        bounds
+    }
+
+    fn merged(self, other: Self) -> Self {
+        Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
+    }
+
+    fn loosened(self, by: f64) -> Self {
+        let margin = Vec2::new(by, by);
+        Self { low: self.low - margin, high: self.high + margin }
+    }
+
+    fn intersects(&self, other: &Self) -> bool {
+        self.low.x <= other.high.x
+            && other.low.x <= self.high.x
+            && self.low.y <= other.high.y
+            && other.low.y <= self.high.y
+    }
+}
+
+/// Names of the two colliders or bodies of a pair.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Names {
+    /// First of the pair.
+    pub one: Owner,
+    /// Second of the pair.
+    pub other: Owner,
+}
+
+/// Box of a boundary segment over the step.
+fn segment_bounds(block: &FlexBlock, segment: usize) -> Bounds {
+    let [a, b] = block.model().mesh().boundary().segments()[segment];
+    Bounds::of(&[
+        block.start_position(a),
+        block.start_position(b),
+        block.predicted_position(a),
+        block.predicted_position(b),
+    ])
+}
+
+/// World pose of a part on a body moving as `motion`.
+fn world_pose(motion: &RigidMotion, part: &PlacedPart) -> Pose2 {
+    let angle = part.pose.sin.atan2(part.pose.cos) + motion.angle;
+    Pose2::new(motion.point(part.pose.translation), angle)
+}
+
+fn part_bounds(rigid: &RigidBlock, part: &PlacedPart) -> Bounds {
+    let bounds = |motion: &RigidMotion| {
+        let [low, high] = part.part.aabb(&world_pose(motion, part));
+        Bounds { low, high }
+    };
+    bounds(rigid.start()).merged(bounds(rigid.free_motion()))
+}
+
+/// Adds the parts of a collider to the island; `offset` is the collider's pose about its body's centre of mass.
+pub(super) fn add_parts(island: &mut Island, parts: &[ShapePart], offset: Pose2) -> std::ops::Range<usize> {
+    let first = island.parts.len();
+    for shape in parts {
+        let turn = offset.sin.atan2(offset.cos) + shape.pose.sin.atan2(shape.pose.cos);
+        let pose = Pose2::new(offset.transform(shape.pose.translation), turn);
+        island.parts.push(PlacedPart { part: shape.part.clone(), pose });
+    }
+    first..island.parts.len()
+}
+
+/// Candidates between a flexible block and the parts of a rigid one.
+pub(super) fn flex_rigid(
+    island: &mut Island,
+    flex: usize,
+    rigid: usize,
+    parts: std::ops::Range<usize>,
+    names: Names,
+    law: ContactLaw,
+    edge: f64,
+) {
+    let first_part = parts.start;
+    for part in parts {
+        let (Block::Flex(body), Block::Rigid(motion)) = (&island.blocks[flex], &island.blocks[rigid]) else {
+            return;
+        };
+        let placed = &island.parts[part];
+        let near = part_bounds(motion, placed).loosened(0.5 * edge);
+        let first = island.segments.len();
+        let n_segments = body.model().mesh().boundary().segments().len();
+        for segment in 0..n_segments {
+            if segment_bounds(body, segment).intersects(&near) {
+                island.segments.push(segment as u32);
+            }
+        }
+        let segments = (first, island.segments.len());
+        if segments.0 == segments.1 {
+            continue;
+        }
+        let part_name = (part - first_part) as u32;
+        let boundary = body.model().mesh().boundary();
+        let first_node = boundary.segments()[island.segments[segments.0] as usize][0];
+        let mut last_end = usize::MAX;
+        for slot in segments.0..segments.1 {
+            let [a, b] = boundary.segments()[island.segments[slot] as usize];
+            // Segments come in loop order: a node shared with the one before, or with the first, is listed already.
+            let closes = slot > segments.0 && b == first_node;
+            let nodes = [(a != last_end).then_some(a), (!closes).then_some(b)];
+            last_end = b;
+            for node in nodes.into_iter().flatten() {
+                let key = ContactKey {
+                    contactor: names.one,
+                    point: node as u32,
+                    target: names.other,
+                    part: part_name,
+                };
+                let pair = Pair::NodeOnPart { node: (flex, node), rigid, part };
+                island.candidates.push(Candidate { key, pair, law });
+            }
+        }
+        let (part_data, pose, radius) = (placed.part.clone(), placed.pose, placed.part.radius());
+        for (vertex, &at) in part_data.vertices().iter().enumerate() {
+            let key = ContactKey {
+                contactor: names.other,
+                point: (part_name << 12) | vertex as u32,
+                target: names.one,
+                part: 0,
+            };
+            let arm = pose.transform(at);
+            let pair = Pair::VertexOnSurface { rigid, arm, radius, flex, segments };
+            island.candidates.push(Candidate { key, pair, law });
+        }
+    }
+}
+
+/// Candidates between two flexible blocks: nodes of the contactor, and sharp corners of the target, one-sided.
+pub(super) fn flex_flex(
+    island: &mut Island,
+    contactor: usize,
+    target: usize,
+    names: Names,
+    law: ContactLaw,
+    edge: f64,
+) {
+    one_sided(island, contactor, target, names, law, edge, |_, _| true);
+    let swapped = Names { one: names.other, other: names.one };
+    one_sided(island, target, contactor, swapped, law, edge, is_sharp_corner);
+}
+
+fn one_sided(
+    island: &mut Island,
+    contactor: usize,
+    target: usize,
+    names: Names,
+    law: ContactLaw,
+    edge: f64,
+    choose: impl Fn(&FlexBlock, usize) -> bool,
+) {
+    let (Block::Flex(points), Block::Flex(surface)) = (&island.blocks[contactor], &island.blocks[target]) else {
+        return;
+    };
+    let bounds_of = |block: &FlexBlock| {
+        let n = block.model().mesh().boundary().segments().len();
+        (0..n).map(|segment| segment_bounds(block, segment)).reduce(Bounds::merged)
+    };
+    let (Some(points_box), Some(surface_box)) = (bounds_of(points), bounds_of(surface)) else { return };
+    let (points_box, surface_box) = (points_box.loosened(edge), surface_box.loosened(edge));
+    let first = island.segments.len();
+    for segment in 0..surface.model().mesh().boundary().segments().len() {
+        if segment_bounds(surface, segment).intersects(&points_box) {
+            island.segments.push(segment as u32);
+        }
+    }
+    let segments = (first, island.segments.len());
+    if segments.0 == segments.1 {
+        return;
+    }
+    for (index, &node) in points.model().mesh().boundary().nodes().iter().enumerate() {
+        let bounds = Bounds::of(&[points.start_position(node), points.predicted_position(node)]);
+        if bounds.intersects(&surface_box) && choose(points, index) {
+            let key = ContactKey { contactor: names.one, point: node as u32, target: names.other, part: 0 };
+            let pair = Pair::NodeOnSurface { node: (contactor, node), flex: target, segments };
+            island.candidates.push(Candidate { key, pair, law });
+        }
+    }
+}
+
+/// Whether the boundary turns left by more than 30 degrees at its `index`-th node.
+fn is_sharp_corner(block: &FlexBlock, index: usize) -> bool {
+    let boundary = block.model().mesh().boundary();
+    // Segment `index` starts at boundary node `index`.
+    let [at, after] = boundary.segments()[index];
+    let [before, _] = boundary.segments()[boundary.previous_segment(index)];
+    let (incoming, outgoing) = (
+        block.start_position(at) - block.start_position(before),
+        block.start_position(after) - block.start_position(at),
+    );
+    let sine = crate::math::cross(incoming, outgoing);
+    sine > 0.0 && sine.atan2(incoming.dot(&outgoing)) > 30f64.to_radians()
+}
+
+/// Candidates between the parts of two rigid blocks, in the configuration at the beginning of the step.
+pub(super) fn rigid_rigid(
+    island: &mut Island,
+    [one, other]: [usize; 2],
+    parts: [std::ops::Range<usize>; 2],
+    names: Names,
+    law: ContactLaw,
+    prediction: f64,
+) {
+    let first_parts = [parts[0].start, parts[1].start];
+    for a in parts[0].clone() {
+        for b in parts[1].clone() {
+            let (Block::Rigid(block_a), Block::Rigid(block_b)) = (&island.blocks[one], &island.blocks[other]) else {
+                return;
+            };
+            let (part_a, part_b) = (&island.parts[a], &island.parts[b]);
+            let reach = approach(block_a) + approach(block_b) + prediction;
+            let boxes = [part_bounds(block_a, part_a).loosened(prediction), part_bounds(block_b, part_b)];
+            if !boxes[0].intersects(&boxes[1]) {
+                continue;
+            }
+            let poses = [world_pose(block_a.start(), part_a), world_pose(block_b.start(), part_b)];
+            let found = polygon_pair(&part_a.part, &poses[0], &part_b.part, &poses[1], reach, None);
+            let placed = [part_a.pose, part_b.pose];
+            let radius = part_a.part.radius() + part_b.part.radius();
+            for contact in found.iter() {
+                let (point, face) = if contact.point_on_b { (1, 0) } else { (0, 1) };
+                let owners = [names.one, names.other];
+                let part_names = [(a - first_parts[0]) as u32, (b - first_parts[1]) as u32];
+                let key = ContactKey {
+                    contactor: owners[point],
+                    point: contact.id,
+                    target: owners[face],
+                    part: (part_names[0] << 16) | part_names[1],
+                };
+                let blocks = [one, other];
+                let ends = match contact.face {
+                    FaceOrVertex::Face(ends) => ends.map(|end| placed[face].transform(end)),
+                    FaceOrVertex::Vertex(at) => [placed[face].transform(at); 2],
+                };
+                let pair = Pair::PointOnFace {
+                    point: (blocks[point], placed[point].transform(contact.point)),
+                    face: blocks[face],
+                    ends,
+                    radius,
+                };
+                island.candidates.push(Candidate { key, pair, law });
+            }
+        }
+    }
+}
+
+/// How far a point of a block may move in the step (m).
+fn approach(block: &RigidBlock) -> f64 {
+    (block.free_motion().centre - block.start().centre).norm()
+}

@@ -1,0 +1,123 @@
+//! Carriers: how a flexible body exists in rapier.
+//!
+//! A dynamic rigid body with all axes locked holds one closed polyline, the body's surface in world coordinates, whose
+//! vertices are rewritten in place after every step. Its solver groups are empty, so rapier lists its contacts and
+//! pushes nothing.
+
+use crate::body::{BuildError, FlexBody, FlexBodyBuilder, FlexBodyError, FlexBodyHandle, FlexBodySet};
+use crate::math::{node_vec, to_rapier};
+use crate::rapier::parry::shape::{Polyline, PolylineFlags};
+use crate::rapier::prelude::*;
+
+impl FlexBodySet {
+    /// Builds a body and inserts it into the set and the world.
+    ///
+    /// # Errors
+    /// If the description is wrong; the set and the world are then unchanged.
+    pub fn insert(
+        &mut self,
+        builder: FlexBodyBuilder,
+        world: &mut PhysicsWorld,
+    ) -> Result<FlexBodyHandle, BuildError> {
+        self.insert_with_sets(builder, &mut world.bodies, &mut world.colliders)
+    }
+
+    /// [`FlexBodySet::insert`] for programs that keep rapier's sets apart.
+    ///
+    /// # Errors
+    /// If the description is wrong; all sets are then unchanged.
+    pub fn insert_with_sets(
+        &mut self,
+        builder: FlexBodyBuilder,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+    ) -> Result<FlexBodyHandle, BuildError> {
+        let mut body = builder.build()?;
+        let carrier = bodies.insert(
+            RigidBodyBuilder::dynamic()
+                .locked_axes(LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED)
+                .gravity_scale(0.0)
+                .can_sleep(false),
+        );
+        let contact = *body.contact_settings();
+        let collider = ColliderBuilder::new(SharedShape::new(surface(&body)))
+            .density(0.0)
+            .friction(contact.friction as Real)
+            .friction_combine_rule(contact.friction_combine_rule)
+            .restitution(contact.restitution as Real)
+            .restitution_combine_rule(contact.restitution_combine_rule)
+            .collision_groups(contact.collision_groups)
+            .solver_groups(InteractionGroups::none())
+            .active_events(contact.active_events);
+        let collider = colliders.insert_with_parent(collider, carrier, bodies);
+        body.bind(carrier, collider);
+        Ok(self.insert_body(body))
+    }
+
+    /// Removes a body from the set and its carrier from the world.
+    ///
+    /// # Errors
+    /// If the handle is stale or foreign, or if the world does not hold the carrier; nothing is then changed.
+    pub fn remove(
+        &mut self,
+        handle: FlexBodyHandle,
+        world: &mut PhysicsWorld,
+    ) -> Result<FlexBody, FlexBodyError> {
+        let carrier = self.try_get(handle)?.rigid_body_handle();
+        let collider = self.try_get(handle)?.collider_handle();
+        if !world.bodies.contains(carrier) || !world.colliders.contains(collider) {
+            return Err(FlexBodyError::NoCarrier(handle));
+        }
+        let body = self.take_body(handle)?;
+        world.remove_body(carrier);
+        Ok(body)
+    }
+
+    /// Removes a body whose carrier is gone from the world already, or kept elsewhere.
+    ///
+    /// # Errors
+    /// If the handle is stale or foreign.
+    pub fn forget(&mut self, handle: FlexBodyHandle) -> Result<FlexBody, FlexBodyError> {
+        self.take_body(handle)
+    }
+}
+
+/// The surface of a body as a closed polyline, material on the left.
+fn surface(body: &FlexBody) -> Polyline {
+    let boundary = body.mesh().boundary();
+    let mut slot = vec![0u32; body.n_nodes()];
+    for (index, &node) in boundary.nodes().iter().enumerate() {
+        slot[node] = index as u32;
+    }
+    let vertices = boundary.nodes().iter().map(|&node| to_rapier(node_vec(body.positions(), node))).collect();
+    let segments = boundary.segments().iter().map(|&[a, b]| [slot[a], slot[b]]).collect();
+    Polyline::with_flags(vertices, Some(segments), PolylineFlags::DEFORMABLE)
+}
+
+/// Writes the committed positions over the surface in rapier, if they changed at rapier's precision, and tells the broad
+/// phase, so that queries see them at once.
+pub(crate) fn write_surface(
+    body: &FlexBody,
+    colliders: &mut ColliderSet,
+    broad_phase: &mut BroadPhaseBvh,
+    parameters: &IntegrationParameters,
+) {
+    let handle = body.collider_handle();
+    let nodes = body.mesh().boundary().nodes();
+    let moved = |vertices: &[Vector]| {
+        nodes.iter().zip(vertices).any(|(&node, old)| *old != to_rapier(node_vec(body.positions(), node)))
+    };
+    let current = colliders.get(handle).and_then(|collider| collider.shape().as_polyline());
+    if !current.is_some_and(|polyline| moved(polyline.vertices())) {
+        return;
+    }
+    let Some(collider) = colliders.get_mut(handle) else { return };
+    let Some(polyline) = collider.shape_mut().as_polyline_mut() else { return };
+    polyline.update_vertices(|vertices| {
+        for (vertex, &node) in vertices.iter_mut().zip(nodes) {
+            *vertex = to_rapier(node_vec(body.positions(), node));
+        }
+    });
+    let aabb = collider.compute_aabb();
+    broad_phase.set_aabb(parameters, handle, aabb);
+}

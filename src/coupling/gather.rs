@@ -1,0 +1,350 @@
+//! Gathering: an island of blocks and candidates for every component of the claim.
+
+use super::candidates::{self, Names};
+use super::claim::{ClaimedPair, Claims, claimable_parent};
+use super::masters::{Masters, local_centre, read_motion};
+use super::sets::RapierSets;
+use super::shapes::{ShapeCache, pose_of};
+use crate::body::FlexBodySet;
+use crate::constraint::contact::{ContactLaw, Owner};
+use crate::constraint::geometry::Pose2;
+use crate::kkt::{Island, KktError};
+use crate::math::{Vec2, from_rapier};
+use crate::rapier::prelude::*;
+use crate::system::{Block, FlexBlock, RigidBlock, RigidLoad, RigidMotion, Step};
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Where a collider's parts are in the island being gathered.
+#[derive(Clone, Debug)]
+struct PlacedCollider {
+    block: usize,
+    parts: Range<usize>,
+}
+
+/// Builds islands; holds the rebuildable half of every flexible body and the converted shapes.
+#[derive(Debug, Default)]
+pub(crate) struct Gatherer {
+    /// One per slot of the flexible set.
+    pool: Vec<Option<Box<FlexBlock>>>,
+    shapes: ShapeCache,
+    placed: HashMap<ColliderHandle, PlacedCollider>,
+    block_of_body: HashMap<RigidBodyHandle, usize>,
+    flex_blocks: HashMap<usize, usize>,
+    /// Claimed bodies of the island, by block.
+    pub bodies: Vec<(usize, RigidBodyHandle)>,
+}
+
+/// What all islands of a step have in common.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GatherSettings {
+    /// Step length and weights.
+    pub step: Step,
+    /// Prediction distance of rapier (m).
+    pub prediction: f64,
+}
+
+impl Gatherer {
+    /// The number of numeric factorizations of a body so far.
+    pub fn n_factorizations(&self) -> u64 {
+        self.pool.iter().flatten().map(|block| block.n_factorizations()).sum()
+    }
+
+    /// The rebuildable half of a body, if it took part in a step.
+    pub fn block(&self, index: u32) -> Option<&FlexBlock> {
+        self.pool.get(index as usize)?.as_deref()
+    }
+
+    /// Drops what belongs to removed bodies and colliders.
+    pub fn retain(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
+        for (index, slot) in self.pool.iter_mut().enumerate() {
+            let lives = flex_bodies.at_index(index as u32).is_some_and(|(_, body)| {
+                slot.as_ref().is_some_and(|block| Arc::ptr_eq(block.model(), body.model()))
+            });
+            if !lives {
+                *slot = None;
+            }
+        }
+        self.shapes.retain(sets.colliders);
+    }
+
+    /// Fills `island` with one component.
+    ///
+    /// # Errors
+    /// If an effective matrix is not positive definite. The blocks taken must then be [given back](Self::give_back).
+    pub fn gather(
+        &mut self,
+        component: usize,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        flex_bodies: &mut FlexBodySet,
+        claims: &mut Claims,
+        masters: &Masters,
+        island: &mut Island,
+    ) -> Result<(), KktError> {
+        island.clear();
+        self.placed.clear();
+        self.block_of_body.clear();
+        self.flex_blocks.clear();
+        self.bodies.clear();
+        for flex in 0..claims.flex.len() {
+            if claims.component_of_flex(flex) == component {
+                self.add_flex(flex, settings, sets, flex_bodies, claims, island)?;
+            }
+        }
+        for index in 0..claims.rigid.len() {
+            let handle = claims.rigid[index];
+            if claims.component_of_rigid(handle) == Some(component) {
+                self.add_claimed(handle, settings, sets, masters, island);
+            }
+        }
+        for slot in 0..claims.pairs.len() {
+            let pair = claims.pairs[slot];
+            self.add_pair(pair, component, settings, sets, claims, island);
+        }
+        Ok(())
+    }
+
+    /// Puts the flexible blocks of a solved island back into the pool.
+    pub fn give_back(&mut self, island: &mut Island) {
+        for (block, index) in island.blocks.drain(..).zip(&island.flex_index) {
+            if let (Block::Flex(block), Some(index)) = (block, index) {
+                self.pool[*index as usize] = Some(block);
+            }
+        }
+        island.flex_index.clear();
+    }
+
+    fn add_flex(
+        &mut self,
+        flex: usize,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        flex_bodies: &mut FlexBodySet,
+        claims: &Claims,
+        island: &mut Island,
+    ) -> Result<(), KktError> {
+        let index = claims.flex[flex].index;
+        let Some(body) = flex_bodies.at_index_mut(index) else { return Ok(()) };
+        let slot = index as usize;
+        if self.pool.len() <= slot {
+            self.pool.resize_with(slot + 1, || None);
+        }
+        let is_current = |block: &Box<FlexBlock>| Arc::ptr_eq(block.model(), body.model());
+        let mut block = match self.pool[slot].take().filter(is_current) {
+            Some(block) => block,
+            None => {
+                let (model, fixed) = (Arc::clone(body.model()), body.fixed_dofs().to_vec());
+                Box::new(FlexBlock::new(model, fixed, body.frame()))
+            }
+        };
+        let own: Vec2 = body.body_force().into();
+        let gravity = body.gravity_scale() * from_rapier(sets.gravity) + own;
+        if !body.is_started() {
+            let force = body.nodal_force().to_vec();
+            block.start_acceleration(body.state_mut(), &force, gravity);
+            body.start();
+        }
+        let outcome = block.predict(settings.step, body.state(), body.nodal_force(), gravity, body.prescribed());
+        island.blocks.push(Block::Flex(block));
+        island.flex_index.push(Some(index));
+        self.flex_blocks.insert(flex, island.blocks.len() - 1);
+        outcome.map_err(|source| KktError::Factorization { body: index, source })
+    }
+
+    fn add_claimed(
+        &mut self,
+        handle: RigidBodyHandle,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        masters: &Masters,
+        island: &mut Island,
+    ) {
+        let Some(body) = sets.bodies.get(handle) else { return };
+        let (motion, acceleration) = masters.motion(handle, body);
+        let load = load_of(body, from_rapier(sets.gravity));
+        let Step { dt, weights } = settings.step;
+        let block = RigidBlock::free(motion, acceleration, &load, weights, dt);
+        self.push_rigid(block, Some(handle), island);
+        self.bodies.push((island.blocks.len() - 1, handle));
+    }
+
+    fn push_rigid(&mut self, block: RigidBlock, handle: Option<RigidBodyHandle>, island: &mut Island) -> usize {
+        island.blocks.push(Block::Rigid(block));
+        island.flex_index.push(None);
+        let index = island.blocks.len() - 1;
+        if let Some(handle) = handle {
+            self.block_of_body.insert(handle, index);
+        }
+        index
+    }
+
+    fn add_pair(
+        &mut self,
+        pair: ClaimedPair,
+        component: usize,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        claims: &mut Claims,
+        island: &mut Island,
+    ) {
+        match pair {
+            ClaimedPair::FlexRigid(flex, collider) if claims.component_of_flex(flex) == component => {
+                let own = claims.flex[flex];
+                let Some(block) = self.flex_blocks.get(&flex).copied() else { return };
+                let Some(placed) = self.place(collider, settings, sets, island) else { return };
+                let names = Names { one: Owner::Flex(own.index), other: owner_of(collider) };
+                let law = law_of(sets.colliders, own.collider, collider);
+                candidates::flex_rigid(island, block, placed.block, placed.parts, names, law, own.edge);
+            }
+            ClaimedPair::FlexFlex(one, other) if claims.component_of_flex(one) == component => {
+                // The finer surface is the contactor; the lower slot if they are equal.
+                let is_finer = claims.flex[other].edge < claims.flex[one].edge * (1.0 - 1e-9);
+                let (contactor, target) = if is_finer { (other, one) } else { (one, other) };
+                let blocks = [contactor, target].map(|flex| self.flex_blocks.get(&flex).copied());
+                let [Some(points), Some(surface)] = blocks else { return };
+                let (points_of, surface_of) = (claims.flex[contactor], claims.flex[target]);
+                let names = Names { one: Owner::Flex(points_of.index), other: Owner::Flex(surface_of.index) };
+                let law = law_of(sets.colliders, points_of.collider, surface_of.collider);
+                let edge = points_of.edge.max(surface_of.edge);
+                candidates::flex_flex(island, points, surface, names, law, edge);
+            }
+            ClaimedPair::RigidRigid(one, other) => {
+                if self.component_of_pair([one, other], sets, claims) != Some(component) {
+                    return;
+                }
+                let Some(first) = self.place(one, settings, sets, island) else { return };
+                let Some(second) = self.place(other, settings, sets, island) else { return };
+                let names = Names { one: owner_of(one), other: owner_of(other) };
+                let law = law_of(sets.colliders, one, other);
+                let blocks = [first.block, second.block];
+                let parts = [first.parts, second.parts];
+                candidates::rigid_rigid(island, blocks, parts, names, law, settings.prediction);
+            }
+            _ => {}
+        }
+    }
+
+    fn component_of_pair(
+        &self,
+        pair: [ColliderHandle; 2],
+        sets: &RapierSets<'_>,
+        claims: &mut Claims,
+    ) -> Option<usize> {
+        pair.iter()
+            .filter_map(|&handle| claimable_parent(sets, sets.colliders.get(handle)?))
+            .find_map(|body| claims.component_of_rigid(body))
+    }
+
+    /// The block and parts of a collider, added to the island when first met.
+    fn place(
+        &mut self,
+        handle: ColliderHandle,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) -> Option<PlacedCollider> {
+        if let Some(placed) = self.placed.get(&handle) {
+            return Some(placed.clone());
+        }
+        let collider = sets.colliders.get(handle)?;
+        let parent = collider.parent().and_then(|parent| Some((parent, sets.bodies.get(parent)?)));
+        let (block, offset) = match parent {
+            None => {
+                let pose = pose_of(collider.position());
+                let motion = at_rest(&pose);
+                (self.push_rigid(RigidBlock::prescribed(motion, motion), None, island), Pose2::identity())
+            }
+            Some((parent, body)) => {
+                let known = self.block_of_body.get(&parent).copied();
+                let block = known.unwrap_or_else(|| {
+                    let block = prescribed_block(body, settings.step.dt);
+                    self.push_rigid(block, Some(parent), island)
+                });
+                (block, offset_of(collider, body))
+            }
+        };
+        let parts = candidates::add_parts(island, self.shapes.parts(handle, collider), offset);
+        let placed = PlacedCollider { block, parts };
+        self.placed.insert(handle, placed.clone());
+        Some(placed)
+    }
+}
+
+fn owner_of(handle: ColliderHandle) -> Owner {
+    Owner::Collider(handle.into_raw_parts().0)
+}
+
+/// Pose of a collider about its body's centre of mass.
+fn offset_of(collider: &Collider, body: &RigidBody) -> Pose2 {
+    let mut pose = collider.position_wrt_parent().map_or_else(Pose2::identity, pose_of);
+    pose.translation -= local_centre(body);
+    pose
+}
+
+fn at_rest(pose: &Pose2) -> RigidMotion {
+    RigidMotion { centre: pose.translation, angle: pose.sin.atan2(pose.cos), ..RigidMotion::default() }
+}
+
+/// A fixed or kinematic body, or one rapier keeps for itself: it moves as rapier says.
+fn prescribed_block(body: &RigidBody, dt: f64) -> RigidBlock {
+    let start = read_motion(body);
+    if body.is_fixed() {
+        let rest = RigidMotion { velocity: Vec2::zeros(), spin: 0.0, ..start };
+        return RigidBlock::prescribed(rest, rest);
+    }
+    let next = match body.body_type() {
+        RigidBodyType::KinematicPositionBased => *body.next_position(),
+        _ => body.predict_position_using_velocity(dt as crate::rapier::math::Real),
+    };
+    let next = pose_of(&next);
+    let centre = next.transform(local_centre(body));
+    let turned = (next.sin.atan2(next.cos) - start.angle + std::f64::consts::PI)
+        .rem_euclid(std::f64::consts::TAU)
+        - std::f64::consts::PI;
+    let end = RigidMotion {
+        centre,
+        angle: start.angle + turned,
+        velocity: (centre - start.centre) / dt,
+        spin: turned / dt,
+    };
+    RigidBlock::prescribed(start, end)
+}
+
+fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
+    let properties = body.mass_properties();
+    let inverse_mass = [
+        f64::from(properties.effective_inv_mass.x),
+        f64::from(properties.effective_inv_mass.y),
+        f64::from(properties.effective_world_inv_inertia),
+    ];
+    let mass = f64::from(body.mass());
+    let force = from_rapier(body.user_force()) + mass * f64::from(body.gravity_scale()) * gravity;
+    let (linear, angular) = (f64::from(body.linear_damping()), f64::from(body.angular_damping()));
+    RigidLoad {
+        inverse_mass,
+        force: [force.x, force.y, f64::from(body.user_torque())],
+        damping: [linear, linear, angular],
+    }
+}
+
+fn law_of(colliders: &ColliderSet, one: ColliderHandle, other: ColliderHandle) -> ContactLaw {
+    let (Some(one), Some(other)) = (colliders.get(one), colliders.get(other)) else {
+        return ContactLaw::default();
+    };
+    let friction = CoefficientCombineRule::combine(
+        one.friction(),
+        other.friction(),
+        one.friction_combine_rule(),
+        other.friction_combine_rule(),
+    );
+    let restitution = CoefficientCombineRule::combine(
+        one.restitution(),
+        other.restitution(),
+        one.restitution_combine_rule(),
+        other.restitution_combine_rule(),
+    );
+    ContactLaw { friction: f64::from(friction).max(0.0), restitution: f64::from(restitution).max(0.0) }
+}
+

@@ -1,0 +1,74 @@
+//! Handing back: rapier's own step carries claimed bodies to where the flexible stage put them.
+//!
+//! All axes are locked for that step, so neither contacts nor gravity act, and the velocity is the one that lands the
+//! body on our result; then axes and true end velocities return.
+
+use super::masters::Masters;
+use super::sets::RapierSets;
+use crate::math::{from_rapier, to_rapier};
+use crate::rapier::math::Real;
+use crate::rapier::prelude::*;
+use crate::system::RigidMotion;
+
+/// A claimed body on its way through rapier's step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Landing {
+    /// The body.
+    pub handle: RigidBodyHandle,
+    /// Where and how fast it must end.
+    pub motion: RigidMotion,
+    /// Its smooth acceleration.
+    pub acceleration: [f64; 3],
+    axes: LockedAxes,
+}
+
+impl Landing {
+    /// Notes the end of a claimed body's step.
+    pub fn new(handle: RigidBodyHandle, motion: RigidMotion, acceleration: [f64; 3]) -> Self {
+        Self { handle, motion, acceleration, axes: LockedAxes::empty() }
+    }
+}
+
+/// Locks claimed bodies and gives them the velocity that lands them.
+pub(crate) fn hand_back(landings: &mut [Landing], sets: &mut RapierSets<'_>) {
+    let dt = f64::from(sets.integration_parameters.dt);
+    let iterations = sets.integration_parameters.num_solver_iterations;
+    for landing in landings {
+        let Some(body) = sets.bodies.get_mut(landing.handle) else { continue };
+        landing.axes = body.locked_axes();
+        let n = (iterations + body.additional_solver_iterations()).max(1) as f64;
+        let angle = f64::from(body.rotation().im).atan2(f64::from(body.rotation().re));
+        let turned = wrap(landing.motion.angle - angle);
+        let moved = landing.motion.centre - from_rapier(body.center_of_mass());
+        body.set_locked_axes(LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED, false);
+        body.set_linvel(to_rapier(moved / dt), false);
+        // Rapier integrates a linearised rotation, `n` times per step.
+        body.set_angvel(((turned / n).tan() * n / dt) as Real, false);
+    }
+}
+
+/// Restores axes and end velocities after rapier's step, and keeps the motions in `f64`.
+///
+/// Where rapier's continuous collision detection stopped a body earlier, its pose counts.
+pub(crate) fn land(landings: &[Landing], sets: &mut RapierSets<'_>, masters: &mut Masters) {
+    for landing in landings {
+        let Some(body) = sets.bodies.get_mut(landing.handle) else { continue };
+        body.set_locked_axes(landing.axes, false);
+        body.set_linvel(to_rapier(landing.motion.velocity), false);
+        body.set_angvel(landing.motion.spin as Real, false);
+        let missed = from_rapier(body.center_of_mass()) - landing.motion.centre;
+        if missed.norm() <= LANDING_TOLERANCE * (1.0 + landing.motion.centre.norm()) {
+            masters.keep(landing.handle, landing.motion, landing.acceleration, body);
+        }
+    }
+    masters.turn_over();
+}
+
+/// A landing this exact, relative to the distance from the origin, is rapier's rounding and no clamp.
+const LANDING_TOLERANCE: f64 = 1e-4;
+
+/// The equivalent angle in (-π, π].
+fn wrap(angle: f64) -> f64 {
+    let turns = (angle / std::f64::consts::TAU).round();
+    angle - turns * std::f64::consts::TAU
+}

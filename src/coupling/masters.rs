@@ -1,0 +1,79 @@
+//! The `f64` motion of claimed rigid bodies, kept from step to step while rapier's copy is the one we wrote.
+
+use super::shapes::pose_of;
+use crate::math::{Vec2, from_rapier};
+use crate::rapier::math::{Pose, Real, Vector};
+use crate::rapier::prelude::*;
+use crate::system::RigidMotion;
+use std::collections::HashMap;
+
+/// What is kept of a claimed body.
+#[derive(Clone, Copy, Debug)]
+struct Master {
+    motion: RigidMotion,
+    acceleration: [f64; 3],
+    pose: Pose,
+    linvel: Vector,
+    angvel: Real,
+}
+
+/// Motions of all bodies claimed in the last step.
+#[derive(Debug, Default)]
+pub(crate) struct Masters {
+    last: HashMap<RigidBodyHandle, Master>,
+    next: HashMap<RigidBodyHandle, Master>,
+}
+
+impl Masters {
+    /// The motion of a body, and its smooth acceleration if it was claimed in the last step and not touched since.
+    pub fn motion(&self, handle: RigidBodyHandle, body: &RigidBody) -> (RigidMotion, Option<[f64; 3]>) {
+        if let Some(master) = self.last.get(&handle) {
+            let same_pose = master.pose == *body.position();
+            let same_velocity = master.linvel == body.linvel() && master.angvel == body.angvel();
+            if same_pose && same_velocity {
+                return (master.motion, Some(master.acceleration));
+            }
+            if same_pose {
+                let read = read_motion(body);
+                let motion = RigidMotion { velocity: read.velocity, spin: read.spin, ..master.motion };
+                return (motion, Some(master.acceleration));
+            }
+        }
+        (read_motion(body), None)
+    }
+
+    /// Keeps a body's motion after the hand-back.
+    pub fn keep(&mut self, handle: RigidBodyHandle, motion: RigidMotion, acceleration: [f64; 3], body: &RigidBody) {
+        let master = Master {
+            motion,
+            acceleration,
+            pose: *body.position(),
+            linvel: body.linvel(),
+            angvel: body.angvel(),
+        };
+        self.next.insert(handle, master);
+    }
+
+    /// Makes the motions kept since the last call those of the last step.
+    pub fn turn_over(&mut self) {
+        std::mem::swap(&mut self.last, &mut self.next);
+        self.next.clear();
+    }
+}
+
+/// A body's motion as rapier has it.
+pub(crate) fn read_motion(body: &RigidBody) -> RigidMotion {
+    let pose = pose_of(body.position());
+    let centre = pose.transform(local_centre(body));
+    RigidMotion {
+        centre,
+        angle: pose.sin.atan2(pose.cos),
+        velocity: from_rapier(body.linvel()),
+        spin: f64::from(body.angvel()),
+    }
+}
+
+/// The centre of mass in the body's coordinates.
+pub(crate) fn local_centre(body: &RigidBody) -> Vec2 {
+    from_rapier(body.local_center_of_mass())
+}

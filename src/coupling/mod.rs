@@ -1,0 +1,19 @@
+//! The border with rapier: carriers, detection, claiming, gathering and handing back.
+//!
+//! Together with [`crate::pipeline`] this is the only part that reads or writes rapier's sets.
+
+mod candidates;
+mod carrier;
+mod claim;
+mod gather;
+mod hand_back;
+mod masters;
+mod sets;
+mod shapes;
+
+pub(crate) use carrier::write_surface;
+pub(crate) use claim::Claims;
+pub(crate) use gather::{GatherSettings, Gatherer};
+pub(crate) use hand_back::{Landing, hand_back, land};
+pub(crate) use masters::Masters;
+pub use sets::RapierSets;

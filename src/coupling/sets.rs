@@ -1,0 +1,92 @@
+//! Rapier's sets, borrowed together for one step.
+
+use crate::rapier::prelude::*;
+
+/// The arguments of `PhysicsPipeline::step`, the pipeline included.
+pub struct RapierSets<'a> {
+    /// Rapier's pipeline.
+    pub physics_pipeline: &'a mut PhysicsPipeline,
+    /// Gravity (m/s²).
+    pub gravity: Vector,
+    /// Rapier's parameters; their `dt` is the step.
+    pub integration_parameters: &'a IntegrationParameters,
+    /// Islands.
+    pub islands: &'a mut IslandManager,
+    /// Broad phase.
+    pub broad_phase: &'a mut BroadPhaseBvh,
+    /// Narrow phase.
+    pub narrow_phase: &'a mut NarrowPhase,
+    /// Rigid bodies.
+    pub bodies: &'a mut RigidBodySet,
+    /// Colliders.
+    pub colliders: &'a mut ColliderSet,
+    /// Impulse joints.
+    pub impulse_joints: &'a mut ImpulseJointSet,
+    /// Multibody joints.
+    pub multibody_joints: &'a mut MultibodyJointSet,
+    /// Rapier's own soft bodies.
+    pub soft_bodies: &'a mut SoftBodySet,
+    /// Continuous collision detection.
+    pub ccd_solver: &'a mut CCDSolver,
+    /// The user's hooks.
+    pub hooks: &'a dyn PhysicsHooks,
+    /// The user's event handler.
+    pub events: &'a dyn EventHandler,
+}
+
+impl<'a> RapierSets<'a> {
+    /// Borrows a whole world.
+    pub fn of_world(
+        world: &'a mut PhysicsWorld,
+        hooks: &'a dyn PhysicsHooks,
+        events: &'a dyn EventHandler,
+    ) -> Self {
+        Self {
+            physics_pipeline: &mut world.physics_pipeline,
+            gravity: world.gravity,
+            integration_parameters: &world.integration_parameters,
+            islands: &mut world.islands,
+            broad_phase: &mut world.broad_phase,
+            narrow_phase: &mut world.narrow_phase,
+            bodies: &mut world.bodies,
+            colliders: &mut world.colliders,
+            impulse_joints: &mut world.impulse_joints,
+            multibody_joints: &mut world.multibody_joints,
+            soft_bodies: &mut world.soft_bodies,
+            ccd_solver: &mut world.ccd_solver,
+            hooks,
+            events,
+        }
+    }
+
+    /// Rapier's own step.
+    pub fn step(&mut self) {
+        let parameters = *self.integration_parameters;
+        self.step_with(&parameters);
+    }
+
+    /// Applies the user's changes and updates the contact graph, moving nothing.
+    pub fn detect(&mut self) {
+        let mut parameters = *self.integration_parameters;
+        parameters.dt = 0.0;
+        self.step_with(&parameters);
+    }
+
+    fn step_with(&mut self, parameters: &IntegrationParameters) {
+        self.physics_pipeline.step(
+            self.gravity,
+            parameters,
+            self.islands,
+            self.broad_phase,
+            self.narrow_phase,
+            self.bodies,
+            self.colliders,
+            self.impulse_joints,
+            self.multibody_joints,
+            self.soft_bodies,
+            self.ccd_solver,
+            self.hooks,
+            self.events,
+        );
+    }
+}

@@ -1,0 +1,18 @@
+//! Finite elements: from a mesh and a material to `K u = f` and `M a = f`, one cell at a time.
+//!
+//! | module | owns |
+//! |---|---|
+//! | [`mesh`] | nodes, cells, boundary |
+//! | [`material`] | `sigma(eps)`, its tangent and its energy |
+//! | [`element`] | `k = int B^T D B t dA`, `m = int rho N^T N t dA` |
+//! | [`mass`] | nodal masses with an inertia-free contact boundary |
+//! | [`recovery`] | stresses at points and, smoothed, at nodes |
+//!
+//! SI units throughout; the strain order is `[e_xx, e_yy, g_xy]` with engineering shear.
+
+pub mod element;
+pub mod mass;
+pub mod material;
+pub mod mesh;
+pub mod model;
+pub mod recovery;

@@ -1,0 +1,438 @@
+//! The discrete body: mesh, elements, material and thickness assembled into `K` and `M`.
+//!
+//! A model never changes once built; bodies share it by reference count.
+
+use super::element::{Element, ElementError, MAX_NODES, default_element};
+use super::mass::{self, MassError};
+use super::material::{Material, Rayleigh};
+use super::mesh::{Cell, Mesh};
+use super::recovery::{CellStress, Stress, point_stresses, smooth_to_nodes};
+use crate::linalg::block_matrix::BlockMatrix;
+use crate::math::{Vec2, cross, node_vec};
+use std::sync::Arc;
+use thiserror::Error;
+
+/// How the mass of a body is represented.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MassKind {
+    /// Nodal masses (row sums; HRZ on quadratic elements).
+    #[default]
+    Lumped,
+    /// `m = ∫ ρ N N t dA`, with the pattern of the stiffness.
+    Consistent,
+}
+
+/// Why a model cannot be assembled.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ModelError {
+    /// No element fits a cell.
+    #[error("cell {cell} has {n_nodes} nodes and no element for it: pass one with `element(...)`")]
+    NoElement {
+        /// Index of the cell.
+        cell: usize,
+        /// Its node count.
+        n_nodes: usize,
+    },
+    /// An element refused a cell.
+    #[error("cell {cell}: {source}")]
+    Element {
+        /// Index of the cell.
+        cell: usize,
+        /// What the element found.
+        source: ElementError,
+    },
+    /// The mass cannot be moved off the contact boundary.
+    #[error(transparent)]
+    Mass(#[from] MassError),
+    /// Thickness is not positive.
+    #[error("the thickness is {0} m: give a finite positive one")]
+    Thickness(f64),
+    /// Redistribution needs nodal masses.
+    #[error("a consistent mass cannot be redistributed: choose a lumped mass, or keep the inertia of the contact boundary")]
+    ConsistentRedistribution,
+}
+
+/// The mass matrix, the same in x and y.
+#[derive(Clone, Debug)]
+pub enum MassMatrix {
+    /// One mass per node (kg).
+    Lumped(Vec<f64>),
+    /// Blocks `m_ab I` (kg).
+    Consistent(BlockMatrix),
+}
+
+impl MassMatrix {
+    /// Row sums per node, `M 1` (kg).
+    pub fn node_sums(&self) -> Vec<f64> {
+        match self {
+            Self::Lumped(mass) => mass.clone(),
+            Self::Consistent(matrix) => {
+                let ones = vec![1.0; matrix.n_dofs()];
+                let mut sums = vec![0.0; matrix.n_dofs()];
+                matrix.multiply(&ones, &mut sums);
+                sums.iter().step_by(2).copied().collect()
+            }
+        }
+    }
+
+    /// `y += scale M x`; both interleaved.
+    pub fn multiply_add(&self, scale: f64, x: &[f64], y: &mut [f64]) {
+        match self {
+            Self::Lumped(mass) => {
+                for ((y, x), mass) in y.chunks_exact_mut(2).zip(x.chunks_exact(2)).zip(mass) {
+                    let mass = scale * mass;
+                    y[0] += mass * x[0];
+                    y[1] += mass * x[1];
+                }
+            }
+            Self::Consistent(matrix) => matrix.multiply_add(scale, x, y),
+        }
+    }
+
+    /// Adds `scale M` to a block matrix of the same pattern.
+    pub fn add_to(&self, scale: f64, matrix: &mut BlockMatrix) {
+        match self {
+            Self::Lumped(mass) => {
+                for (node, mass) in mass.iter().enumerate() {
+                    matrix.add_diagonal(node, [scale * mass, scale * mass]);
+                }
+            }
+            Self::Consistent(mass) => matrix.add_scaled(scale, mass),
+        }
+    }
+
+    /// `x·M y` over all dofs.
+    pub fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
+        match self {
+            Self::Lumped(mass) => x
+                .chunks_exact(2)
+                .zip(y.chunks_exact(2))
+                .zip(mass)
+                .map(|((x, y), mass)| mass * (x[0] * y[0] + x[1] * y[1]))
+                .sum(),
+            Self::Consistent(matrix) => (0..matrix.n_nodes())
+                .map(|node| {
+                    let [a, b] = matrix.multiply_node(node, y);
+                    x[2 * node] * a + x[2 * node + 1] * b
+                })
+                .sum(),
+        }
+    }
+
+    /// `Σ (x - c) × (M y)`: the moment of the mass-weighted vectors `y` about `centre`.
+    pub fn moment(&self, centre: Vec2, x: &[f64], y: &[f64]) -> f64 {
+        match self {
+            Self::Lumped(mass) => mass
+                .iter()
+                .enumerate()
+                .map(|(node, mass)| mass * cross(node_vec(x, node) - centre, node_vec(y, node)))
+                .sum(),
+            Self::Consistent(matrix) => (0..matrix.n_nodes())
+                .map(|node| {
+                    let [a, b] = matrix.multiply_node(node, y);
+                    cross(node_vec(x, node) - centre, Vec2::new(a, b))
+                })
+                .sum(),
+        }
+    }
+}
+
+/// What a model is assembled from.
+#[derive(Clone, Debug)]
+pub struct ModelDescription {
+    /// Nodes and cells, in the body's reference placement.
+    pub mesh: Arc<Mesh>,
+    /// Reference positions of the nodes in the world's axes, interleaved (m): the mesh, placed.
+    pub rest_positions: Vec<f64>,
+    /// Elements that replace the default ones of their node count.
+    pub elements: Vec<Arc<dyn Element>>,
+    /// The constitutive law.
+    pub material: Arc<dyn Material>,
+    /// Thickness out of the plane (m).
+    pub thickness: f64,
+    /// Representation of the mass.
+    pub mass_kind: MassKind,
+    /// Nodes whose mass moves inwards, one flag per node; empty for none.
+    pub massless: Vec<bool>,
+    /// Nodes that cannot move, and so cannot carry another node's mass; empty for none.
+    pub held: Vec<bool>,
+}
+
+/// The assembled, immutable finite-element model of one body.
+#[derive(Clone, Debug)]
+pub struct Model {
+    description: ModelDescription,
+    stiffness: BlockMatrix,
+    mass: MassMatrix,
+    /// For every massless node the massive nodes that stand for its velocity.
+    support: Vec<(usize, Vec<usize>)>,
+    largest_frequency: f64,
+}
+
+impl Model {
+    /// Assembles stiffness and mass.
+    ///
+    /// # Errors
+    /// If a cell has no element or an element refuses it, if the thickness is not positive, or if mass cannot be moved.
+    pub fn assemble(mut description: ModelDescription) -> Result<Self, ModelError> {
+        let thickness = description.thickness;
+        if !(thickness.is_finite() && thickness > 0.0) {
+            return Err(ModelError::Thickness(thickness));
+        }
+        let mesh = Arc::clone(&description.mesh);
+        let n_nodes = mesh.n_nodes();
+        let mut stiffness = BlockMatrix::from_cells(n_nodes, (0..mesh.n_cells()).map(|cell| mesh.cell(cell).nodes));
+        let mut consistent = match description.mass_kind {
+            MassKind::Consistent => Some(stiffness.clone()),
+            MassKind::Lumped => None,
+        };
+        let mut lumped = vec![0.0; n_nodes];
+        let mut matrix = [0.0; 4 * MAX_NODES * MAX_NODES];
+        for (index, cell) in mesh.cells().enumerate() {
+            let wrap = |source| ModelError::Element { cell: index, source };
+            let element = element_of(&description.elements, index, &cell)?;
+            let n = cell.nodes.len();
+            let corners = placed_nodes(&description.rest_positions, &cell);
+            let matrix = &mut matrix[..4 * n * n];
+            let material = description.material.as_ref();
+            element.stiffness(&corners[..n], material, thickness, matrix).map_err(wrap)?;
+            stiffness.add_cell(cell.nodes, matrix);
+            let density = material.density();
+            if let Some(consistent) = &mut consistent {
+                element.consistent_mass(&corners[..n], density, thickness, &mut matrix[..n * n]).map_err(wrap)?;
+                add_scalar_cell(consistent, cell.nodes, &matrix[..n * n]);
+            } else {
+                element.lumped_mass(&corners[..n], density, thickness, &mut matrix[..n]).map_err(wrap)?;
+                for (&node, mass) in cell.nodes.iter().zip(&matrix[..n]) {
+                    lumped[node] += mass;
+                }
+            }
+        }
+        let has_massless = description.massless.contains(&true);
+        let mass = match consistent {
+            Some(_) if has_massless => return Err(ModelError::ConsistentRedistribution),
+            Some(matrix) => MassMatrix::Consistent(matrix),
+            None => {
+                if has_massless {
+                    redistribute(&mut description, &mut lumped, &stiffness)?;
+                }
+                MassMatrix::Lumped(lumped)
+            }
+        };
+        if description.massless.is_empty() {
+            description.massless = vec![false; n_nodes];
+        }
+        let support = massive_support(&description.massless, &stiffness);
+        let largest_frequency = frequency_bound(&stiffness, &mass, has_massless);
+        Ok(Self { description, stiffness, mass, support, largest_frequency })
+    }
+
+    /// The mesh, in its own coordinates.
+    pub fn mesh(&self) -> &Mesh {
+        &self.description.mesh
+    }
+
+    /// Number of nodes.
+    pub fn n_nodes(&self) -> usize {
+        self.description.mesh.n_nodes()
+    }
+
+    /// Number of dofs, two a node.
+    pub fn n_dofs(&self) -> usize {
+        2 * self.n_nodes()
+    }
+
+    /// Unstrained positions in the world's axes, interleaved (m).
+    pub fn rest_positions(&self) -> &[f64] {
+        &self.description.rest_positions
+    }
+
+    /// The stiffness matrix `K` (N/m).
+    pub fn stiffness(&self) -> &BlockMatrix {
+        &self.stiffness
+    }
+
+    /// The mass matrix `M` (kg).
+    pub fn mass(&self) -> &MassMatrix {
+        &self.mass
+    }
+
+    /// Whether a node's mass was moved inwards.
+    pub fn is_massless(&self, node: usize) -> bool {
+        self.description.massless[node]
+    }
+
+    /// Massless nodes with the massive nodes around them.
+    pub fn massless_support(&self) -> &[(usize, Vec<usize>)] {
+        &self.support
+    }
+
+    /// Damping coefficients of the material.
+    pub fn rayleigh(&self) -> Rayleigh {
+        self.description.material.rayleigh()
+    }
+
+    /// The constitutive law.
+    pub fn material(&self) -> &dyn Material {
+        self.description.material.as_ref()
+    }
+
+    /// Thickness (m).
+    pub fn thickness(&self) -> f64 {
+        self.description.thickness
+    }
+
+    /// An upper bound of the largest natural frequency (rad/s), infinite when some node carries no mass.
+    pub fn largest_frequency(&self) -> f64 {
+        self.largest_frequency
+    }
+
+    /// Elastic energy of local displacements `u` (J).
+    pub fn elastic_energy(&self, u: &[f64]) -> f64 {
+        let mut twice = 0.0;
+        for node in 0..self.n_nodes() {
+            let [a, b] = self.stiffness.multiply_node(node, u);
+            twice += u[2 * node] * a + u[2 * node + 1] * b;
+        }
+        0.5 * twice
+    }
+
+    /// Smoothed stress at every node, in the body's frame (Pa).
+    ///
+    /// - `u`: displacements in the body's frame, interleaved (m).
+    ///
+    /// # Errors
+    /// If an element cannot evaluate its strain.
+    pub fn nodal_stress(&self, u: &[f64]) -> Result<Vec<Stress>, ModelError> {
+        let material = self.material();
+        let mut elements = Vec::with_capacity(self.mesh().n_cells());
+        let mut stresses = Vec::new();
+        let mut spans = Vec::new();
+        for (index, cell) in self.mesh().cells().enumerate() {
+            let wrap = |source| ModelError::Element { cell: index, source };
+            let element = element_of(&self.description.elements, index, &cell)?;
+            let n = cell.nodes.len();
+            let corners = placed_nodes(&self.description.rest_positions, &cell);
+            let mut local = [0.0; 2 * MAX_NODES];
+            for (slot, &node) in cell.nodes.iter().enumerate() {
+                local[2 * slot..2 * slot + 2].copy_from_slice(&u[2 * node..2 * node + 2]);
+            }
+            let first = stresses.len();
+            stresses.resize(first + element.quadrature().len(), Stress::default());
+            let points = &mut stresses[first..];
+            point_stresses(element.as_ref(), &corners[..n], material, &local[..2 * n], points).map_err(wrap)?;
+            spans.push((first, element.area(&corners[..n]).map_err(wrap)?));
+            elements.push(element);
+        }
+        let cells = self.mesh().cells().zip(&elements).zip(&spans).map(|((cell, element), &(first, weight))| {
+            let last = first + element.quadrature().len();
+            CellStress { nodes: cell.nodes, element: element.as_ref(), stresses: &stresses[first..last], weight }
+        });
+        let mut nodal = vec![Stress::default(); self.n_nodes()];
+        smooth_to_nodes(cells, &mut vec![0.0; self.n_nodes()], &mut nodal);
+        Ok(nodal)
+    }
+}
+
+/// The element of a cell: the last matching one the user gave, else the default of its node count.
+fn element_of(
+    elements: &[Arc<dyn Element>],
+    index: usize,
+    cell: &Cell<'_>,
+) -> Result<Arc<dyn Element>, ModelError> {
+    let n_nodes = cell.nodes.len();
+    let own = elements.iter().rev().find(|element| element.n_nodes() == n_nodes);
+    own.cloned()
+        .or_else(|| default_element(n_nodes))
+        .ok_or(ModelError::NoElement { cell: index, n_nodes })
+}
+
+/// Nodes of a cell in the world's axes; only the first `cell.nodes.len()` entries are meaningful.
+fn placed_nodes(rest: &[f64], cell: &Cell<'_>) -> [[f64; 2]; MAX_NODES] {
+    let mut corners = [[0.0; 2]; MAX_NODES];
+    for (corner, &node) in corners.iter_mut().zip(cell.nodes) {
+        *corner = [rest[2 * node], rest[2 * node + 1]];
+    }
+    corners
+}
+
+/// Adds a scalar cell matrix as `m_ab I` blocks.
+fn add_scalar_cell(matrix: &mut BlockMatrix, nodes: &[usize], cell: &[f64]) {
+    for (a, &row) in nodes.iter().enumerate() {
+        for (b, &column) in nodes.iter().enumerate() {
+            if let Some(block) = matrix.block_mut(row, column) {
+                let mass = cell[a * nodes.len() + b];
+                block[0] += mass;
+                block[3] += mass;
+            }
+        }
+    }
+}
+
+fn redistribute(
+    description: &mut ModelDescription,
+    lumped: &mut [f64],
+    pattern: &BlockMatrix,
+) -> Result<(), MassError> {
+    let nodes: Vec<[f64; 2]> =
+        description.rest_positions.chunks_exact(2).map(|p| [p[0], p[1]]).collect();
+    let is_held = |node: usize| description.held.get(node).copied().unwrap_or(false);
+    let neighbours: Vec<Vec<usize>> = (0..nodes.len())
+        .map(|node| {
+            let all = pattern.neighbours(node).iter().map(|&n| n as usize);
+            all.filter(|&n| n != node && !is_held(n)).collect()
+        })
+        .collect();
+    mass::redistribute(&nodes, lumped, &description.massless, |node| &neighbours[node])?;
+    Ok(())
+}
+
+/// Nearest massive nodes of every massless one, ring by ring over the mesh.
+fn massive_support(massless: &[bool], pattern: &BlockMatrix) -> Vec<(usize, Vec<usize>)> {
+    let mut support = Vec::new();
+    for node in (0..massless.len()).filter(|&node| massless[node]) {
+        let mut ring = vec![node];
+        let mut seen = ring.clone();
+        loop {
+            let mut next: Vec<usize> = ring
+                .iter()
+                .flat_map(|&node| pattern.neighbours(node).iter().map(|&n| n as usize))
+                .filter(|node| !seen.contains(node))
+                .collect();
+            next.sort_unstable();
+            next.dedup();
+            let massive: Vec<usize> = next.iter().copied().filter(|&n| !massless[n]).collect();
+            if !massive.is_empty() || next.is_empty() {
+                support.push((node, massive));
+                break;
+            }
+            seen.extend_from_slice(&next);
+            ring = next;
+        }
+    }
+    support
+}
+
+/// Gershgorin's bound of the eigenvalues of `M⁻¹ K`, as a frequency (rad/s).
+fn frequency_bound(stiffness: &BlockMatrix, mass: &MassMatrix, has_massless: bool) -> f64 {
+    if has_massless {
+        return f64::INFINITY;
+    }
+    // The smallest eigenvalue of a consistent mass is at least a quarter of its row sum for our elements (1/4 for
+    // Tri3, 1/9 for Quad4 against the row sum; the bound below takes the smallest).
+    let share = match mass {
+        MassMatrix::Lumped(_) => 1.0,
+        MassMatrix::Consistent(_) => 1.0 / 9.0,
+    };
+    let sums = mass.node_sums();
+    let mut largest = 0.0f64;
+    for (node, sum) in sums.iter().enumerate() {
+        let mut rows = [0.0f64; 2];
+        for block in stiffness.row_blocks(node) {
+            rows[0] += block[0].abs() + block[1].abs();
+            rows[1] += block[2].abs() + block[3].abs();
+        }
+        largest = largest.max(rows[0].max(rows[1]) / (share * sum));
+    }
+    largest.sqrt()
+}

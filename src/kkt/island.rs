@@ -1,0 +1,202 @@
+//! An island: blocks that touch, with the candidates between them, solved as one system.
+
+use super::delassus::RowDirection;
+use super::impact::ImpactTreatment;
+use crate::constraint::contact::{Candidate, ContactMemory, Kinematics, PlacedPart, Remembered, Scene};
+use crate::linalg::cholesky::CholeskyError;
+use crate::linalg::complementarity::{ComplementarityError, RowKind, Solver, Status};
+use crate::system::{Block, Grip};
+use thiserror::Error;
+
+/// Why an island cannot be solved.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum KktError {
+    /// The effective matrix of a flexible body is not positive definite.
+    #[error("flexible body {body}: {source}")]
+    Factorization {
+        /// Index of the body in its set.
+        body: u32,
+        /// What the factorization found.
+        source: CholeskyError,
+    },
+    /// The contact problem holds numbers that are not finite.
+    #[error(transparent)]
+    Contact(#[from] ComplementarityError),
+}
+
+/// Settings of a solve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolveSettings {
+    /// Step length (s).
+    pub dt: f64,
+    /// Beta-2 weight `b0` (s²).
+    pub b0: f64,
+    /// What is done on impact.
+    pub impact: ImpactTreatment,
+    /// Approach velocity below which restitution is ignored (m/s).
+    pub restitution_threshold: f64,
+    /// Most Newton iterations.
+    pub max_newton: usize,
+}
+
+/// A contact of the working set: its kinematics, multipliers and state.
+#[derive(Clone, Copy, Debug)]
+pub struct ActiveContact {
+    /// Index of the candidate.
+    pub candidate: usize,
+    /// Geometry at the last iterate.
+    pub kinematics: Kinematics,
+    /// Multipliers of the position stage, normal and tangential (N).
+    pub multiplier: [f64; 2],
+    /// Impulse of the velocity stage, normal and tangential (N s).
+    pub impulse: [f64; 2],
+    /// Status of the normal and of the friction row.
+    pub status: [Status; 2],
+    /// Whether all grips carry inertia.
+    pub is_hard: bool,
+    /// Share of the contact that is shorter than the step, 0 to 1 (-).
+    pub unresolved: f64,
+    /// Approach velocity at the beginning of the step, `n·v` (m/s).
+    pub approach: f64,
+    /// What the contact was in the last step.
+    pub remembered: Remembered,
+}
+
+impl ActiveContact {
+    /// Force over the step: the multiplier, or for contacts between masses the impulse over the step length (N).
+    pub fn force(&self, dt: f64) -> [f64; 2] {
+        if self.is_hard {
+            self.impulse.map(|impulse| impulse / dt)
+        } else {
+            [self.multiplier[0] + self.impulse[0] / dt, self.multiplier[1] + self.impulse[1] / dt]
+        }
+    }
+
+    /// Whether the contact carries or would carry a force.
+    pub fn is_closed(&self) -> bool {
+        self.multiplier[0] > 0.0
+    }
+}
+
+/// Work and residuals of one solve.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct IslandSummary {
+    /// Newton iterations.
+    pub n_newton: usize,
+    /// Pivots (active-set iterations) of the complementarity solver.
+    pub n_pivots: usize,
+    /// Natural-map residual of the last complementarity solve.
+    pub residual: f64,
+    /// Largest overlap left at a candidate (m).
+    pub gap_violation: f64,
+    /// Energy at the beginning: kinetic, elastic (J).
+    pub start_energy: [f64; 2],
+    /// Energy at the end: kinetic, elastic (J).
+    pub end_energy: [f64; 2],
+    /// Work of applied forces and of prescribed bodies (J).
+    pub work: f64,
+    /// Energy taken out by the energy stage (J).
+    pub limited: f64,
+}
+
+/// A set of blocks and candidates, and the buffers to solve them.
+#[derive(Debug, Default)]
+pub struct Island {
+    /// Members; taken over for the step and handed back after it.
+    pub blocks: Vec<Block>,
+    /// For each block the index of its body in the flexible set, if it is flexible.
+    pub flex_index: Vec<Option<u32>>,
+    /// Convex parts of the rigid members.
+    pub parts: Vec<PlacedPart>,
+    /// Lists of near boundary segments.
+    pub segments: Vec<u32>,
+    /// Pairs that may touch.
+    pub candidates: Vec<Candidate>,
+    /// The working set after a solve.
+    pub contacts: Vec<ActiveContact>,
+    pub(super) is_working: Vec<bool>,
+    pub(super) rows: Vec<RowDirection>,
+    pub(super) kinds: Vec<RowKind>,
+    pub(super) free: Vec<f64>,
+    pub(super) delassus: Vec<f64>,
+    pub(super) multipliers: Vec<f64>,
+    pub(super) statuses: Vec<Status>,
+    pub(super) wrenches: Vec<[f64; 3]>,
+    pub(super) solver: Solver,
+}
+
+impl Island {
+    /// Empties the island, keeping its buffers.
+    pub fn clear(&mut self) {
+        self.blocks.clear();
+        self.flex_index.clear();
+        self.parts.clear();
+        self.segments.clear();
+        self.candidates.clear();
+        self.contacts.clear();
+    }
+
+    /// Solves the step for predicted blocks: positions, velocities and contact forces at its end.
+    ///
+    /// `reserve` is the energy that contact has taken from this island and may give back (J).
+    ///
+    /// # Errors
+    /// If a number is not finite.
+    pub fn solve(
+        &mut self,
+        settings: &SolveSettings,
+        memory: &ContactMemory,
+        reserve: &mut f64,
+    ) -> Result<IslandSummary, KktError> {
+        let mut summary = IslandSummary::default();
+        self.solve_positions(settings, memory, &mut summary)?;
+        let before = self.start_energy();
+        let allowance = self.external_work();
+        if settings.impact == ImpactTreatment::Stabilized {
+            self.solve_velocities(settings)?;
+        } else {
+            self.keep_plain_forces();
+        }
+        summary.work = self.actual_work(settings);
+        summary.start_energy = before;
+        summary.end_energy = self.end_energy();
+        if settings.impact == ImpactTreatment::Stabilized {
+            self.limit_energy(settings, allowance, reserve, &mut summary);
+        }
+        Ok(summary)
+    }
+
+    pub(super) fn scene<'a>(
+        blocks: &'a [Block],
+        parts: &'a [PlacedPart],
+        segments: &'a [u32],
+    ) -> Scene<'a> {
+        Scene { blocks, parts, segments }
+    }
+
+    /// Accumulates `Gᵀ f` on the blocks: node forces through `on_node`, wrenches of rigid blocks in `wrenches`.
+    pub(super) fn spread(
+        blocks: &mut [Block],
+        kinematics: &Kinematics,
+        force: [f64; 2],
+        mut wrenches: Option<&mut [[f64; 3]]>,
+        mut on_node: impl FnMut(&mut crate::system::FlexBlock, usize, crate::math::Vec2),
+    ) {
+        let total = force[0] * kinematics.normal + force[1] * kinematics.tangent();
+        for attachment in kinematics.attachments() {
+            let share = attachment.weight * total;
+            match (&mut blocks[attachment.block], attachment.grip) {
+                (Block::Flex(block), Grip::Node(node)) => on_node(block, node, share),
+                (Block::Rigid(block), Grip::Arm(arm)) => {
+                    if let Some(wrenches) = &mut wrenches {
+                        let wrench = block.wrench(arm, share);
+                        for (sum, value) in wrenches[attachment.block].iter_mut().zip(wrench) {
+                            *sum += value;
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,250 @@
+//! The velocity stage: impulses at contacts between masses, and at massless surfaces where the step is longer than the
+//! impact.
+//!
+//! The position stage leaves a multiplier `p` per contact. Through a massless surface `p` is the force of a spring, and
+//! acts as (C.5) says. Between masses it only moved the positions; the velocity obeys `0 <= P ⊥ n·v' + e n·v >= 0`.
+//! A flexible body that is stiff on the scale of the step behaves as a rigid one: its share of the contact's mobility is
+//! then rigid, and the same condition, weighted by that share, replaces the vibration that the step cannot resolve.
+
+use super::delassus::{RowDirection, assemble};
+use super::island::{Island, KktError, SolveSettings};
+use crate::constraint::contact::Kinematics;
+use crate::linalg::complementarity::{Problem, RowKind, Status};
+use crate::system::{Block, Grip, Response};
+
+/// Share of rigid mobility below which an impact counts as resolved, and above which as unresolved.
+const RESOLVED: f64 = 0.3;
+const UNRESOLVED: f64 = 0.7;
+
+impl Island {
+    pub(super) fn solve_velocities(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
+        self.take_out_hard_forces();
+        for index in 0..self.contacts.len() {
+            if self.contacts[index].is_closed() {
+                self.contacts[index].unresolved = self.unresolved_share(&self.contacts[index].kinematics);
+            }
+        }
+        self.velocity_rows(settings);
+        if self.rows.is_empty() {
+            return Ok(());
+        }
+        self.solve_rows()?;
+        for (row, direction) in self.rows.iter().enumerate() {
+            let contact = &mut self.contacts[direction.contact];
+            let is_normal = direction.direction == contact.kinematics.normal;
+            contact.impulse[usize::from(!is_normal)] = self.multipliers[row];
+        }
+        self.apply_rows(Response::Velocity, 1.0);
+        self.settle_accelerations(settings)
+    }
+
+    /// Velocities and accelerations feel soft multipliers as (C.5) says, hard ones not at all.
+    fn take_out_hard_forces(&mut self) {
+        self.wrenches.clear();
+        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
+        for contact in &self.contacts {
+            let (blocks, kinematics) = (&mut self.blocks, &contact.kinematics);
+            if contact.is_hard {
+                Self::spread(blocks, kinematics, contact.multiplier, None, |block, node, force| {
+                    block.drop_hard_force(node, force);
+                });
+            } else {
+                let wrenches = Some(&mut self.wrenches[..]);
+                Self::spread(blocks, kinematics, contact.multiplier, wrenches, |_, _, _| {});
+            }
+        }
+        self.set_soft_forces();
+    }
+
+    /// (C.5) as printed: every multiplier acts on velocity and acceleration.
+    pub(super) fn keep_plain_forces(&mut self) {
+        self.wrenches.clear();
+        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
+        for contact in &mut self.contacts {
+            contact.is_hard = false;
+            Self::spread(
+                &mut self.blocks,
+                &contact.kinematics,
+                contact.multiplier,
+                Some(&mut self.wrenches),
+                |_, _, _| {},
+            );
+        }
+        self.set_soft_forces();
+    }
+
+    fn set_soft_forces(&mut self) {
+        for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
+            if let Block::Rigid(block) = block
+                && !block.is_prescribed()
+            {
+                block.set_soft_force(*wrench);
+            }
+        }
+    }
+
+    /// How much of a contact's mobility within the step is that of rigid bodies, mapped to [0, 1].
+    fn unresolved_share(&self, kinematics: &Kinematics) -> f64 {
+        let normal = kinematics.normal;
+        let (mut rigid, mut actual) = (0.0, 0.0);
+        for a in kinematics.attachments() {
+            rigid += a.weight * a.weight * self.blocks[a.block].rigid_mobility(a.grip, normal);
+            for b in kinematics.attachments() {
+                if a.block == b.block {
+                    let compliance = self.blocks[a.block].compliance(a.grip, b.grip);
+                    actual += a.weight * b.weight * normal.dot(&(compliance * normal));
+                }
+            }
+        }
+        let share = if actual > 0.0 { rigid / actual } else { 0.0 };
+        let t = ((share - RESOLVED) / (UNRESOLVED - RESOLVED)).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    }
+
+    fn velocity_rows(&mut self, settings: &SolveSettings) {
+        self.rows.clear();
+        self.kinds.clear();
+        self.free.clear();
+        for (index, contact) in self.contacts.iter().enumerate() {
+            if !contact.is_closed() || !(contact.is_hard || contact.unresolved > 0.0) {
+                continue;
+            }
+            let law = self.candidates[contact.candidate].law;
+            let kinematics = &contact.kinematics;
+            let velocity = kinematics.relative(&self.blocks, |block, grip| block.velocity(grip));
+            let rebound = law.rebound(contact.approach, settings.restitution_threshold);
+            let normal_row = self.rows.len();
+            self.rows.push(RowDirection { contact: index, direction: kinematics.normal });
+            self.free.push(velocity.dot(&kinematics.normal) - rebound);
+            self.kinds.push(if contact.is_hard {
+                RowKind::Unilateral
+            } else {
+                // The multiplier has acted already; together they may not pull.
+                RowKind::Box { low: -settings.dt * contact.multiplier[0], high: f64::INFINITY }
+            });
+            let sticks = contact.status[1] == Status::Stick;
+            if law.friction > 0.0 && (contact.is_hard || sticks) {
+                self.rows.push(RowDirection { contact: index, direction: kinematics.tangent() });
+                self.free.push(velocity.dot(&kinematics.tangent()));
+                self.kinds.push(if contact.is_hard {
+                    RowKind::Friction { normal: normal_row, coefficient: law.friction }
+                } else {
+                    RowKind::Bilateral
+                });
+            }
+        }
+        let contacts = &self.contacts;
+        assemble(&self.blocks, &self.rows, |index| &contacts[index].kinematics, &mut self.delassus);
+        self.soften();
+    }
+
+    /// Weights soft rows: `W_ii (1 - φ)/φ` on the diagonal lets a resolved contact keep its velocity.
+    fn soften(&mut self) {
+        let n = self.rows.len();
+        for row in 0..n {
+            let contact = &self.contacts[self.rows[row].contact];
+            if !contact.is_hard {
+                let share = contact.unresolved.max(1e-12);
+                self.delassus[row * n + row] *= 1.0 + (1.0 - share) / share;
+            }
+        }
+    }
+
+    fn solve_rows(&mut self) -> Result<(), KktError> {
+        self.multipliers.clear();
+        self.multipliers.resize(self.rows.len(), 0.0);
+        self.statuses.clear();
+        self.statuses.resize(self.rows.len(), Status::Stick);
+        let problem = Problem { delassus: &self.delassus, free: &self.free, rows: &self.kinds };
+        self.solver.solve(&problem, &mut self.multipliers, &mut self.statuses)?;
+        Ok(())
+    }
+
+    /// Adds the response to the current row multipliers to velocities or accelerations.
+    pub(super) fn apply_rows(&mut self, to: Response, scale: f64) {
+        self.wrenches.clear();
+        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.clear_impulse();
+            }
+        }
+        let mut touched = false;
+        for (row, direction) in self.rows.iter().enumerate() {
+            let value = scale * self.multipliers[row];
+            let kinematics = &self.contacts[direction.contact].kinematics;
+            let is_normal = direction.direction == kinematics.normal;
+            let force = if is_normal { [value, 0.0] } else { [0.0, value] };
+            touched |= value != 0.0;
+            Self::spread(
+                &mut self.blocks,
+                kinematics,
+                force,
+                Some(&mut self.wrenches),
+                |block, node, impulse| block.gather_impulse(node, impulse),
+            );
+        }
+        if !touched {
+            return;
+        }
+        for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
+            match block {
+                Block::Flex(block) => block.apply_impulse(to),
+                Block::Rigid(block) => match to {
+                    Response::Velocity => block.add_impulse(*wrench),
+                    Response::Acceleration => block.add_smooth_acceleration(*wrench),
+                },
+            }
+        }
+    }
+
+    /// Unresolved contacts that stay closed keep no relative acceleration either, or their multipliers would alternate.
+    fn settle_accelerations(
+        &mut self,
+        settings: &SolveSettings,
+    ) -> Result<(), KktError> {
+        self.hard_accelerations(settings);
+        self.rows.clear();
+        self.kinds.clear();
+        self.free.clear();
+        for (index, contact) in self.contacts.iter().enumerate() {
+            if contact.is_hard || !contact.is_closed() || contact.unresolved == 0.0 {
+                continue;
+            }
+            let kinematics = &contact.kinematics;
+            let mut acceleration =
+                kinematics.relative(&self.blocks, |block, grip| block.smooth_acceleration(grip));
+            for a in kinematics.attachments() {
+                if let (Block::Rigid(block), Grip::Arm(arm)) = (&self.blocks[a.block], a.grip) {
+                    acceleration += a.weight * block.respond(arm, self.wrenches[a.block]);
+                }
+            }
+            let sticks = contact.status[1] == Status::Stick;
+            let directions = [Some(kinematics.normal), sticks.then(|| kinematics.tangent())];
+            for direction in directions.into_iter().flatten() {
+                self.rows.push(RowDirection { contact: index, direction });
+                self.free.push(acceleration.dot(&direction));
+                self.kinds.push(RowKind::Bilateral);
+            }
+        }
+        if self.rows.is_empty() {
+            return Ok(());
+        }
+        let contacts = &self.contacts;
+        assemble(&self.blocks, &self.rows, |index| &contacts[index].kinematics, &mut self.delassus);
+        self.soften();
+        self.solve_rows()?;
+        self.apply_rows(Response::Acceleration, 1.0);
+        Ok(())
+    }
+
+    /// Writes the mean hard contact forces of the step as wrenches, so that total accelerations are known.
+    fn hard_accelerations(&mut self, settings: &SolveSettings) {
+        self.wrenches.clear();
+        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
+        for contact in self.contacts.iter().filter(|contact| contact.is_hard) {
+            let force = contact.impulse.map(|impulse| impulse / settings.dt);
+            Self::spread(&mut self.blocks, &contact.kinematics, force, Some(&mut self.wrenches), |_, _, _| {});
+        }
+    }
+}

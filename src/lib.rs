@@ -1,0 +1,38 @@
+//! Flexible finite-element bodies for [rapier](https://rapier.rs) worlds.
+
+#![forbid(unsafe_code)]
+#![deny(missing_docs)]
+
+#[cfg(all(feature = "f32", feature = "f64"))]
+compile_error!(
+    "features `f32` and `f64` exclude each other: build the f64 version with `--no-default-features --features f64`"
+);
+#[cfg(not(any(feature = "f32", feature = "f64")))]
+compile_error!("choose rapier's precision: feature `f32` (the default) or `f64`");
+
+#[cfg(all(feature = "f32", not(feature = "f64")))]
+pub use rapier2d as rapier;
+#[cfg(feature = "f64")]
+pub use rapier2d_f64 as rapier;
+
+pub mod body;
+pub mod constraint;
+pub mod coupling;
+pub mod fe;
+pub mod integrator;
+pub mod kkt;
+pub mod linalg;
+pub mod math;
+pub mod pipeline;
+pub mod system;
+
+/// What most programs need.
+pub mod prelude {
+    pub use crate::body::{ContactInertia, FlexBody, FlexBodyBuilder, FlexBodyHandle, FlexBodySet, Pin};
+    pub use crate::fe::material::{LinearElastic, Material};
+    pub use crate::fe::mesh::{CellKind, Mesh};
+    pub use crate::fe::model::MassKind;
+    pub use crate::integrator::Beta2;
+    pub use crate::kkt::ImpactTreatment;
+    pub use crate::pipeline::{FlexPipeline, StepReport};
+}

@@ -1,0 +1,346 @@
+//! Symmetric sparse matrices of 2×2 node blocks: `A = Σ_c B_cᵀ A_c B_c`, summed cell by cell.
+
+use std::sync::Arc;
+
+/// Where the blocks of a matrix are: compressed rows of nodes, both triangles, columns ascending.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Pattern {
+    row_start: Vec<usize>,
+    columns: Vec<u32>,
+}
+
+impl Pattern {
+    fn row(&self, node: usize) -> std::ops::Range<usize> {
+        self.row_start[node]..self.row_start[node + 1]
+    }
+}
+
+/// A symmetric matrix over interleaved dofs `[x0, y0, x1, y1, ...]`, stored as rows of 2×2 node blocks.
+///
+/// Block `(i, j)` is row-major, `[xx, xy, yx, yy]`. Both triangles are stored, every diagonal block is
+/// present, and columns ascend within a row. Clones share the pattern, so that the matrices of one mesh
+/// (mass, stiffness, effective) hold it once and recognize each other at no cost.
+///
+/// ```
+/// use foil2d::linalg::block_matrix::BlockMatrix;
+///
+/// let cells = [[0, 1], [1, 2]];
+/// let mut a = BlockMatrix::from_cells(3, cells.iter().map(|cell| &cell[..]));
+/// a.add_diagonal(1, [2.0, 3.0]);
+/// let mut y = [0.0; 6];
+/// a.multiply(&[1.0; 6], &mut y);
+/// assert_eq!(y, [0.0, 0.0, 2.0, 3.0, 0.0, 0.0]);
+/// ```
+#[derive(Debug, Clone)]
+pub struct BlockMatrix {
+    pattern: Arc<Pattern>,
+    values: Vec<[f64; 4]>,
+}
+
+impl BlockMatrix {
+    /// Builds the zero matrix that couples the nodes of every cell with each other.
+    ///
+    /// - `cells`: the nodes of each cell, in any order.
+    ///
+    /// # Panics
+    /// If a cell names a node that is not below `n_nodes`, or if `n_nodes` does not fit in 32 bits.
+    pub fn from_cells<'a>(
+        n_nodes: usize,
+        cells: impl Iterator<Item = &'a [usize]> + Clone,
+    ) -> Self {
+        assert!(
+            u32::try_from(n_nodes).is_ok(),
+            "a matrix of {n_nodes} nodes needs more than 32-bit node numbers"
+        );
+        let (cell_start, cells_of_node) = cells_around_nodes(n_nodes, cells.clone());
+        let cells: Vec<&[usize]> = cells.collect();
+        let mut row_start = Vec::with_capacity(n_nodes + 1);
+        let mut columns: Vec<u32> = Vec::new();
+        let mut last_row_seen = vec![usize::MAX; n_nodes];
+        row_start.push(0);
+        for node in 0..n_nodes {
+            let start = columns.len();
+            last_row_seen[node] = node;
+            columns.push(node as u32);
+            for &cell in &cells_of_node[cell_start[node]..cell_start[node + 1]] {
+                for &other in cells[cell] {
+                    if last_row_seen[other] != node {
+                        last_row_seen[other] = node;
+                        columns.push(other as u32);
+                    }
+                }
+            }
+            columns[start..].sort_unstable();
+            row_start.push(columns.len());
+        }
+        let values = vec![[0.0; 4]; columns.len()];
+        Self {
+            pattern: Arc::new(Pattern { row_start, columns }),
+            values,
+        }
+    }
+
+    /// The number of nodes, that is of block rows.
+    pub fn n_nodes(&self) -> usize {
+        self.pattern.row_start.len() - 1
+    }
+
+    /// The number of scalar rows, two per node.
+    pub fn n_dofs(&self) -> usize {
+        2 * self.n_nodes()
+    }
+
+    /// The nodes coupled with `node`, itself among them, ascending.
+    pub fn neighbours(&self, node: usize) -> &[u32] {
+        &self.pattern.columns[self.pattern.row(node)]
+    }
+
+    /// Whether both matrices store the same blocks.
+    pub fn has_pattern_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.pattern, &other.pattern) || self.pattern == other.pattern
+    }
+
+    /// The stored blocks of one row beside [`neighbours`](Self::neighbours), in the same order.
+    pub fn row_blocks(&self, node: usize) -> &[[f64; 4]] {
+        &self.values[self.pattern.row(node)]
+    }
+
+    /// All stored blocks, row after row.
+    pub(super) fn blocks(&self) -> &[[f64; 4]] {
+        &self.values
+    }
+
+    /// The place in [`blocks`](Self::blocks) where the row of `node` begins.
+    pub(super) fn row_start(&self, node: usize) -> usize {
+        self.pattern.row_start[node]
+    }
+
+    pub(super) fn pattern(&self) -> &Arc<Pattern> {
+        &self.pattern
+    }
+
+    /// The block that couples row node `i` with column node `j`, if the pattern has it.
+    pub fn block(&self, i: usize, j: usize) -> Option<&[f64; 4]> {
+        self.slot(i, j).map(|slot| &self.values[slot])
+    }
+
+    /// The block that couples row node `i` with column node `j`, to be changed.
+    ///
+    /// The caller keeps the matrix symmetric: `(j, i)` must receive the transpose.
+    pub fn block_mut(&mut self, i: usize, j: usize) -> Option<&mut [f64; 4]> {
+        self.slot(i, j).map(|slot| &mut self.values[slot])
+    }
+
+    fn slot(&self, i: usize, j: usize) -> Option<usize> {
+        let row = self.pattern.row(i);
+        let columns = &self.pattern.columns[row.clone()];
+        columns
+            .binary_search(&u32::try_from(j).ok()?)
+            .ok()
+            .map(|k| row.start + k)
+    }
+
+    /// Sets every block to zero and keeps the pattern.
+    pub fn fill_zero(&mut self) {
+        self.values.fill([0.0; 4]);
+    }
+
+    /// Adds a cell's matrix to the blocks of its nodes.
+    ///
+    /// - `nodes`: the `m` nodes of the cell.
+    /// - `cell_matrix`: symmetric, row-major over the cell's interleaved dofs, shape `(2 m, 2 m)`.
+    ///
+    /// # Panics
+    /// If the lengths disagree, or if two of the nodes are not coupled in the pattern.
+    pub fn add_cell(&mut self, nodes: &[usize], cell_matrix: &[f64]) {
+        let width = 2 * nodes.len();
+        assert!(
+            cell_matrix.len() == width * width,
+            "a cell of {} nodes takes a matrix of {} numbers, not {}",
+            nodes.len(),
+            width * width,
+            cell_matrix.len()
+        );
+        for (&i, rows) in nodes
+            .iter()
+            .zip(cell_matrix.chunks_exact((2 * width).max(1)))
+        {
+            let (upper, lower) = rows.split_at(width);
+            let row = self.pattern.row(i);
+            let columns = &self.pattern.columns[row.clone()];
+            let values = &mut self.values[row];
+            for (&j, (top, bottom)) in nodes
+                .iter()
+                .zip(upper.chunks_exact(2).zip(lower.chunks_exact(2)))
+            {
+                let place = columns.partition_point(|&column| (column as usize) < j);
+                assert!(
+                    columns
+                        .get(place)
+                        .is_some_and(|&column| column as usize == j),
+                    "nodes {i} and {j} share no cell of the pattern: build it from the cells that are added"
+                );
+                let block = &mut values[place];
+                block[0] += top[0];
+                block[1] += top[1];
+                block[2] += bottom[0];
+                block[3] += bottom[1];
+            }
+        }
+    }
+
+    /// Adds a lumped term, `[m_x, m_y]`, to the diagonal of one node.
+    pub fn add_diagonal(&mut self, node: usize, [mass_x, mass_y]: [f64; 2]) {
+        if let Some(block) = self.block_mut(node, node) {
+            block[0] += mass_x;
+            block[3] += mass_y;
+        }
+    }
+
+    /// Sets `A = scale * other`.
+    ///
+    /// # Panics
+    /// If the patterns differ.
+    pub fn assign_scaled(&mut self, scale: f64, other: &Self) {
+        self.assert_same_pattern(other);
+        for (block, from) in self.values.iter_mut().zip(&other.values) {
+            *block = from.map(|value| scale * value);
+        }
+    }
+
+    /// Adds `scale * other` to `A`.
+    ///
+    /// # Panics
+    /// If the patterns differ.
+    pub fn add_scaled(&mut self, scale: f64, other: &Self) {
+        self.assert_same_pattern(other);
+        for (block, from) in self.values.iter_mut().zip(&other.values) {
+            for (value, from) in block.iter_mut().zip(from) {
+                *value += scale * from;
+            }
+        }
+    }
+
+    fn assert_same_pattern(&self, other: &Self) {
+        assert!(
+            self.has_pattern_of(other),
+            "matrices can only be summed block by block if they were built from the same cells"
+        );
+    }
+
+    /// Takes fixed dofs out of the matrix: their rows and columns become zero and their diagonal one.
+    ///
+    /// - `is_fixed`: one flag per dof, length `n_dofs`.
+    ///
+    /// # Panics
+    /// If `is_fixed` has another length.
+    pub fn constrain(&mut self, is_fixed: &[bool]) {
+        assert!(
+            is_fixed.len() == self.n_dofs(),
+            "{} flags were given for {} dofs",
+            is_fixed.len(),
+            self.n_dofs()
+        );
+        for node in 0..self.n_nodes() {
+            let row = self.pattern.row(node);
+            let fixed_row = [is_fixed[2 * node], is_fixed[2 * node + 1]];
+            for (&other, block) in self.pattern.columns[row.clone()]
+                .iter()
+                .zip(&mut self.values[row])
+            {
+                let other = other as usize;
+                let fixed_column = [is_fixed[2 * other], is_fixed[2 * other + 1]];
+                for (k, value) in block.iter_mut().enumerate() {
+                    if fixed_row[k / 2] || fixed_column[k % 2] {
+                        *value = if other == node && k / 2 == k % 2 {
+                            1.0
+                        } else {
+                            0.0
+                        };
+                    }
+                }
+            }
+        }
+    }
+
+    /// Writes `y = A x`.
+    ///
+    /// # Panics
+    /// If `x` or `y` does not have `n_dofs` entries.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        self.assert_vectors(x, y);
+        for (node, out) in y.chunks_exact_mut(2).enumerate() {
+            out.copy_from_slice(&self.multiply_node(node, x));
+        }
+    }
+
+    /// Adds `alpha A x` to `y`.
+    ///
+    /// # Panics
+    /// If `x` or `y` does not have `n_dofs` entries.
+    pub fn multiply_add(&self, alpha: f64, x: &[f64], y: &mut [f64]) {
+        self.assert_vectors(x, y);
+        for (node, out) in y.chunks_exact_mut(2).enumerate() {
+            let [sum_x, sum_y] = self.multiply_node(node, x);
+            out[0] += alpha * sum_x;
+            out[1] += alpha * sum_y;
+        }
+    }
+
+    /// The two entries of `A x` that belong to `node`.
+    ///
+    /// # Panics
+    /// If `x` has fewer than `n_dofs` entries.
+    #[inline]
+    pub fn multiply_node(&self, node: usize, x: &[f64]) -> [f64; 2] {
+        let row = self.pattern.row(node);
+        let (mut sum_x, mut sum_y) = (0.0, 0.0);
+        for (&other, block) in self.pattern.columns[row.clone()]
+            .iter()
+            .zip(&self.values[row])
+        {
+            let other = 2 * other as usize;
+            let [x0, x1] = [x[other], x[other + 1]];
+            sum_x += block[0] * x0 + block[1] * x1;
+            sum_y += block[2] * x0 + block[3] * x1;
+        }
+        [sum_x, sum_y]
+    }
+
+    fn assert_vectors(&self, x: &[f64], y: &[f64]) {
+        let n_dofs = self.n_dofs();
+        assert!(
+            x.len() == n_dofs && y.len() == n_dofs,
+            "a matrix of {n_dofs} dofs was given vectors of {} and {}",
+            x.len(),
+            y.len()
+        );
+    }
+}
+
+/// Lists the cells around each node, compressed: those of `node` are `list[start[node]..start[node + 1]]`.
+fn cells_around_nodes<'a>(
+    n_nodes: usize,
+    cells: impl Iterator<Item = &'a [usize]> + Clone,
+) -> (Vec<usize>, Vec<usize>) {
+    let mut start = vec![0; n_nodes + 1];
+    for &node in cells.clone().flatten() {
+        assert!(
+            node < n_nodes,
+            "a cell names node {node}, but there are only {n_nodes} nodes"
+        );
+        start[node + 1] += 1;
+    }
+    for node in 0..n_nodes {
+        start[node + 1] += start[node];
+    }
+    let mut next = start.clone();
+    let mut list = vec![0; start[n_nodes]];
+    for (cell, nodes) in cells.enumerate() {
+        for &node in nodes {
+            list[next[node]] = cell;
+            next[node] += 1;
+        }
+    }
+    (start, list)
+}

@@ -1,0 +1,39 @@
+//! The first fallback: projected Gauss–Seidel with over-relaxation, `p_i <- proj_i(p_i - omega w_i / W_ii)`.
+//!
+//! Without friction it decreases `½ pᵀ W p + bᵀ p` at every row and converges for `0 < omega < 2`, also if
+//! `W` is singular (Cryer 1971; Luo and Tseng 1992), if slowly. With friction there is no proof, but its
+//! limit, if any, is a solution. Here it only has to come close enough for the active set to finish.
+
+use super::problem::Checked;
+
+/// Over-relaxation: above 1 for speed, well below 2 because friction adds a coupling of its own.
+const RELAXATION: f64 = 1.2;
+/// A relative change per sweep below which nothing more will come.
+const STALLED: f64 = 1e-14;
+
+/// Sweeps over the rows, in place, at most `n_sweeps` times; returns how many were made.
+///
+/// - `multipliers`: the start, then the result, shape `(n)`.
+pub(super) fn sweep(problem: Checked, multipliers: &mut [f64], n_sweeps: usize) -> usize {
+    for done in 0..n_sweeps {
+        let (mut change, mut size) = (0.0_f64, 0.0_f64);
+        for row in 0..problem.n_rows() {
+            let present = multipliers[row];
+            let next = if problem.is_movable(row) {
+                let step = problem.velocity(row, multipliers) / problem.diagonal(row);
+                let normal = problem.normal_multiplier(row, multipliers);
+                problem.project(row, present - RELAXATION * step, normal)
+            } else {
+                problem.idle_multiplier(row)
+            };
+            let weight = problem.diagonal(row).max(0.0).sqrt();
+            change = change.max(weight * (next - present).abs());
+            size = size.max(weight * next.abs());
+            multipliers[row] = next;
+        }
+        if change <= STALLED * size {
+            return done + 1;
+        }
+    }
+    n_sweeps
+}

@@ -1,0 +1,287 @@
+//! The complementarity solver of the contact stage: `w = W p + b` with a law between `p_i` and `w_i` per row.
+//!
+//! It sees only the Delassus matrix `W`, the free velocity `b` and the laws ([`RowKind`]). One sign rules
+//! them all: a multiplier at its upper bound goes with `w <= 0`, at its lower bound with `w >= 0`. Whatever
+//! solver made the answer, [`natural_map_residual`] judges it.
+//!
+//! [`Solver`] first follows the active set from the last step's statuses, one direct solve per pivot
+//! (1–3 in steady contact). If that repeats itself, it asks projected Gauss–Seidel and then Lemke's method
+//! for better statuses.
+//!
+//! Redundant rows (a rigid box on four points) share their load with minimum norm. Where that would
+//! overstep friction (the feet of a pyramid), or above 256 sticking rows, where the solve is iterative, they
+//! keep as much as they can of the load they had. Redundant rows that contradict each other slightly are
+//! averaged, see [`Solver::with_redundancy_tolerance`].
+//!
+//! ```
+//! use foil2d::linalg::complementarity::{Problem, RowKind, Solver, Status};
+//!
+//! // a body of 4 kg falls at 3 m/s and slides at 10 m/s over rough ground
+//! let problem = Problem {
+//!     delassus: &[0.25, 0.0, 0.0, 0.25],
+//!     free: &[-3.0, 10.0],
+//!     rows: &[RowKind::Unilateral, RowKind::Friction { normal: 0, coefficient: 0.5 }],
+//! };
+//! let (mut impulses, mut status) = ([0.0; 2], [Status::Open; 2]);
+//! let outcome = Solver::new().solve(&problem, &mut impulses, &mut status)?;
+//! assert_eq!(impulses, [12.0, -6.0]);
+//! assert_eq!(status, [Status::Stick, Status::SlipNegative]);
+//! assert!(outcome.residual <= 1e-12);
+//! # Ok::<(), foil2d::linalg::complementarity::ComplementarityError>(())
+//! ```
+
+mod active_set;
+mod dense;
+mod gauss_seidel;
+mod krylov;
+mod lemke;
+mod orthogonal;
+mod problem;
+mod residual;
+mod status;
+
+pub use problem::{ComplementarityError, Problem, RowKind, Status};
+pub use residual::natural_map_residual;
+
+use active_set::{ActiveSet, Redundancy};
+use lemke::Lemke;
+use problem::Checked;
+use residual::measure;
+use status::identify;
+
+/// What is tried in turn when the active set repeats itself: its warm start once more with the least
+/// change of multipliers, sweeps (how many at most), Lemke's method (which path).
+const RESCUE: [(Method, usize); 6] = [
+    (Method::ActiveSet, 0),
+    (Method::GaussSeidel, 50),
+    (Method::Lemke, 0),
+    (Method::Lemke, 1),
+    (Method::Lemke, 2),
+    (Method::GaussSeidel, 500),
+];
+
+/// The solver that found the answer. The last two are finished by an active-set solve if it improves them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// The active set alone.
+    #[default]
+    ActiveSet,
+    /// Projected Gauss–Seidel found the statuses.
+    GaussSeidel,
+    /// Lemke's method found the statuses.
+    Lemke,
+}
+
+/// What a solve did and how good the answer is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Outcome {
+    /// Statuses tried by the active set, each with one linear solve.
+    pub n_pivots: usize,
+    /// Dense factorizations, `O(n³)` each.
+    pub n_factorizations: usize,
+    /// Matrix-vector products of the iterative solves, `O(n²)` each; only above 256 sticking rows.
+    pub n_products: usize,
+    /// Sweeps of projected Gauss–Seidel, `O(n²)` each.
+    pub n_sweeps: usize,
+    /// Pivots of Lemke's tableau, `O(n²)` each.
+    pub n_lemke_pivots: usize,
+    /// The [`natural_map_residual`] of the multipliers handed back (-).
+    pub residual: f64,
+    /// The solver that found them.
+    pub method: Method,
+}
+
+/// The best multipliers so far.
+#[derive(Debug, Clone, Default)]
+struct Answer {
+    multipliers: Vec<f64>,
+    status: Vec<Status>,
+    residual: f64,
+    method: Method,
+    /// The solver now at work.
+    candidate: Method,
+}
+
+impl Answer {
+    /// Takes over multipliers that are better than the present ones.
+    fn offer(&mut self, multipliers: &[f64], status: &[Status], residual: f64) {
+        if residual < self.residual {
+            self.multipliers.copy_from_slice(multipliers);
+            self.status.copy_from_slice(status);
+            self.residual = residual;
+            self.method = self.candidate;
+        }
+    }
+}
+
+/// Solves complementarity problems of any size; holds the scratch, which only grows.
+#[derive(Debug, Clone)]
+pub struct Solver {
+    redundancy_tolerance: f64,
+    active_set: ActiveSet,
+    lemke: Lemke,
+    best: Answer,
+    trial: Vec<f64>,
+    status: Vec<Status>,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            redundancy_tolerance: 1e-6,
+            active_set: ActiveSet::default(),
+            lemke: Lemke::default(),
+            best: Answer::default(),
+            trial: Vec::new(),
+            status: Vec::new(),
+        }
+    }
+}
+
+impl Solver {
+    /// Makes a solver without scratch; the first solve of each size reserves it.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Sets the residual (-) up to which redundant rows that contradict each other are averaged.
+    ///
+    /// Four gaps of a rigid box are never exactly in line. Below this residual the minimum-norm
+    /// least-squares multipliers are the answer, which vary smoothly; above it the solver looks for the
+    /// exact one, in which some of the rows open. Default `1e-6`; gaps read from an `f32` world need more.
+    pub fn with_redundancy_tolerance(mut self, residual: f64) -> Self {
+        self.redundancy_tolerance = residual;
+        self
+    }
+
+    /// Solves the problem as well as it can; `outcome.residual` says how well.
+    ///
+    /// An unsolvable problem (joints that contradict each other, a jammed wedge) hands back the
+    /// multipliers of least residual found. Rows that nothing can move (`W_ii = 0`) get the admissible
+    /// multiplier nearest to zero and the status [`Status::Open`].
+    ///
+    /// - `multipliers`: `p` of the last step or zeros, then the answer, shape `(n)`.
+    /// - `status`: the statuses of the last step or [`Status::Open`], then those of the answer, shape `(n)`.
+    ///
+    /// # Panics
+    /// If the shapes do not agree.
+    ///
+    /// # Errors
+    /// If `W` or `b` is not finite, or a row has impossible data; the arguments are then left as they were.
+    pub fn solve(
+        &mut self,
+        problem: &Problem,
+        multipliers: &mut [f64],
+        status: &mut [Status],
+    ) -> Result<Outcome, ComplementarityError> {
+        let n = problem.rows.len();
+        assert_eq!(multipliers.len(), n, "give one multiplier per row");
+        assert_eq!(status.len(), n, "give one status per row");
+        let problem = problem.check()?;
+        self.start(problem, multipliers, status);
+        let mut outcome = Outcome::default();
+        if !self.follow_active_set(problem, Redundancy::MinimumNorm, &mut outcome) {
+            self.status.copy_from_slice(status);
+            self.rescue(problem, &mut outcome);
+        }
+        multipliers.copy_from_slice(&self.best.multipliers);
+        status.copy_from_slice(&self.best.status);
+        outcome.residual = self.best.residual;
+        outcome.method = self.best.method;
+        Ok(outcome)
+    }
+
+    /// Makes room, and takes the given multipliers, made admissible, as the best so far.
+    fn start(&mut self, problem: Checked, multipliers: &[f64], status: &[Status]) {
+        let n = problem.n_rows();
+        self.active_set.reserve(n);
+        self.trial.resize(n, 0.0);
+        self.best.multipliers.resize(n, 0.0);
+        self.best.status.resize(n, Status::Open);
+        self.status.clear();
+        self.status.extend_from_slice(status);
+        for (row, (start, &given)) in self.trial.iter_mut().zip(multipliers).enumerate() {
+            let usable = given.is_finite() && problem.is_movable(row);
+            let normal = problem.normal_multiplier(row, multipliers);
+            *start = problem.project(row, if usable { given } else { 0.0 }, normal);
+        }
+        self.best.candidate = Method::ActiveSet;
+        self.best.method = Method::ActiveSet;
+        self.best.residual = f64::INFINITY;
+        self.best.multipliers.copy_from_slice(&self.trial);
+        self.best.status.copy_from_slice(&self.status);
+    }
+
+    fn follow_active_set(
+        &mut self,
+        problem: Checked,
+        redundancy: Redundancy,
+        outcome: &mut Outcome,
+    ) -> bool {
+        let Self {
+            active_set,
+            trial,
+            status,
+            best,
+            ..
+        } = self;
+        let redundancy = (redundancy, self.redundancy_tolerance);
+        active_set.run(problem, (trial, status), redundancy, best, outcome)
+    }
+
+    /// Tries one way after the other until an answer is exact.
+    fn rescue(&mut self, problem: Checked, outcome: &mut Outcome) {
+        for (method, effort) in RESCUE {
+            self.best.candidate = method;
+            if !self.look_elsewhere(problem, method, effort, outcome) {
+                continue;
+            }
+            if self.follow_active_set(problem, Redundancy::LeastChange, outcome) {
+                return;
+            }
+        }
+    }
+
+    /// Puts new multipliers and statuses in `trial` and `status`; false if the method has none.
+    fn look_elsewhere(
+        &mut self,
+        problem: Checked,
+        method: Method,
+        effort: usize,
+        outcome: &mut Outcome,
+    ) -> bool {
+        match method {
+            // the warm start itself, unless it was empty and has just been tried
+            Method::ActiveSet => return self.trial.iter().any(|&multiplier| multiplier != 0.0),
+            Method::GaussSeidel => {
+                self.trial.copy_from_slice(&self.best.multipliers);
+                outcome.n_sweeps += gauss_seidel::sweep(problem, &mut self.trial, effort);
+            }
+            Method::Lemke => {
+                let n_pivots = &mut outcome.n_lemke_pivots;
+                if !self.lemke.solve(problem, effort, &mut self.trial, n_pivots) {
+                    return false;
+                }
+            }
+        }
+        self.judge_trial(problem);
+        true
+    }
+
+    /// Reads the statuses of the trial multipliers and offers both.
+    fn judge_trial(&mut self, problem: Checked) {
+        let trial = &self.trial;
+        let now = measure(problem, trial, |row| problem.velocity(row, trial));
+        // contacts that carry nothing start open: what is left is then independent
+        self.status.fill(Status::Open);
+        let slack = 1e-9 * now.scale;
+        identify(
+            problem,
+            trial,
+            |row| problem.velocity(row, trial),
+            slack,
+            &mut self.status,
+        );
+        self.best.offer(trial, &self.status, now.residual);
+    }
+}

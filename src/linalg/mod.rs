@@ -1,0 +1,5 @@
+//! Linear algebra: sparse Cholesky and complementarity.
+
+pub mod block_matrix;
+pub mod cholesky;
+pub mod complementarity;

@@ -1,0 +1,61 @@
+//! Small vectors and the border between our `f64` and rapier's `Real`.
+
+use nalgebra::{Matrix2, Vector2};
+
+/// A point or vector in the plane.
+pub type Vec2 = Vector2<f64>;
+
+/// A 2×2 matrix.
+pub type Mat2 = Matrix2<f64>;
+
+/// `v` turned by a right angle counter-clockwise, `J v = (-v_y, v_x)`.
+#[inline]
+pub fn perp(v: Vec2) -> Vec2 {
+    Vec2::new(-v.y, v.x)
+}
+
+/// The third component of the cross product, `a_x b_y - a_y b_x`.
+#[inline]
+pub fn cross(a: Vec2, b: Vec2) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// The rotation matrix of an angle (rad).
+#[inline]
+pub fn rotation(angle: f64) -> Mat2 {
+    let (sin, cos) = angle.sin_cos();
+    Mat2::new(cos, -sin, sin, cos)
+}
+
+/// The two entries of node `node` in an interleaved dof vector.
+///
+/// # Panics
+/// If `dofs.len() < 2 * node + 2`.
+#[inline]
+pub fn node_vec(dofs: &[f64], node: usize) -> Vec2 {
+    Vec2::new(dofs[2 * node], dofs[2 * node + 1])
+}
+
+/// Overwrites the two entries of node `node` in an interleaved dof vector.
+///
+/// # Panics
+/// If `dofs.len() < 2 * node + 2`.
+#[inline]
+pub fn set_node_vec(dofs: &mut [f64], node: usize, value: Vec2) {
+    dofs[2 * node] = value.x;
+    dofs[2 * node + 1] = value.y;
+}
+
+/// Adds to the two entries of node `node` in an interleaved dof vector.
+///
+/// # Panics
+/// If `dofs.len() < 2 * node + 2`.
+#[inline]
+pub fn add_node_vec(dofs: &mut [f64], node: usize, value: Vec2) {
+    dofs[2 * node] += value.x;
+    dofs[2 * node + 1] += value.y;
+}
+
+mod real;
+
+pub use real::{from_rapier, to_rapier};

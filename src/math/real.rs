@@ -1,0 +1,16 @@
+//! The only place where rapier's `Real` and our `f64` meet.
+
+use super::Vec2;
+use crate::rapier::math::{Real, Vector};
+
+/// A vector of rapier's, in `f64`.
+#[inline]
+pub fn from_rapier(v: Vector) -> Vec2 {
+    Vec2::new(f64::from(v.x), f64::from(v.y))
+}
+
+/// A vector of ours, rounded to rapier's precision.
+#[inline]
+pub fn to_rapier(v: Vec2) -> Vector {
+    Vector::new(v.x as Real, v.y as Real)
+}

@@ -1,0 +1,452 @@
+//! The pipeline: settings and buffers, no state of its own but the memory of contacts and claimed bodies.
+
+use super::report::{ContactReport, Participant, StepReport};
+use crate::body::{FlexBodyError, FlexBodyHandle, FlexBodySet};
+use crate::constraint::contact::{ContactMemory, Owner, Remembered};
+use crate::coupling::{
+    Claims, GatherSettings, Gatherer, Landing, Masters, RapierSets, hand_back, land, write_surface,
+};
+use crate::integrator::{Beta2, IntegratorError};
+use crate::kkt::{ActiveContact, ImpactTreatment, Island, IslandSummary, KktError, SolveSettings};
+use crate::linalg::complementarity::Status;
+use crate::math::{Vec2, cross, from_rapier};
+use crate::rapier::prelude::*;
+use crate::system::{Block, Step};
+use thiserror::Error;
+
+/// Why a step was not taken. Flexible bodies, rigid bodies and contacts are as they were before it.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum StepError {
+    /// A body or its carrier is not where it should be.
+    #[error(transparent)]
+    Body(#[from] FlexBodyError),
+    /// The integrator is unstable for a body's mesh at this step length.
+    #[error("flexible body {body:?}: {source}")]
+    Integrator {
+        /// The body.
+        body: FlexBodyHandle,
+        /// The critical step.
+        source: IntegratorError,
+    },
+    /// The contact problem could not be solved.
+    #[error(transparent)]
+    Kkt(#[from] KktError),
+    /// The step length is negative or not finite.
+    #[error("the step length is {0} s: set `integration_parameters.dt` to zero or a positive finite number")]
+    StepLength(f64),
+    /// The result is not finite.
+    #[error("flexible body {0:?} would move to a position that is not finite: look at its loads and velocities")]
+    NotFinite(FlexBodyHandle),
+}
+
+/// Steps a rapier world together with its flexible bodies.
+///
+/// Holds settings and buffers; use one pipeline for one world.
+///
+/// ```
+/// use foil2d::prelude::*;
+/// use foil2d::rapier::prelude::*;
+/// let mut world = PhysicsWorld::new();
+/// world.insert_collider(ColliderBuilder::cuboid(50.0, 0.5).translation(Vector::new(0.0, -0.5)), None);
+/// let mut flex_bodies = FlexBodySet::new();
+/// let block = flex_bodies.insert(
+///     FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4])
+///         .material(LinearElastic::plane_stress(1e6, 0.3).density(1000.0).rayleigh(2e-3))
+///         .translation([0.0, 0.01]),
+///     &mut world,
+/// )?;
+/// let mut flex = FlexPipeline::new();
+/// for _ in 0..240 {
+///     flex.step(&mut world, &mut flex_bodies)?;
+/// }
+/// let weight = 9.81 * flex_bodies[block].mass();
+/// assert!((flex_bodies[block].total_contact_force()[1] / weight - 1.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct FlexPipeline {
+    integrator: Beta2,
+    impact: ImpactTreatment,
+    restitution_threshold: f64,
+    max_newton: usize,
+    claims: Claims,
+    gatherer: Gatherer,
+    masters: Masters,
+    memory: ContactMemory,
+    island: Island,
+    landings: Vec<Landing>,
+    reserves: Vec<(u32, f64)>,
+    components: Vec<usize>,
+    report: StepReport,
+}
+
+impl Default for FlexPipeline {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl FlexPipeline {
+    /// A pipeline with the trapezoidal rule and stabilized impacts.
+    pub fn new() -> Self {
+        Self {
+            integrator: Beta2::default(),
+            impact: ImpactTreatment::default(),
+            restitution_threshold: 0.5,
+            max_newton: 20,
+            claims: Claims::default(),
+            gatherer: Gatherer::default(),
+            masters: Masters::default(),
+            memory: ContactMemory::default(),
+            island: Island::default(),
+            landings: Vec::new(),
+            reserves: Vec::new(),
+            components: Vec::new(),
+            report: StepReport::default(),
+        }
+    }
+
+    /// Chooses the member of the Beta-2 family.
+    pub fn with_integrator(mut self, integrator: Beta2) -> Self {
+        self.integrator = integrator;
+        self
+    }
+
+    /// Chooses what is done on impact.
+    pub fn with_impact(mut self, impact: ImpactTreatment) -> Self {
+        self.impact = impact;
+        self
+    }
+
+    /// Approach velocity (m/s) below which restitution is ignored, so that resting contacts do not bounce.
+    pub fn with_restitution_threshold(mut self, threshold: f64) -> Self {
+        self.restitution_threshold = threshold;
+        self
+    }
+
+    /// The integrator.
+    pub fn integrator(&self) -> Beta2 {
+        self.integrator
+    }
+
+    /// The report of the last step.
+    pub fn report(&self) -> &StepReport {
+        &self.report
+    }
+
+    /// Steps the world by its own `dt`.
+    ///
+    /// # Errors
+    /// [`StepError`]; bodies are then as they were before the step.
+    pub fn step(
+        &mut self,
+        world: &mut PhysicsWorld,
+        flex_bodies: &mut FlexBodySet,
+    ) -> Result<&StepReport, StepError> {
+        self.step_with_events(world, flex_bodies, &(), &())
+    }
+
+    /// [`FlexPipeline::step`] with the user's hooks and event handler.
+    ///
+    /// # Errors
+    /// As [`FlexPipeline::step`].
+    pub fn step_with_events(
+        &mut self,
+        world: &mut PhysicsWorld,
+        flex_bodies: &mut FlexBodySet,
+        hooks: &dyn PhysicsHooks,
+        events: &dyn EventHandler,
+    ) -> Result<&StepReport, StepError> {
+        self.step_sets(RapierSets::of_world(world, hooks, events), flex_bodies)
+    }
+
+    /// [`FlexPipeline::step`] for programs that keep rapier's sets apart: the sets hold the arguments of
+    /// `PhysicsPipeline::step`.
+    ///
+    /// # Errors
+    /// As [`FlexPipeline::step`].
+    pub fn step_sets(
+        &mut self,
+        mut sets: RapierSets<'_>,
+        flex_bodies: &mut FlexBodySet,
+    ) -> Result<&StepReport, StepError> {
+        self.report.clear();
+        if flex_bodies.is_empty() {
+            sets.step();
+            return Ok(&self.report);
+        }
+        let mut clock = Clock::start();
+        let step = self.check(&sets, flex_bodies)?;
+        self.claims.look_ahead(&sets, flex_bodies);
+        clock.lap(&mut self.report.times.claim);
+        sets.detect();
+        clock.lap(&mut self.report.times.rapier);
+        if step.dt == 0.0 {
+            return Ok(&self.report);
+        }
+        self.claims.walk(&sets);
+        self.gatherer.retain(&sets, flex_bodies);
+        clock.lap(&mut self.report.times.claim);
+        self.solve_islands(step, &sets, flex_bodies, &mut clock)?;
+        hand_back(&mut self.landings, &mut sets);
+        clock.lap(&mut self.report.times.hand_back);
+        sets.step();
+        clock.lap(&mut self.report.times.rapier);
+        land(&self.landings, &mut sets, &mut self.masters);
+        self.commit(&mut sets, flex_bodies);
+        clock.lap(&mut self.report.times.hand_back);
+        Ok(&self.report)
+    }
+
+    fn check(&self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> Result<Step, StepError> {
+        let dt = f64::from(sets.integration_parameters.dt);
+        if !(dt.is_finite() && dt >= 0.0) {
+            return Err(StepError::StepLength(dt));
+        }
+        for (handle, body) in flex_bodies.iter() {
+            let has_carrier = sets.bodies.contains(body.rigid_body_handle())
+                && sets.colliders.contains(body.collider_handle());
+            if !has_carrier {
+                return Err(FlexBodyError::NoCarrier(handle).into());
+            }
+            if !self.integrator.is_unconditionally_stable() {
+                self.integrator
+                    .check_step(dt, body.model().largest_frequency())
+                    .map_err(|source| StepError::Integrator { body: handle, source })?;
+            }
+        }
+        Ok(Step { dt, weights: self.integrator.weights(dt) })
+    }
+
+    /// Solves every component; commits nothing.
+    fn solve_islands(
+        &mut self,
+        step: Step,
+        sets: &RapierSets<'_>,
+        flex_bodies: &mut FlexBodySet,
+        clock: &mut Clock,
+    ) -> Result<(), StepError> {
+        self.landings.clear();
+        self.reserves.clear();
+        self.memory.discard_notes();
+        self.components.clear();
+        for flex in 0..self.claims.flex.len() {
+            let component = self.claims.component_of_flex(flex);
+            self.components.push(component);
+        }
+        self.components.sort_unstable();
+        self.components.dedup();
+        let factorizations = self.gatherer.n_factorizations();
+        for slot in 0..self.components.len() {
+            let outcome = self.solve_island(self.components[slot], step, sets, flex_bodies, clock);
+            self.gatherer.give_back(&mut self.island);
+            outcome?;
+        }
+        self.report.n_islands = self.components.len();
+        self.report.n_claimed = self.landings.len();
+        self.report.n_factorizations = self.gatherer.n_factorizations().saturating_sub(factorizations);
+        Ok(())
+    }
+
+    fn solve_island(
+        &mut self,
+        component: usize,
+        step: Step,
+        sets: &RapierSets<'_>,
+        flex_bodies: &mut FlexBodySet,
+        clock: &mut Clock,
+    ) -> Result<(), StepError> {
+        let gather = GatherSettings {
+            step,
+            prediction: f64::from(sets.integration_parameters.prediction_distance()),
+        };
+        let (claims, masters, island) = (&mut self.claims, &self.masters, &mut self.island);
+        self.gatherer.gather(component, &gather, sets, flex_bodies, claims, masters, island)?;
+        clock.lap(&mut self.report.times.gather);
+        let settings = SolveSettings {
+            dt: step.dt,
+            b0: step.weights.b0,
+            impact: self.impact,
+            restitution_threshold: self.restitution_threshold,
+            max_newton: self.max_newton,
+        };
+        let mut reserve = self.reserve(flex_bodies);
+        let summary = self.island.solve(&settings, &self.memory, &mut reserve)?;
+        self.check_finite(flex_bodies)?;
+        self.note(step, &summary, reserve, sets, flex_bodies);
+        clock.lap(&mut self.report.times.solve);
+        Ok(())
+    }
+
+    /// Energy that contact has taken from the island's bodies and may return (J).
+    fn reserve(&self, flex_bodies: &FlexBodySet) -> f64 {
+        let indices = self.island.flex_index.iter().flatten();
+        indices
+            .filter_map(|&index| flex_bodies.at_index(index))
+            .map(|(_, body)| body.energy_reserve())
+            .sum()
+    }
+
+    fn check_finite(&self, flex_bodies: &FlexBodySet) -> Result<(), StepError> {
+        for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
+            if let (Block::Flex(block), Some(index)) = (block, index) {
+                let is_finite = block.positions().iter().chain(block.velocities()).all(|x| x.is_finite());
+                if let (false, Some((handle, _))) = (is_finite, flex_bodies.at_index(*index)) {
+                    return Err(StepError::NotFinite(handle));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes what the solved island wants to commit and to report.
+    fn note(
+        &mut self,
+        step: Step,
+        summary: &IslandSummary,
+        reserve: f64,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) {
+        for &(block, handle) in &self.gatherer.bodies {
+            if let Block::Rigid(block) = &self.island.blocks[block] {
+                self.landings.push(Landing::new(handle, *block.current(), block.smooth_end));
+            }
+        }
+        let n_flex = self.island.flex_index.iter().flatten().count().max(1);
+        for &index in self.island.flex_index.iter().flatten() {
+            self.reserves.push((index, reserve / n_flex as f64));
+        }
+        for slot in 0..self.island.contacts.len() {
+            let contact = &self.island.contacts[slot];
+            let key = self.island.candidates[contact.candidate].key;
+            let state = Remembered {
+                normal: contact.multiplier[0],
+                tangent: contact.multiplier[1],
+                feature: contact.kinematics.feature,
+            };
+            self.memory.remember(key, state);
+            if contact.is_closed() {
+                let report = self.contact_report(contact, step, sets, flex_bodies);
+                self.report_residuals(slot);
+                self.report.contacts.extend(report);
+            }
+        }
+        let report = &mut self.report;
+        report.gap_violation = report.gap_violation.max(summary.gap_violation);
+        report.solver_residual = report.solver_residual.max(summary.residual);
+        report.n_newton = report.n_newton.max(summary.n_newton);
+        report.n_pivots += summary.n_pivots;
+        report.energy_limited += summary.limited;
+        report.energy.kinetic += summary.end_energy[0];
+        report.energy.elastic += summary.end_energy[1];
+        let gain: f64 = summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
+        report.energy.dissipated += summary.work - gain;
+        self.report_momentum(from_rapier(sets.gravity), flex_bodies);
+    }
+
+    fn report_residuals(&mut self, slot: usize) {
+        let contact = &self.island.contacts[slot];
+        let law = self.island.candidates[contact.candidate].law;
+        let [normal, tangent] = contact.multiplier;
+        let report = &mut self.report;
+        report.complementarity_residual = report.complementarity_residual.max(contact.kinematics.gap.abs());
+        let excess = (tangent.abs() - law.friction * normal).max(0.0) / normal;
+        report.cone_residual = report.cone_residual.max(excess);
+    }
+
+    fn contact_report(
+        &self,
+        contact: &ActiveContact,
+        step: Step,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) -> Option<ContactReport> {
+        let key = self.island.candidates[contact.candidate].key;
+        let participant = |owner| match owner {
+            Owner::Flex(index) => flex_bodies.at_index(index).map(|(handle, _)| Participant::Flex(handle)),
+            Owner::Collider(index) => {
+                sets.colliders.get_unknown_gen(index).map(|(_, handle)| Participant::Rigid(handle))
+            }
+        };
+        let [normal_force, tangential_force] = contact.force(step.dt);
+        Some(ContactReport {
+            position: contact.kinematics.position.into(),
+            normal: contact.kinematics.normal.into(),
+            gap: contact.kinematics.gap,
+            normal_force,
+            tangential_force,
+            sticks: contact.status[1] == Status::Stick,
+            contactor: participant(key.contactor)?,
+            target: participant(key.target)?,
+        })
+    }
+
+    /// Adds the island's momentum and potential energy.
+    fn report_momentum(&mut self, gravity: Vec2, flex_bodies: &FlexBodySet) {
+        let origin = Vec2::zeros();
+        for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
+            let report = &mut self.report;
+            match (block, index) {
+                (Block::Flex(block), Some(index)) => {
+                    let scale = flex_bodies.at_index(*index).map_or(1.0, |(_, body)| body.gravity_scale());
+                    let (momentum, first_moment) = block.momentum();
+                    report.momentum[0] += momentum.x;
+                    report.momentum[1] += momentum.y;
+                    report.angular_momentum += block.angular_momentum(origin);
+                    report.energy.potential -= scale * gravity.dot(&first_moment);
+                }
+                (Block::Rigid(block), _) if !block.is_prescribed() => {
+                    let [mass, mass_y, inertia] = block.mass();
+                    let motion = block.current();
+                    let momentum = Vec2::new(mass * motion.velocity.x, mass_y * motion.velocity.y);
+                    report.momentum[0] += momentum.x;
+                    report.momentum[1] += momentum.y;
+                    report.angular_momentum += inertia * motion.spin + cross(motion.centre, momentum);
+                    report.energy.potential -= mass.max(mass_y) * gravity.dot(&motion.centre);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Makes the solved motions the committed ones and writes the surfaces.
+    fn commit(&mut self, sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet) {
+        self.memory.turn_over();
+        for &(index, reserve) in &self.reserves {
+            let Some(body) = flex_bodies.at_index_mut(index) else { continue };
+            body.set_energy_reserve(reserve);
+            if let Some(block) = self.gatherer.block(index) {
+                block.commit(body.state_mut());
+                body.contact_force_mut().copy_from_slice(block.contact_force());
+                block.write_reactions(body.reaction_mut());
+            }
+            write_surface(body, sets.colliders, sets.broad_phase, sets.integration_parameters);
+        }
+    }
+}
+
+/// Laps of a stop-watch, if the feature `timing` is on.
+#[derive(Debug)]
+struct Clock {
+    #[cfg(feature = "timing")]
+    last: std::time::Instant,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self {
+            #[cfg(feature = "timing")]
+            last: std::time::Instant::now(),
+        }
+    }
+
+    fn lap(&mut self, _sum: &mut f64) {
+        #[cfg(feature = "timing")]
+        {
+            let now = std::time::Instant::now();
+            *_sum += (now - self.last).as_secs_f64();
+            self.last = now;
+        }
+    }
+}

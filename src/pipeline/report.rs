@@ -1,0 +1,200 @@
+//! What a step tells about itself.
+
+use crate::body::FlexBodyHandle;
+use crate::rapier::prelude::ColliderHandle;
+
+/// One side of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Participant {
+    /// A flexible body.
+    Flex(FlexBodyHandle),
+    /// A collider of a rigid body, or one without a body.
+    Rigid(ColliderHandle),
+}
+
+/// One closed contact at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactReport {
+    /// Position (m).
+    pub position: [f64; 2],
+    /// Unit normal, from the target to the contactor.
+    pub normal: [f64; 2],
+    /// Gap (m), negative for overlap.
+    pub gap: f64,
+    /// Compressive force on the contactor along the normal, mean over the step (N).
+    pub normal_force: f64,
+    /// Force on the contactor along the tangent, a quarter turn counter-clockwise from the normal (N).
+    pub tangential_force: f64,
+    /// Whether friction holds.
+    pub sticks: bool,
+    /// The body whose point touches.
+    pub contactor: Participant,
+    /// The body whose surface is touched.
+    pub target: Participant,
+}
+
+/// Energy of all flexible and claimed rigid bodies (J).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EnergyReport {
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Elastic energy.
+    pub elastic: f64,
+    /// Potential energy of gravity, zero at the origin.
+    pub potential: f64,
+    /// What friction, damping, restitution and the integrator took since the pipeline was made: work done by applied
+    /// forces and prescribed motion less the gain of kinetic and elastic energy, over bodies while they were claimed.
+    pub dissipated: f64,
+}
+
+impl EnergyReport {
+    /// Kinetic, elastic and potential energy (J).
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.elastic + self.potential
+    }
+}
+
+/// Wall-clock time of the stages (s); zero without the feature `timing`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StageTimes {
+    /// Rapier's two steps.
+    pub rapier: f64,
+    /// Look-ahead and claim.
+    pub claim: f64,
+    /// Predictors, candidates.
+    pub gather: f64,
+    /// Free motion, multipliers, impacts.
+    pub solve: f64,
+    /// Commit, hand-back, surfaces.
+    pub hand_back: f64,
+}
+
+impl StageTimes {
+    /// Time outside rapier (s).
+    pub fn own(&self) -> f64 {
+        self.claim + self.gather + self.solve + self.hand_back
+    }
+}
+
+/// The outcome of the last step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepReport {
+    pub(super) contacts: Vec<ContactReport>,
+    pub(super) energy: EnergyReport,
+    pub(super) momentum: [f64; 2],
+    pub(super) angular_momentum: f64,
+    pub(super) gap_violation: f64,
+    pub(super) complementarity_residual: f64,
+    pub(super) cone_residual: f64,
+    pub(super) solver_residual: f64,
+    pub(super) energy_limited: f64,
+    pub(super) n_islands: usize,
+    pub(super) n_claimed: usize,
+    pub(super) n_newton: usize,
+    pub(super) n_pivots: usize,
+    pub(super) n_factorizations: u64,
+    pub(super) times: StageTimes,
+}
+
+impl StepReport {
+    /// Closed contacts.
+    pub fn contacts(&self) -> &[ContactReport] {
+        &self.contacts
+    }
+
+    /// Energy balance.
+    pub fn energy(&self) -> &EnergyReport {
+        &self.energy
+    }
+
+    /// Linear momentum of all flexible and claimed rigid bodies (N s).
+    pub fn momentum(&self) -> [f64; 2] {
+        self.momentum
+    }
+
+    /// Their angular momentum about the origin (N m s).
+    pub fn angular_momentum(&self) -> f64 {
+        self.angular_momentum
+    }
+
+    /// Largest overlap at any candidate (m).
+    pub fn gap_violation(&self) -> f64 {
+        self.gap_violation
+    }
+
+    /// Largest `|gap|` of a contact that carries a force (m): complementarity.
+    pub fn complementarity_residual(&self) -> f64 {
+        self.complementarity_residual
+    }
+
+    /// Largest excess of a tangential over the admissible force, relative to the largest normal force (-).
+    pub fn cone_residual(&self) -> f64 {
+        self.cone_residual
+    }
+
+    /// Largest natural-map residual of the complementarity problems (-).
+    pub fn solver_residual(&self) -> f64 {
+        self.solver_residual
+    }
+
+    /// Energy the impact treatment took out of this step (J).
+    pub fn energy_limited(&self) -> f64 {
+        self.energy_limited
+    }
+
+    /// Islands solved.
+    pub fn n_islands(&self) -> usize {
+        self.n_islands
+    }
+
+    /// Rigid bodies claimed.
+    pub fn n_claimed(&self) -> usize {
+        self.n_claimed
+    }
+
+    /// Most Newton iterations of an island.
+    pub fn n_newton(&self) -> usize {
+        self.n_newton
+    }
+
+    /// Pivots of the complementarity solver, summed over the islands.
+    pub fn n_pivots(&self) -> usize {
+        self.n_pivots
+    }
+
+    /// Numeric factorizations in this step.
+    pub fn n_factorizations(&self) -> u64 {
+        self.n_factorizations
+    }
+
+    /// Time per stage.
+    pub fn times(&self) -> &StageTimes {
+        &self.times
+    }
+
+    /// Sum of the normal and tangential contact forces on a participant (N).
+    pub fn force_on(&self, participant: Participant) -> [f64; 2] {
+        let mut sum = [0.0; 2];
+        for contact in &self.contacts {
+            let sign = if contact.contactor == participant {
+                1.0
+            } else if contact.target == participant {
+                -1.0
+            } else {
+                continue;
+            };
+            let [nx, ny] = contact.normal;
+            sum[0] += sign * (contact.normal_force * nx - contact.tangential_force * ny);
+            sum[1] += sign * (contact.normal_force * ny + contact.tangential_force * nx);
+        }
+        sum
+    }
+
+    pub(super) fn clear(&mut self) {
+        let contacts = std::mem::take(&mut self.contacts);
+        let dissipated = self.energy.dissipated;
+        *self = Self { contacts, ..Self::default() };
+        self.contacts.clear();
+        self.energy.dissipated = dissipated;
+    }
+}

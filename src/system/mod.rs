@@ -1,0 +1,123 @@
+//! Blocks: the bodies of an island as the contact solver sees them.
+//!
+//! A block predicts its free motion, answers how far a force moves it (its compliance) and corrects itself for
+//! the multipliers. [`FlexBlock`] has two dofs a node, [`RigidBlock`] three.
+
+mod compliance;
+mod flex_block;
+mod flex_motion;
+mod rigid_block;
+
+pub use flex_block::{FlexBlock, Response, Step};
+pub use flex_motion::Balance;
+pub use rigid_block::{RigidBlock, RigidLoad, RigidMotion};
+
+use crate::math::{Mat2, Vec2};
+
+/// Where a constraint row holds on to a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Grip {
+    /// A node of a flexible block.
+    Node(usize),
+    /// A material point of a rigid block: its arm from the centre of mass, in body axes (m).
+    Arm(Vec2),
+}
+
+/// A member of an island.
+#[derive(Debug)]
+pub enum Block {
+    /// A flexible body.
+    Flex(Box<FlexBlock>),
+    /// A rigid body, free or prescribed.
+    Rigid(RigidBlock),
+}
+
+impl Block {
+    /// Position of a grip at the beginning of the step (m).
+    pub fn start_position(&self, grip: Grip) -> Vec2 {
+        match (self, grip) {
+            (Self::Flex(block), Grip::Node(node)) => block.start_position(node),
+            (Self::Rigid(block), Grip::Arm(arm)) => block.start().point(arm),
+            _ => mismatch(),
+        }
+    }
+
+    /// Position of a grip at the current iterate of the end of the step (m).
+    pub fn position(&self, grip: Grip) -> Vec2 {
+        match (self, grip) {
+            (Self::Flex(block), Grip::Node(node)) => block.position(node),
+            (Self::Rigid(block), Grip::Arm(arm)) => block.current().point(arm),
+            _ => mismatch(),
+        }
+    }
+
+    /// Velocity of a grip at the current iterate (m/s).
+    pub fn velocity(&self, grip: Grip) -> Vec2 {
+        match (self, grip) {
+            (Self::Flex(block), Grip::Node(node)) => block.velocity(node),
+            (Self::Rigid(block), Grip::Arm(arm)) => block.current().point_velocity(arm),
+            _ => mismatch(),
+        }
+    }
+
+    /// Velocity of a grip at the beginning of the step (m/s).
+    pub fn start_velocity(&self, grip: Grip) -> Vec2 {
+        match (self, grip) {
+            (Self::Flex(block), Grip::Node(node)) => block.start_velocity(node),
+            (Self::Rigid(block), Grip::Arm(arm)) => block.start().point_velocity(arm),
+            _ => mismatch(),
+        }
+    }
+
+    /// Acceleration of `at` per unit force at `from`, `A⁻¹` between two grips of this block (1/kg).
+    ///
+    /// A flexible block must have been [prepared](FlexBlock::prepare_compliance) for both nodes.
+    pub fn compliance(&self, at: Grip, from: Grip) -> Mat2 {
+        match (self, at, from) {
+            (Self::Flex(block), Grip::Node(at), Grip::Node(from)) => block.compliance(at, from),
+            (Self::Rigid(block), Grip::Arm(at), Grip::Arm(from)) => block.compliance(at, from),
+            _ => mismatch(),
+        }
+    }
+
+    /// Displacement of a grip, linear in the dofs, from the current iterate to the end without multipliers (m).
+    pub fn free_offset(&self, grip: Grip) -> Vec2 {
+        match (self, grip) {
+            (Self::Flex(block), Grip::Node(node)) => block.free_offset(node),
+            (Self::Rigid(block), Grip::Arm(arm)) => block.free_offset(arm),
+            _ => mismatch(),
+        }
+    }
+
+    /// Mobility `n·M⁻¹·n` of the block at a grip if it were rigid (1/kg).
+    pub fn rigid_mobility(&self, grip: Grip, direction: Vec2) -> f64 {
+        match (self, grip) {
+            (Self::Flex(block), Grip::Node(node)) => block.rigid_mobility(node, direction),
+            (Self::Rigid(block), Grip::Arm(arm)) => block.rigid_mobility(arm, direction),
+            _ => mismatch(),
+        }
+    }
+
+    /// Acceleration of a grip at the end of the step, without hard contact forces (m/s²).
+    pub fn smooth_acceleration(&self, grip: Grip) -> Vec2 {
+        match (self, grip) {
+            (Self::Flex(block), Grip::Node(node)) => block.end_acceleration(node),
+            (Self::Rigid(block), Grip::Arm(arm)) => block.smooth_acceleration(arm),
+            _ => mismatch(),
+        }
+    }
+
+    /// Whether the grip carries no inertia, so that contact there is a quasi-static spring.
+    pub fn is_massless(&self, grip: Grip) -> bool {
+        match (self, grip) {
+            (Self::Flex(block), Grip::Node(node)) => block.is_massless(node),
+            _ => false,
+        }
+    }
+}
+
+/// A grip of the wrong kind is a programming error inside this crate.
+#[cold]
+fn mismatch() -> ! {
+    panic!("a node grips only flexible blocks, an arm only rigid ones")
+}

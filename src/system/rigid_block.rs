@@ -1,0 +1,253 @@
+//! A rigid body as a block: `[x, y, θ]` of the centre of mass, `A = b2 M + b1 C` with constant diagonal `M` and `C`.
+
+use crate::integrator::Weights;
+use crate::math::{Mat2, Vec2, perp, rotation};
+
+/// Position and velocity of a rigid body about its centre of mass.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidMotion {
+    /// Centre of mass (m).
+    pub centre: Vec2,
+    /// Angle (rad).
+    pub angle: f64,
+    /// Velocity of the centre of mass (m/s).
+    pub velocity: Vec2,
+    /// Angular velocity (rad/s).
+    pub spin: f64,
+}
+
+impl RigidMotion {
+    /// World position of the material point at `arm` (body axes, m).
+    pub fn point(&self, arm: Vec2) -> Vec2 {
+        self.centre + rotation(self.angle) * arm
+    }
+
+    /// World velocity of the material point at `arm` (body axes, m).
+    pub fn point_velocity(&self, arm: Vec2) -> Vec2 {
+        self.velocity + self.spin * perp(rotation(self.angle) * arm)
+    }
+
+    /// `arm` (body axes, m) of a world point.
+    pub fn arm(&self, point: Vec2) -> Vec2 {
+        rotation(-self.angle) * (point - self.centre)
+    }
+}
+
+/// A rigid body of an island, free (dynamic) or prescribed (fixed and kinematic).
+#[derive(Clone, Copy, Debug)]
+pub struct RigidBlock {
+    start: RigidMotion,
+    current: RigidMotion,
+    free: RigidMotion,
+    /// Acceleration without hard contact forces, `[a_x, a_y, α]`, at the beginning and at the end of the step.
+    pub smooth_start: [f64; 3],
+    /// See [`RigidBlock::smooth_start`].
+    pub smooth_end: [f64; 3],
+    inverse_mass: [f64; 3],
+    mass: [f64; 3],
+    inverse_effective: [f64; 3],
+    force: [f64; 3],
+    weights: Weights,
+    is_prescribed: bool,
+}
+
+/// Data of a free rigid body for one step.
+#[derive(Clone, Copy, Debug)]
+pub struct RigidLoad {
+    /// Inverse mass in x, y and inverse inertia about z (1/kg, 1/kg, 1/(kg m²)); zero along locked axes.
+    pub inverse_mass: [f64; 3],
+    /// Applied force and torque, gravity included (N, N, N m).
+    pub force: [f64; 3],
+    /// Damping rates in x, y and rotation (1/s).
+    pub damping: [f64; 3],
+}
+
+impl RigidBlock {
+    /// A body whose motion over the step is given.
+    pub fn prescribed(start: RigidMotion, end: RigidMotion) -> Self {
+        Self {
+            start,
+            current: end,
+            free: end,
+            smooth_start: [0.0; 3],
+            smooth_end: [0.0; 3],
+            inverse_mass: [0.0; 3],
+            mass: [0.0; 3],
+            inverse_effective: [0.0; 3],
+            force: [0.0; 3],
+            weights: Weights::default(),
+            is_prescribed: true,
+        }
+    }
+
+    /// A body free to move under `load`; `acceleration` is its smooth acceleration at the beginning, if it was
+    /// claimed in the last step too.
+    pub fn free(
+        start: RigidMotion,
+        acceleration: Option<[f64; 3]>,
+        load: &RigidLoad,
+        weights: Weights,
+        dt: f64,
+    ) -> Self {
+        let dofs_v = [start.velocity.x, start.velocity.y, start.spin];
+        let drag_free =
+            std::array::from_fn(|i| load.inverse_mass[i] * load.force[i] - load.damping[i] * dofs_v[i]);
+        let smooth_start = acceleration.unwrap_or(drag_free);
+        let mut free = start;
+        let mut smooth_end = [0.0; 3];
+        let mut inverse_effective = [0.0; 3];
+        let dofs_x = [start.centre.x, start.centre.y, start.angle];
+        let (mut x, mut v) = ([0.0; 3], [0.0; 3]);
+        for i in 0..3 {
+            let factor = 1.0 / (1.0 + weights.b1 * load.damping[i]);
+            inverse_effective[i] = load.inverse_mass[i] * factor;
+            let q0 = dofs_x[i] + dt * dofs_v[i] + 0.5 * dt * dt * smooth_start[i];
+            let q1 = dofs_v[i] + dt * smooth_start[i];
+            let increment = factor
+                * (load.inverse_mass[i] * load.force[i] - smooth_start[i] - load.damping[i] * q1);
+            if load.inverse_mass[i] > 0.0 {
+                x[i] = q0 + weights.b0 * increment;
+                v[i] = q1 + weights.b1 * increment;
+                smooth_end[i] = smooth_start[i] + increment;
+            } else {
+                // A locked axis keeps its velocity, as in rapier.
+                x[i] = dofs_x[i] + dt * dofs_v[i];
+                v[i] = dofs_v[i];
+            }
+        }
+        free.centre = Vec2::new(x[0], x[1]);
+        free.angle = x[2];
+        free.velocity = Vec2::new(v[0], v[1]);
+        free.spin = v[2];
+        let mass = load.inverse_mass.map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 });
+        Self {
+            start,
+            current: free,
+            free,
+            smooth_start,
+            smooth_end,
+            inverse_mass: load.inverse_mass,
+            mass,
+            inverse_effective,
+            force: load.force,
+            weights,
+            is_prescribed: false,
+        }
+    }
+
+    /// Motion at the beginning of the step.
+    pub fn start(&self) -> &RigidMotion {
+        &self.start
+    }
+
+    /// Motion at the end of the step, as far as it is known.
+    pub fn current(&self) -> &RigidMotion {
+        &self.current
+    }
+
+    /// Motion at the end of the step without multipliers.
+    pub fn free_motion(&self) -> &RigidMotion {
+        &self.free
+    }
+
+    /// Whether the motion is given.
+    pub fn is_prescribed(&self) -> bool {
+        self.is_prescribed
+    }
+
+    /// Mass in x, y and inertia (kg, kg, kg m²); zero along locked axes and for prescribed bodies.
+    pub fn mass(&self) -> [f64; 3] {
+        self.mass
+    }
+
+    /// See [`super::Block::compliance`], at the current angle.
+    pub fn compliance(&self, at: Vec2, from: Vec2) -> Mat2 {
+        let turn = rotation(self.current.angle);
+        mobility(&self.inverse_effective, turn * at, turn * from)
+    }
+
+    /// Force and torque about the centre of mass of a world force at `arm`.
+    pub fn wrench(&self, arm: Vec2, force: Vec2) -> [f64; 3] {
+        let lever = rotation(self.current.angle) * arm;
+        [force.x, force.y, lever.x * force.y - lever.y * force.x]
+    }
+
+    /// See [`super::Block::free_offset`].
+    pub fn free_offset(&self, arm: Vec2) -> Vec2 {
+        let lever = rotation(self.current.angle) * arm;
+        self.free.centre - self.current.centre + (self.free.angle - self.current.angle) * perp(lever)
+    }
+
+    /// See [`super::Block::smooth_acceleration`]; the centripetal part is left out, as in `G a`.
+    pub fn smooth_acceleration(&self, arm: Vec2) -> Vec2 {
+        let lever = rotation(self.current.angle) * arm;
+        Vec2::new(self.smooth_end[0], self.smooth_end[1]) + self.smooth_end[2] * perp(lever)
+    }
+
+    /// Displacement of a grip from the free motion's end to the current iterate, linear in the dofs (m).
+    pub fn set_position_increment(&mut self, wrench: [f64; 3]) {
+        let b0 = self.weights.b0;
+        let step: [f64; 3] = std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]);
+        self.current.centre = self.free.centre + Vec2::new(step[0], step[1]);
+        self.current.angle = self.free.angle + step[2];
+    }
+
+    /// Sets velocity and smooth acceleration for the part of the contact forces that acts as (C.5) says.
+    pub fn set_soft_force(&mut self, wrench: [f64; 3]) {
+        let change: [f64; 3] = std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]);
+        let b1 = self.weights.b1;
+        self.current.velocity = self.free.velocity + b1 * Vec2::new(change[0], change[1]);
+        self.current.spin = self.free.spin + b1 * change[2];
+        for (sum, change) in self.smooth_end.iter_mut().zip(change) {
+            *sum += change;
+        }
+    }
+
+    /// Adds an impulse (N s, N s, N m s) to the end velocity.
+    pub fn add_impulse(&mut self, impulse: [f64; 3]) {
+        self.current.velocity += Vec2::new(
+            self.inverse_effective[0] * impulse[0],
+            self.inverse_effective[1] * impulse[1],
+        );
+        self.current.spin += self.inverse_effective[2] * impulse[2];
+    }
+
+    /// Adds to the smooth end acceleration the response to a wrench.
+    pub fn add_smooth_acceleration(&mut self, wrench: [f64; 3]) {
+        for i in 0..3 {
+            self.smooth_end[i] += self.inverse_effective[i] * wrench[i];
+        }
+    }
+
+    /// Acceleration of a grip under a wrench (m/s²).
+    pub fn respond(&self, arm: Vec2, wrench: [f64; 3]) -> Vec2 {
+        let lever = rotation(self.current.angle) * arm;
+        let change: [f64; 3] = std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]);
+        Vec2::new(change[0], change[1]) + change[2] * perp(lever)
+    }
+
+    /// Work of the applied forces over the step (J).
+    pub fn applied_work(&self) -> f64 {
+        let moved = self.current.centre - self.start.centre;
+        self.force[0] * moved.x + self.force[1] * moved.y + self.force[2] * (self.current.angle - self.start.angle)
+    }
+
+    /// Kinetic energy of a motion of this body (J).
+    pub fn kinetic_energy(&self, motion: &RigidMotion) -> f64 {
+        0.5 * (self.mass[0] * motion.velocity.x * motion.velocity.x
+            + self.mass[1] * motion.velocity.y * motion.velocity.y
+            + self.mass[2] * motion.spin * motion.spin)
+    }
+
+    /// Mobility of the body as if it were alone, `n·M⁻¹·n` at a grip (1/kg).
+    pub fn rigid_mobility(&self, arm: Vec2, direction: Vec2) -> f64 {
+        let lever = rotation(self.current.angle) * arm;
+        direction.dot(&(mobility(&self.inverse_mass, lever, lever) * direction))
+    }
+}
+
+/// `I/m + (J r_a)(J r_b)ᵀ/I` for world levers `r_a`, `r_b`.
+fn mobility(inverse: &[f64; 3], at: Vec2, from: Vec2) -> Mat2 {
+    let (at, from) = (perp(at), perp(from));
+    Mat2::new(inverse[0], 0.0, 0.0, inverse[1]) + inverse[2] * at * from.transpose()
+}

@@ -1,0 +1,187 @@
+//! What must not change the answer: order, units, mirror images, the warm start.
+
+use crate::support::{Case, Numbers, assert_close, random_contacts};
+use foil2d::linalg::complementarity::{RowKind, Solver, Status, natural_map_residual};
+
+/// Well-posed contacts: as many bodies as contacts and little friction, so that the answer is unique.
+fn cases() -> impl Iterator<Item = Case> {
+    (0..40).map(|seed| random_contacts(50_000 + seed, 8, 6, 0.3))
+}
+
+#[test]
+fn the_order_of_the_rows_does_not_matter() {
+    for (seed, case) in cases().enumerate() {
+        let n = case.rows.len();
+        let mut numbers = Numbers(seed as u64);
+        let mut order: Vec<usize> = (0..n).collect();
+        for last in (1..n).rev() {
+            order.swap(last, (numbers.unit() * (last + 1) as f64) as usize);
+        }
+        let place = |row: usize| {
+            order
+                .iter()
+                .position(|&other| other == row)
+                .expect("a permutation")
+        };
+        let shuffled = Case {
+            delassus: order
+                .iter()
+                .flat_map(|&row| order.iter().map(move |&column| (row, column)))
+                .map(|(row, column)| case.delassus[row * n + column])
+                .collect(),
+            free: order.iter().map(|&row| case.free[row]).collect(),
+            rows: order
+                .iter()
+                .map(|&row| match case.rows[row] {
+                    RowKind::Friction {
+                        normal,
+                        coefficient,
+                    } => RowKind::Friction {
+                        normal: place(normal),
+                        coefficient,
+                    },
+                    other => other,
+                })
+                .collect(),
+        };
+        let (multipliers, status, _) = case.solve();
+        let (shuffled_multipliers, shuffled_status, _) = shuffled.solve();
+        for row in 0..n {
+            let difference = (multipliers[row] - shuffled_multipliers[place(row)]).abs();
+            let size = multipliers
+                .iter()
+                .fold(1.0_f64, |size, p| size.max(p.abs()));
+            assert!(
+                difference <= 1e-11 * size,
+                "seed {seed}, row {row}: {difference:e}"
+            );
+            assert_eq!(
+                status[row],
+                shuffled_status[place(row)],
+                "seed {seed}, row {row}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_units_do_not_matter() {
+    // powers of two scale without round-off: every decision must be the same to the last bit
+    let (s, r) = (2.0_f64.powi(-40), 2.0_f64.powi(17));
+    for case in cases().chain((0..40).map(|seed| random_contacts(seed, 2, 8, 0.8))) {
+        let scaled = Case {
+            delassus: case.delassus.iter().map(|entry| s * entry).collect(),
+            free: case.free.iter().map(|entry| r * entry).collect(),
+            rows: case.rows.clone(),
+        };
+        let (multipliers, status, outcome) = case.solve();
+        let (scaled_multipliers, scaled_status, scaled_outcome) = scaled.solve();
+        let back: Vec<f64> = scaled_multipliers.iter().map(|p| p * (s / r)).collect();
+        let size = multipliers
+            .iter()
+            .fold(1e-300_f64, |size, p| size.max(p.abs()));
+        // square roots of the diagonal round differently when 2^odd is taken out: not bits, but digits
+        assert_close(&multipliers, &back, 1e-9 * size);
+        assert_eq!(status, scaled_status);
+        assert_eq!(outcome.method, scaled_outcome.method);
+    }
+}
+
+#[test]
+fn the_unit_of_a_single_row_does_not_matter() {
+    for (seed, case) in cases().enumerate() {
+        let n = case.rows.len();
+        let mut numbers = Numbers(seed as u64);
+        // a tangent keeps the unit of its normal, because the coefficient of friction has none
+        let unit: Vec<f64> = (0..n / 2)
+            .flat_map(|_| [10.0_f64.powf(3.0 * numbers.signed()); 2])
+            .collect();
+        let scaled = Case {
+            delassus: (0..n * n)
+                .map(|entry| case.delassus[entry] * unit[entry / n] * unit[entry % n])
+                .collect(),
+            free: case
+                .free
+                .iter()
+                .zip(&unit)
+                .map(|(b, unit)| b * unit)
+                .collect(),
+            rows: case.rows.clone(),
+        };
+        let (multipliers, status, _) = case.solve();
+        let (scaled_multipliers, scaled_status, outcome) = scaled.solve();
+        let back: Vec<f64> = scaled_multipliers
+            .iter()
+            .zip(&unit)
+            .map(|(p, unit)| p * unit)
+            .collect();
+        let size = multipliers
+            .iter()
+            .fold(1.0_f64, |size, p| size.max(p.abs()));
+        assert_close(&multipliers, &back, 1e-10 * size);
+        assert_eq!(status, scaled_status);
+        let here = natural_map_residual(&case.problem(), &vec![0.0; n]);
+        let there = natural_map_residual(&scaled.problem(), &vec![0.0; n]);
+        assert!((here - there).abs() <= 1e-12, "{here} and {there}");
+        assert!(outcome.residual <= 1e-12);
+    }
+}
+
+#[test]
+fn a_mirror_image_slips_the_other_way() {
+    for case in cases() {
+        let n = case.rows.len();
+        let sign = |row: usize| if row % 2 == 1 { -1.0 } else { 1.0 };
+        let mirrored = Case {
+            delassus: (0..n * n)
+                .map(|entry| case.delassus[entry] * sign(entry / n) * sign(entry % n))
+                .collect(),
+            free: (0..n).map(|row| case.free[row] * sign(row)).collect(),
+            rows: case.rows.clone(),
+        };
+        let (multipliers, status, _) = case.solve();
+        let (mirrored_multipliers, mirrored_status, _) = mirrored.solve();
+        let back: Vec<f64> = (0..n)
+            .map(|row| mirrored_multipliers[row] * sign(row))
+            .collect();
+        let size = multipliers
+            .iter()
+            .fold(1.0_f64, |size, p| size.max(p.abs()));
+        assert_close(&multipliers, &back, 1e-11 * size);
+        let swapped = mirrored_status.iter().map(|status| match status {
+            Status::SlipPositive => Status::SlipNegative,
+            Status::SlipNegative => Status::SlipPositive,
+            other => *other,
+        });
+        assert!(swapped.eq(status.iter().copied()));
+    }
+}
+
+#[test]
+fn a_wrong_warm_start_leads_to_the_same_answer() {
+    let mut solver = Solver::new();
+    for (seed, case) in cases().enumerate() {
+        let (multipliers, status, _) = case.solve();
+        let mut numbers = Numbers(seed as u64);
+        let n = case.rows.len();
+        let mut guess: Vec<f64> = (0..n).map(|_| 10.0 * numbers.signed()).collect();
+        guess[0] = f64::NAN;
+        let all = [
+            Status::Open,
+            Status::Stick,
+            Status::SlipPositive,
+            Status::SlipNegative,
+        ];
+        let mut guessed: Vec<Status> = (0..n)
+            .map(|_| all[(numbers.unit() * 4.0) as usize])
+            .collect();
+        solver
+            .solve(&case.problem(), &mut guess, &mut guessed)
+            .expect("the data is finite");
+        let size = multipliers
+            .iter()
+            .fold(1.0_f64, |size, p| size.max(p.abs()));
+        assert_close(&guess, &multipliers, 1e-11 * size);
+        assert_eq!(guessed, status, "seed {seed}");
+    }
+}
