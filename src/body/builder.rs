@@ -4,7 +4,6 @@ use super::error::BuildError;
 use super::flex_body::{ContactSettings, FlexBody};
 use super::frame::frame_of_pins;
 use super::pin::Pin;
-use super::state::FlexState;
 use crate::fe::element::Element;
 use crate::fe::material::Material;
 use crate::fe::mesh::generate::{self, PolygonOptions};
@@ -378,7 +377,7 @@ impl FlexBodyBuilder {
         Ok(force)
     }
 
-    fn initial_velocity(&self, body: &FlexBody, rest: &[f64]) -> Result<FlexState, BuildError> {
+    fn initial_velocity(&self, body: &FlexBody, rest: &[f64]) -> Result<Vec<f64>, BuildError> {
         let n_nodes = rest.len() / 2;
         let centre: Vec2 = body.centre_of_mass().into();
         let mut velocity = Vec::with_capacity(rest.len());
@@ -403,11 +402,6 @@ impl FlexBodyBuilder {
                 }
             }
         }
-        Ok(FlexState {
-            position: rest.to_vec(),
-            velocity,
-            acceleration: vec![0.0; rest.len()],
-            angle: 0.0,
-        })
+        Ok(velocity)
     }
 }

@@ -6,7 +6,7 @@ use super::state::FlexState;
 use crate::fe::mesh::Mesh;
 use crate::fe::model::{Model, ModelError};
 use crate::fe::recovery::Stress;
-use crate::math::{Vec2, cross, node_vec, rotation};
+use crate::math::{Vec2, cross, node_vec};
 use crate::rapier::prelude::{
     ActiveEvents, ColliderHandle, CoefficientCombineRule, InteractionGroups, RigidBodyHandle,
 };
@@ -83,8 +83,8 @@ impl FlexBody {
         user_data: u128,
     ) -> Self {
         let zeros = vec![0.0; model.n_dofs()];
+        let arms = Arms::new(&model, frame);
         Self {
-            arms: Arms::new(&model, frame),
             frame,
             is_fixed,
             prescribed: zeros.clone(),
@@ -93,12 +93,8 @@ impl FlexBody {
             gravity_scale: 1.0,
             contact,
             user_data,
-            state: FlexState {
-                position: model.rest_positions().to_vec(),
-                velocity: zeros.clone(),
-                acceleration: zeros.clone(),
-                angle: 0.0,
-            },
+            state: FlexState::at_rest(model.rest_positions(), arms.origin),
+            arms,
             is_started: false,
             contact_force: zeros.clone(),
             reaction: zeros,
@@ -109,13 +105,14 @@ impl FlexBody {
         }
     }
 
-    pub(super) fn set_initial_velocity(&mut self, state: &FlexState) {
-        self.state.velocity.copy_from_slice(&state.velocity);
+    pub(super) fn set_initial_velocity(&mut self, velocity: &[f64]) {
+        self.state.velocity.copy_from_slice(velocity);
         for (velocity, &is_fixed) in self.state.velocity.iter_mut().zip(&self.is_fixed) {
             if is_fixed {
                 *velocity = 0.0;
             }
         }
+        self.state.split_velocity(&self.arms, self.frame);
     }
 
     pub(super) fn load(&mut self, nodal_force: Vec<f64>, body_force: Vec2, gravity_scale: f64) {
@@ -199,7 +196,7 @@ impl FlexBody {
 
     /// Angle of the co-rotating frame from where the body was built (rad).
     pub fn angle(&self) -> f64 {
-        self.state.angle
+        self.state.frame.angle
     }
 
     /// Mass (kg).
@@ -234,23 +231,15 @@ impl FlexBody {
     }
 
     /// Displacements in the body's frame, interleaved (m): deformation without rigid motion for a free body.
-    pub fn local_displacements(&self) -> Vec<f64> {
-        let centre = self.arms.centre(self.frame, &self.state.position);
-        let turn = rotation(-self.state.angle);
-        (0..self.n_nodes())
-            .flat_map(|node| {
-                let u = turn * (node_vec(&self.state.position, node) - centre)
-                    - node_vec(&self.arms.reference, node);
-                [u.x, u.y]
-            })
-            .collect()
+    pub fn local_displacements(&self) -> &[f64] {
+        &self.state.displacement
     }
 
     /// Kinetic and elastic energy (J).
     pub fn energy(&self) -> BodyEnergy {
         BodyEnergy {
             kinetic: 0.5 * self.model.mass().inner(&self.state.velocity, &self.state.velocity),
-            elastic: self.model.elastic_energy(&self.local_displacements()),
+            elastic: self.model.elastic_energy(self.local_displacements()),
         }
     }
 
@@ -259,7 +248,7 @@ impl FlexBody {
     /// # Errors
     /// If an element cannot evaluate its strain.
     pub fn stress(&self) -> Result<Vec<Stress>, ModelError> {
-        self.model.nodal_stress(&self.local_displacements())
+        self.model.nodal_stress(self.local_displacements())
     }
 
     /// Smoothed von Mises stress at every node (Pa).
@@ -373,6 +362,7 @@ impl FlexBody {
         {
             *own = if is_fixed { 0.0 } else { new };
         }
+        self.state.split_velocity(&self.arms, self.frame);
         Ok(())
     }
 
@@ -405,8 +395,10 @@ impl FlexBody {
         self.is_started
     }
 
-    pub(crate) fn start(&mut self) {
-        self.is_started = true;
+    /// Lets the first step give the body its initial accelerations, from its nodal forces and prescribed displacements.
+    /// `give` returns whether it could.
+    pub(crate) fn start_with(&mut self, give: impl FnOnce(&mut FlexState, &[f64], &[f64]) -> bool) {
+        self.is_started = give(&mut self.state, &self.nodal_force, &self.prescribed);
     }
 
     pub(crate) fn energy_reserve(&self) -> f64 {

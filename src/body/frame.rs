@@ -1,8 +1,6 @@
-//! The one co-rotating frame of a body: `f = R K (Rᵀ(x - c) - X) - τ ∂θ/∂x`.
+//! The one co-rotating frame of a body: `x = c + R(θ)(X + u)` with no rigid part in `u` as the mass sees it.
 //!
-//! The angle follows the mass: `θ = atan2(Σ m X×(x - c), Σ m X·(x - c))`, so `∂θ/∂x = R J M X / D` with
-//! `D = Σ m X·Rᵀ(x - c)` is a rigid rotation, which `K` does not feel; the torque `τ` makes the internal forces
-//! free of a resultant torque, as the exact gradient of the elastic energy is.
+//! The elastic force is `R K u`, completed by the torque that makes the internal forces free of a resultant moment.
 
 use crate::fe::model::Model;
 use crate::math::{Vec2, cross, node_vec};
@@ -29,6 +27,10 @@ pub struct Arms {
     pub node_mass: Vec<f64>,
     /// Total mass (kg).
     pub mass: f64,
+    /// `X·M X` (kg m²).
+    pub polar: f64,
+    /// Reference position of the centre (m).
+    pub origin: Vec2,
 }
 
 impl Arms {
@@ -48,7 +50,8 @@ impl Arms {
             .collect();
         let mut mass_moment = vec![0.0; reference.len()];
         model.mass().multiply_add(1.0, &reference, &mut mass_moment);
-        Self { reference, mass_moment, node_mass, mass }
+        let polar = reference.iter().zip(&mass_moment).map(|(x, m)| x * m).sum();
+        Self { reference, mass_moment, node_mass, mass, polar, origin }
     }
 
     /// Centre of the frame for nodal positions (or velocities) `dofs`.
@@ -60,18 +63,43 @@ impl Arms {
         }
     }
 
-    /// The angle of the mass about `centre`, within half a turn of `near` (rad), and `D` (kg m²).
-    pub fn angle(&self, position: &[f64], centre: Vec2, near: f64) -> (f64, f64) {
+    /// The angle of the mass about `centre`, within half a turn of `near` (rad):
+    /// `atan2(Σ m X × (x - c), Σ m X · (x - c))`.
+    pub fn angle(&self, position: &[f64], centre: Vec2, near: f64) -> f64 {
         let (mut sine, mut cosine) = (0.0, 0.0);
         for (moment, x) in self.mass_moment.chunks_exact(2).zip(position.chunks_exact(2)) {
             let (moment, x) = (Vec2::new(moment[0], moment[1]), Vec2::new(x[0], x[1]) - centre);
             sine += cross(moment, x);
             cosine += moment.dot(&x);
         }
-        // A hinged centre is not the mass centre: Σ m X (x - c) needs no further term, c is exact there.
         let angle = sine.atan2(cosine);
-        let turns = ((near - angle) / std::f64::consts::TAU).round();
-        (angle + turns * std::f64::consts::TAU, sine.hypot(cosine))
+        angle + ((near - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
+    }
+
+    /// Splits a local vector `δ = δ_t + δ_θ J X + δ_u` as the mass sees it; `local` keeps `δ_u`.
+    ///
+    /// A frame that cannot translate or turn leaves those parts in `δ_u`.
+    pub fn split(&self, frame: Frame, local: &mut [f64]) -> (Vec2, f64) {
+        if frame == Frame::Fixed {
+            return (Vec2::zeros(), 0.0);
+        }
+        let shift = match frame {
+            Frame::Free => weighted_mean(&self.node_mass, self.mass, local),
+            _ => Vec2::zeros(),
+        };
+        let turn = self.turn_of(local);
+        for (value, reference) in local.chunks_exact_mut(2).zip(self.reference.chunks_exact(2)) {
+            value[0] -= shift.x - turn * reference[1];
+            value[1] -= shift.y + turn * reference[0];
+        }
+        (shift, turn)
+    }
+
+    /// `Σ m X × δ / Σ m X²`.
+    pub fn turn_of(&self, local: &[f64]) -> f64 {
+        let pairs = self.mass_moment.chunks_exact(2).zip(local.chunks_exact(2));
+        let sum: f64 = pairs.map(|(moment, value)| moment[0] * value[1] - moment[1] * value[0]).sum();
+        sum / self.polar
     }
 }
 

@@ -16,4 +16,4 @@ pub use frame::{Arms, Frame, frame_of_pins};
 pub use handle::FlexBodyHandle;
 pub use pin::Pin;
 pub use set::FlexBodySet;
-pub use state::FlexState;
+pub use state::{FlexState, FrameMotion};

@@ -1,15 +1,112 @@
 //! The committed motion of a body: what a snapshot saves.
+//!
+//! `x = c + R(θ) (X + u)`: a rigid motion of the frame and a displacement `u` in it. The mass sees no rigid part in `u`:
+//! `Σ m u = 0` and `Σ m X × u = 0`, which makes the split unique.
 
-/// The committed motion of a flexible body, interleaved per node.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FlexState {
-    /// Positions (m).
-    pub position: Vec<f64>,
-    /// Velocities (m/s).
-    pub velocity: Vec<f64>,
-    /// Accelerations without hard contact forces (m/s²).
-    pub acceleration: Vec<f64>,
-    /// Angle of the co-rotating frame (rad).
+use super::frame::{Arms, Frame};
+use crate::math::{Vec2, cross, node_vec, perp, rotation, set_node_vec};
+
+/// Rigid motion of a body's frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameMotion {
+    /// Centre `c` (m).
+    pub centre: Vec2,
+    /// Its velocity (m/s).
+    pub velocity: Vec2,
+    /// Its acceleration (m/s²).
+    pub acceleration: Vec2,
+    /// Angle θ (rad).
     pub angle: f64,
+    /// Angular velocity (rad/s).
+    pub spin: f64,
+    /// Angular acceleration (rad/s²).
+    pub spin_rate: f64,
 }
 
+/// The committed motion of a flexible body; nodal vectors are interleaved.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FlexState {
+    /// World positions (m).
+    pub position: Vec<f64>,
+    /// World velocities (m/s).
+    pub velocity: Vec<f64>,
+    /// Motion of the frame.
+    pub frame: FrameMotion,
+    /// Displacement in the frame (m).
+    pub displacement: Vec<f64>,
+    /// Its rate (m/s).
+    pub rate: Vec<f64>,
+    /// Its second rate (m/s²), without hard contact forces.
+    pub acceleration: Vec<f64>,
+    /// Torque of all forces about the centre at the end of the step (N m).
+    pub torque: f64,
+}
+
+impl FlexState {
+    /// A body at rest in its reference placement.
+    pub fn at_rest(rest: &[f64], centre: Vec2) -> Self {
+        let zeros = vec![0.0; rest.len()];
+        Self {
+            position: rest.to_vec(),
+            velocity: zeros.clone(),
+            frame: FrameMotion { centre, ..FrameMotion::default() },
+            displacement: zeros.clone(),
+            rate: zeros.clone(),
+            acceleration: zeros,
+            torque: 0.0,
+        }
+    }
+
+    /// Splits world positions into the placement of the frame and displacements in it.
+    ///
+    /// Round-off would otherwise leave a rigid part in `u`, which a spinning frame would fling outwards.
+    pub fn split_position(&mut self, arms: &Arms, kind: Frame) {
+        if kind == Frame::Fixed {
+            return;
+        }
+        let centre = arms.centre(kind, &self.position);
+        let angle = arms.angle(&self.position, centre, self.frame.angle);
+        (self.frame.centre, self.frame.angle) = (centre, angle);
+        let back = rotation(-angle);
+        for node in 0..self.position.len() / 2 {
+            let u = back * (node_vec(&self.position, node) - centre) - node_vec(&arms.reference, node);
+            set_node_vec(&mut self.displacement, node, u);
+        }
+    }
+
+    /// Splits world velocities into the motion of the frame and rates in it.
+    pub fn split_velocity(&mut self, arms: &Arms, kind: Frame) {
+        let motion = split_velocity(arms, kind, &self.frame, &self.position, &self.velocity, &mut self.rate);
+        (self.frame.velocity, self.frame.spin) = motion;
+    }
+}
+
+/// Writes velocity of the centre and spin of the mass, and the rates `u̇ = Rᵀ(v - ċ) - ω J (X + u)` left in the frame.
+fn split_velocity(
+    arms: &Arms,
+    kind: Frame,
+    frame: &FrameMotion,
+    position: &[f64],
+    velocity: &[f64],
+    rate: &mut [f64],
+) -> (Vec2, f64) {
+    if kind == Frame::Fixed {
+        rate.copy_from_slice(velocity);
+        return (Vec2::zeros(), 0.0);
+    }
+    let centre = arms.centre(kind, velocity);
+    let back = rotation(-frame.angle);
+    let (mut momentum, mut inertia) = (0.0, 0.0);
+    for (node, moment) in arms.mass_moment.chunks_exact(2).enumerate() {
+        let moment = Vec2::new(moment[0], moment[1]);
+        momentum += cross(moment, back * (node_vec(velocity, node) - centre));
+        inertia += moment.dot(&(back * (node_vec(position, node) - frame.centre)));
+    }
+    let spin = momentum / inertia;
+    for node in 0..velocity.len() / 2 {
+        let arm = back * (node_vec(position, node) - frame.centre);
+        let own = back * (node_vec(velocity, node) - centre) - spin * perp(arm);
+        set_node_vec(rate, node, own);
+    }
+    (centre, spin)
+}

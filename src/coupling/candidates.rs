@@ -56,8 +56,8 @@ fn segment_bounds(block: &FlexBlock, segment: usize) -> Bounds {
     Bounds::of(&[
         block.start_position(a),
         block.start_position(b),
-        block.predicted_position(a),
-        block.predicted_position(b),
+        block.position(a),
+        block.position(b),
     ])
 }
 
@@ -193,7 +193,7 @@ fn one_sided(
         return;
     }
     for (index, &node) in points.model().mesh().boundary().nodes().iter().enumerate() {
-        let bounds = Bounds::of(&[points.start_position(node), points.predicted_position(node)]);
+        let bounds = Bounds::of(&[points.start_position(node), points.position(node)]);
         if bounds.intersects(&surface_box) && choose(points, index) {
             let key = ContactKey { contactor: names.one, point: node as u32, target: names.other, part: 0 };
             let pair = Pair::NodeOnSurface { node: (contactor, node), flex: target, segments };

@@ -66,11 +66,6 @@ impl Claims {
         Some(self.root(self.flex.len() + index))
     }
 
-    /// Index of a claimed rigid body.
-    pub fn rigid_index(&self, handle: RigidBodyHandle) -> Option<usize> {
-        self.rigid_index.get(&handle).copied()
-    }
-
     /// Looks ahead along the velocities with rapier's tree, before the detection step may rebuild it.
     pub fn look_ahead(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
         self.gather_flex(sets, flex_bodies);

@@ -11,7 +11,7 @@ use crate::constraint::geometry::Pose2;
 use crate::kkt::{Island, KktError};
 use crate::math::{Vec2, from_rapier};
 use crate::rapier::prelude::*;
-use crate::system::{Block, FlexBlock, RigidBlock, RigidLoad, RigidMotion, Step};
+use crate::system::{Block, FlexBlock, FlexLoad, RigidBlock, RigidLoad, RigidMotion, Step};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -141,12 +141,15 @@ impl Gatherer {
         };
         let own: Vec2 = body.body_force().into();
         let gravity = body.gravity_scale() * from_rapier(sets.gravity) + own;
+        let mut outcome = Ok(());
         if !body.is_started() {
-            let force = body.nodal_force().to_vec();
-            block.start_acceleration(body.state_mut(), &force, gravity);
-            body.start();
+            body.start_with(|state, force, prescribed| {
+                outcome = block.start(settings.step, state, &FlexLoad { force, gravity, prescribed });
+                outcome.is_ok()
+            });
         }
-        let outcome = block.predict(settings.step, body.state(), body.nodal_force(), gravity, body.prescribed());
+        let load = FlexLoad { force: body.nodal_force(), gravity, prescribed: body.prescribed() };
+        let outcome = outcome.and_then(|()| block.predict(settings.step, body.state(), &load));
         island.blocks.push(Block::Flex(block));
         island.flex_index.push(Some(index));
         self.flex_blocks.insert(flex, island.blocks.len() - 1);

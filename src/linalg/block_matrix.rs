@@ -5,21 +5,54 @@ use std::sync::Arc;
 /// Where the blocks of a matrix are: compressed rows of nodes, both triangles, columns ascending.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Pattern {
+    /// Where each row begins in `columns`, and where the last one ends.
     row_start: Vec<usize>,
     columns: Vec<u32>,
 }
 
 impl Pattern {
+    /// Couples the nodes of every cell with each other, and every node with itself.
+    fn from_cells<'a>(n_nodes: usize, cells: impl Iterator<Item = &'a [usize]> + Clone) -> Self {
+        assert!(
+            u32::try_from(n_nodes).is_ok(),
+            "{n_nodes} nodes need more than 32-bit numbers"
+        );
+        let (cell_start, cells_of_node) = cells_around_nodes(n_nodes, cells.clone());
+        let cells: Vec<&[usize]> = cells.collect();
+        let mut row_start = Vec::with_capacity(n_nodes + 1);
+        let mut columns: Vec<u32> = Vec::new();
+        let mut last_row_seen = vec![usize::MAX; n_nodes];
+        row_start.push(0);
+        for node in 0..n_nodes {
+            let start = columns.len();
+            last_row_seen[node] = node;
+            columns.push(node as u32);
+            for &cell in &cells_of_node[cell_start[node]..cell_start[node + 1]] {
+                for &other in cells[cell] {
+                    if last_row_seen[other] != node {
+                        last_row_seen[other] = node;
+                        columns.push(other as u32);
+                    }
+                }
+            }
+            columns[start..].sort_unstable();
+            row_start.push(columns.len());
+        }
+        Self { row_start, columns }
+    }
+
+    /// The places of one row's blocks.
     fn row(&self, node: usize) -> std::ops::Range<usize> {
         self.row_start[node]..self.row_start[node + 1]
     }
 }
 
-/// A symmetric matrix over interleaved dofs `[x0, y0, x1, y1, ...]`, stored as rows of 2×2 node blocks.
+/// A symmetric matrix over interleaved dofs `[x0, y0, x1, y1, ...]`, stored as rows of 2×2 node
+/// blocks.
 ///
-/// Block `(i, j)` is row-major, `[xx, xy, yx, yy]`. Both triangles are stored, every diagonal block is
-/// present, and columns ascend within a row. Clones share the pattern, so that the matrices of one mesh
-/// (mass, stiffness, effective) hold it once and recognize each other at no cost.
+/// Block `(i, j)` is row-major, `[xx, xy, yx, yy]`. Both triangles are stored, every diagonal block
+/// is present, and columns ascend within a row. Clones share the pattern, so that the matrices of
+/// one mesh (mass, stiffness, effective) hold it once and recognize each other at no cost.
 ///
 /// ```
 /// use foil2d::linalg::block_matrix::BlockMatrix;
@@ -48,35 +81,10 @@ impl BlockMatrix {
         n_nodes: usize,
         cells: impl Iterator<Item = &'a [usize]> + Clone,
     ) -> Self {
-        assert!(
-            u32::try_from(n_nodes).is_ok(),
-            "a matrix of {n_nodes} nodes needs more than 32-bit node numbers"
-        );
-        let (cell_start, cells_of_node) = cells_around_nodes(n_nodes, cells.clone());
-        let cells: Vec<&[usize]> = cells.collect();
-        let mut row_start = Vec::with_capacity(n_nodes + 1);
-        let mut columns: Vec<u32> = Vec::new();
-        let mut last_row_seen = vec![usize::MAX; n_nodes];
-        row_start.push(0);
-        for node in 0..n_nodes {
-            let start = columns.len();
-            last_row_seen[node] = node;
-            columns.push(node as u32);
-            for &cell in &cells_of_node[cell_start[node]..cell_start[node + 1]] {
-                for &other in cells[cell] {
-                    if last_row_seen[other] != node {
-                        last_row_seen[other] = node;
-                        columns.push(other as u32);
-                    }
-                }
-            }
-            columns[start..].sort_unstable();
-            row_start.push(columns.len());
-        }
-        let values = vec![[0.0; 4]; columns.len()];
+        let pattern = Pattern::from_cells(n_nodes, cells);
         Self {
-            pattern: Arc::new(Pattern { row_start, columns }),
-            values,
+            values: vec![[0.0; 4]; pattern.columns.len()],
+            pattern: Arc::new(pattern),
         }
     }
 
@@ -228,7 +236,8 @@ impl BlockMatrix {
         );
     }
 
-    /// Takes fixed dofs out of the matrix: their rows and columns become zero and their diagonal one.
+    /// Takes fixed dofs out of the matrix: their rows and columns become zero and their diagonal
+    /// one.
     ///
     /// - `is_fixed`: one flag per dof, length `n_dofs`.
     ///
@@ -294,17 +303,19 @@ impl BlockMatrix {
     #[inline]
     pub fn multiply_node(&self, node: usize, x: &[f64]) -> [f64; 2] {
         let row = self.pattern.row(node);
-        let (mut sum_x, mut sum_y) = (0.0, 0.0);
+        // Four sums, so that the products of a block go side by side.
+        let mut sums = [0.0; 4];
         for (&other, block) in self.pattern.columns[row.clone()]
             .iter()
             .zip(&self.values[row])
         {
-            let other = 2 * other as usize;
-            let [x0, x1] = [x[other], x[other + 1]];
-            sum_x += block[0] * x0 + block[1] * x1;
-            sum_y += block[2] * x0 + block[3] * x1;
+            let x = &x[2 * other as usize..][..2];
+            sums[0] += block[0] * x[0];
+            sums[1] += block[1] * x[1];
+            sums[2] += block[2] * x[0];
+            sums[3] += block[3] * x[1];
         }
-        [sum_x, sum_y]
+        [sums[0] + sums[1], sums[2] + sums[3]]
     }
 
     fn assert_vectors(&self, x: &[f64], y: &[f64]) {
@@ -318,7 +329,8 @@ impl BlockMatrix {
     }
 }
 
-/// Lists the cells around each node, compressed: those of `node` are `list[start[node]..start[node + 1]]`.
+/// Lists the cells around each node, compressed: those of `node` are `list[start[node]..start[node
+/// + 1]]`.
 fn cells_around_nodes<'a>(
     n_nodes: usize,
     cells: impl Iterator<Item = &'a [usize]> + Clone,

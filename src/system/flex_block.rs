@@ -1,15 +1,23 @@
 //! A flexible body as a block: `A = b2 M + b1 C + b0 K` in a co-rotating frame, one factor for ever.
 //!
-//! With `C = α M + β K`, `s = b0 + β b1` and the local predictor `u* = Rᵀ(q0 - c) - X + β(u̇ of q1)`, the first row of
-//! (C.5) reads `A (Δa + u*/s) = Rᵀ(f - M q2 - α M q1) + (1 + α b1) M u*/s`: the stiffness never has to be multiplied.
+//! Beta-2 advances the coordinates of the split `x = c + R(θ)(X + u)`: centre, angle and displacement. Stiff vibrations
+//! then turn with the body, where nodal world coordinates would tear them off their axes at every step. The increments
+//! are one local vector `δ = δ_t + δ_θ J X + δ_u`, for which (C.5) reads, with `C = α M + β K` and `s = b0 + β b1`,
+//!
+//! ```text
+//! A (δ + w) = Rᵀ(f + Gᵀp) - M (a_q + h + α v_q) + (1 + α b1) M w,      w = (u_q + β u̇_q) / s,
+//! ```
+//!
+//! `a_q` the accelerations before the increment, `h` the centripetal and Coriolis terms: the stiffness need never be
+//! multiplied. The angle obeys the balance of angular momentum instead of its row, which is exact for finite strains too.
 
 use super::compliance::Compliance;
-use crate::body::{Arms, FlexState, Frame};
+use crate::body::{Arms, FlexState, Frame, FrameMotion};
 use crate::fe::model::Model;
 use crate::integrator::{Beta2, Weights};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
-use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation};
+use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
 use std::sync::Arc;
 
 /// Everything about a step that is the same for all flexible bodies.
@@ -21,11 +29,31 @@ pub struct Step {
     pub weights: Weights,
 }
 
+/// What a response is added to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Response {
+    /// The end velocity.
+    Velocity,
+    /// The end acceleration.
+    Acceleration,
+}
+
+/// Applied loads of one step.
+#[derive(Clone, Copy, Debug)]
+pub struct FlexLoad<'a> {
+    /// Nodal forces without gravity, interleaved (N).
+    pub force: &'a [f64],
+    /// Gravity and other forces per mass (m/s²).
+    pub gravity: Vec2,
+    /// Displacement of the pinned dofs, interleaved (m).
+    pub prescribed: &'a [f64],
+}
+
 /// The rebuildable half of a flexible body: factor, compliance and the vectors of one step.
 #[derive(Debug)]
 pub struct FlexBlock {
     pub(super) model: Arc<Model>,
-    pub(super) frame: Frame,
+    pub(super) kind: Frame,
     pub(super) arms: Arms,
     pub(super) is_fixed: Vec<bool>,
     effective: BlockMatrix,
@@ -33,64 +61,86 @@ pub struct FlexBlock {
     factored_for: Option<Weights>,
     compliance: Compliance,
     n_factorizations: u64,
+    n_solves: u64,
     pub(super) step: Step,
-    pub(super) start: FlexState,
+    /// World positions and velocities at the beginning of the step.
+    pub(super) start_position: Vec<f64>,
+    pub(super) start_velocity: Vec<f64>,
+    pub(super) start_frame: FrameMotion,
+    start_torque: f64,
+    start_momentum: f64,
+    /// `u`, `ü` at the beginning.
+    pub(super) start_displacement: Vec<f64>,
+    pub(super) start_acceleration: Vec<f64>,
     /// Applied nodal forces, gravity included (N).
     pub(super) force: Vec<f64>,
-    /// Prescribed displacement of the fixed dofs from the reference (m).
-    pub(super) prescribed: Vec<f64>,
-    pub(super) q0: Vec<f64>,
-    pub(super) q1: Vec<f64>,
-    /// Angle the local system is turned by, and the frame torque per inertia (rad/s²).
-    pub(super) angle: f64,
-    pub(super) frame_spin_rate: f64,
-    inertia: f64,
-    /// `-u*/s` plus the free solve, local.
+    prescribed: Vec<f64>,
+    /// `u_q`, `u̇_q`.
+    displacement_q: Vec<f64>,
+    rate_q: Vec<f64>,
+    /// Frame before the increment, and at the iterate.
+    frame_q: FrameMotion,
+    pub(super) frame: FrameMotion,
+    /// What the balance of angular momentum adds to `δ_θ`.
+    spin_correction: f64,
+    /// `δ` without contact.
     pub(super) free_increment: Vec<f64>,
-    /// Increment of acceleration, global.
+    /// `δ` of the iterate.
     pub(super) increment: Vec<f64>,
     pub(super) contact_force: Vec<f64>,
-    pub(super) impulse: Vec<f64>,
-    pub(super) local: Vec<f64>,
+    impulse: Vec<f64>,
+    local: Vec<f64>,
+    scratch: Vec<f64>,
+    /// `u`, `u̇` of the iterate.
+    pub(super) displacement: Vec<f64>,
+    pub(super) rate: Vec<f64>,
     pub(super) position: Vec<f64>,
     pub(super) velocity: Vec<f64>,
-    n_solves: u64,
+    pub(super) torque: f64,
 }
 
 impl FlexBlock {
     /// Analyses the pattern of a model whose dofs in `is_fixed` are pinned.
-    pub fn new(model: Arc<Model>, is_fixed: Vec<bool>, frame: Frame) -> Self {
-        let arms = Arms::new(&model, frame);
-        let n = model.n_dofs();
+    pub fn new(model: Arc<Model>, is_fixed: Vec<bool>, kind: Frame) -> Self {
         let effective = model.stiffness().clone();
-        let factor = BlockCholesky::analyze(&effective);
+        let n = model.n_dofs();
         let zeros = || vec![0.0; n];
         Self {
-            compliance: Compliance::new(&model),
-            arms,
-            frame,
+            arms: Arms::new(&model, kind),
+            kind,
             is_fixed,
+            factor: BlockCholesky::analyze(&effective),
             effective,
-            factor,
             factored_for: None,
+            compliance: Compliance::new(&model),
             n_factorizations: 0,
+            n_solves: 0,
             step: Step { dt: 0.0, weights: Weights::default() },
-            start: FlexState { position: zeros(), velocity: zeros(), acceleration: zeros(), angle: 0.0 },
+            start_position: zeros(),
+            start_velocity: zeros(),
+            start_frame: FrameMotion::default(),
+            start_torque: 0.0,
+            start_momentum: 0.0,
+            start_displacement: zeros(),
+            start_acceleration: zeros(),
             force: zeros(),
             prescribed: zeros(),
-            q0: zeros(),
-            q1: zeros(),
-            angle: 0.0,
-            frame_spin_rate: 0.0,
-            inertia: 1.0,
+            displacement_q: zeros(),
+            rate_q: zeros(),
+            frame_q: FrameMotion::default(),
+            frame: FrameMotion::default(),
+            spin_correction: 0.0,
             free_increment: zeros(),
             increment: zeros(),
             contact_force: zeros(),
             impulse: zeros(),
             local: zeros(),
+            scratch: zeros(),
+            displacement: zeros(),
+            rate: zeros(),
             position: zeros(),
             velocity: zeros(),
-            n_solves: 0,
+            torque: 0.0,
             model,
         }
     }
@@ -113,62 +163,105 @@ impl FlexBlock {
     /// Begins a step: takes over the committed state and the loads, writes the operators and, if the weights are new,
     /// factorizes the effective matrix.
     ///
-    /// - `force`: nodal forces without gravity (N), `gravity` (m/s²), `prescribed`: displacement of the pinned dofs (m).
+    /// # Errors
+    /// If the effective matrix is not positive definite.
+    pub fn predict(&mut self, step: Step, state: &FlexState, load: &FlexLoad<'_>) -> Result<(), CholeskyError> {
+        self.factorize(step.weights)?;
+        self.step = step;
+        self.start_position.copy_from_slice(&state.position);
+        self.start_velocity.copy_from_slice(&state.velocity);
+        self.start_displacement.copy_from_slice(&state.displacement);
+        self.start_acceleration.copy_from_slice(&state.acceleration);
+        self.start_frame = state.frame;
+        self.start_torque = state.torque;
+        self.prescribed.copy_from_slice(load.prescribed);
+        self.force.copy_from_slice(load.force);
+        for (force, mass) in self.force.chunks_exact_mut(2).zip(&self.arms.node_mass) {
+            force[0] += mass * load.gravity.x;
+            force[1] += mass * load.gravity.y;
+        }
+        let start = [&state.displacement[..], &state.rate, &state.acceleration];
+        Beta2::predict(step.dt, start, &mut self.displacement_q, &mut self.rate_q);
+        // The iterate starts from where the body is: the operators of unresolved modes are large and cancel in the solve.
+        self.displacement.copy_from_slice(&state.displacement);
+        self.rate.copy_from_slice(&state.rate);
+        self.predict_frame();
+        let inertia = self.inertia_of(&state.displacement);
+        self.spin_correction = (step.dt - step.weights.b1) / step.weights.b1 * state.torque / inertia;
+        self.increment.fill(0.0);
+        self.contact_force.fill(0.0);
+        if self.kind != Frame::Fixed {
+            self.start_momentum = self.angular_momentum_of(&self.start_frame, &state.displacement, &state.rate);
+        }
+        self.place();
+        Ok(())
+    }
+
+    /// Writes the accelerations that a new body's loads and spin give it from an unstrained start.
+    ///
+    /// They solve `A ü = f - C v + centripetal terms` instead of `M ü = ...`: the same to second order in the step for
+    /// frequencies the step resolves, and nothing for those it does not, which would ring for ever.
     ///
     /// # Errors
     /// If the effective matrix is not positive definite.
-    pub fn predict(
-        &mut self,
-        step: Step,
-        state: &FlexState,
-        force: &[f64],
-        gravity: Vec2,
-        prescribed: &[f64],
-    ) -> Result<(), CholeskyError> {
+    pub fn start(&mut self, step: Step, state: &mut FlexState, load: &FlexLoad<'_>) -> Result<(), CholeskyError> {
         self.factorize(step.weights)?;
-        self.step = step;
-        self.start.position.copy_from_slice(&state.position);
-        self.start.velocity.copy_from_slice(&state.velocity);
-        self.start.acceleration.copy_from_slice(&state.acceleration);
-        self.start.angle = state.angle;
-        self.prescribed.copy_from_slice(prescribed);
-        self.force.copy_from_slice(force);
-        for (force, mass) in self.force.chunks_exact_mut(2).zip(&self.arms.node_mass) {
-            force[0] += mass * gravity.x;
-            force[1] += mass * gravity.y;
+        let rayleigh = self.model.rayleigh();
+        for node in 0..self.model.n_nodes() {
+            let reference = node_vec(&self.arms.reference, node);
+            let rate = node_vec(&state.rate, node);
+            let mut inertial = load.gravity - rayleigh.mass * node_vec(&state.velocity, node);
+            if self.kind != Frame::Fixed {
+                let spin = state.frame.spin;
+                inertial += spin * spin * reference - 2.0 * spin * perp(rate);
+            }
+            set_node_vec(&mut self.scratch, node, inertial);
         }
-        let start = [&state.position[..], &state.velocity, &state.acceleration];
-        Beta2::predict(step.dt, start, &mut self.q0, &mut self.q1);
-        self.position.copy_from_slice(&self.q0);
-        self.velocity.copy_from_slice(&self.q1);
-        self.frame_spin_rate = 0.0;
-        self.angle = state.angle;
-        if self.frame != Frame::Fixed {
-            let centre = self.arms.centre(self.frame, &self.q0);
-            (self.angle, self.inertia) = self.arms.angle(&self.q0, centre, state.angle);
+        self.local.copy_from_slice(load.force);
+        self.model.stiffness().multiply_add(-rayleigh.stiffness, &state.rate, &mut self.local);
+        self.model.mass().multiply_add(1.0, &self.scratch, &mut self.local);
+        for (value, &is_fixed) in self.local.iter_mut().zip(&self.is_fixed) {
+            if is_fixed {
+                *value = 0.0;
+            }
+        }
+        self.factor.solve_in_place(&mut self.local);
+        let (shift, turn) = self.arms.split(self.kind, &mut self.local);
+        state.frame.acceleration = shift;
+        state.frame.spin_rate = turn;
+        state.acceleration.copy_from_slice(&self.local);
+        state.torque = 0.0;
+        for (node, mass) in self.arms.node_mass.iter().enumerate() {
+            let applied = node_vec(load.force, node) + *mass * load.gravity;
+            state.torque += cross(node_vec(&state.position, node) - state.frame.centre, applied);
         }
         Ok(())
     }
 
-    /// Writes the acceleration that a new body's loads give it, `M a = f - C v` from an unstrained start.
-    ///
-    /// A consistent mass is lumped for this: the difference is a vibration of the order of the load's variation.
-    pub fn start_acceleration(&mut self, state: &mut FlexState, force: &[f64], gravity: Vec2) {
-        let rayleigh = self.model.rayleigh();
-        self.local.copy_from_slice(force);
-        self.model.stiffness().multiply_add(-rayleigh.stiffness, &state.velocity, &mut self.local);
-        for (node, &mass) in self.arms.node_mass.iter().enumerate() {
-            let mut acceleration = Vec2::zeros();
-            if mass > 0.0 {
-                acceleration = gravity + node_vec(&self.local, node) / mass
-                    - rayleigh.mass * node_vec(&state.velocity, node);
+    fn predict_frame(&mut self) {
+        let (dt, start) = (self.step.dt, self.start_frame);
+        let half = 0.5 * dt * dt;
+        let mut frame = FrameMotion {
+            centre: start.centre + dt * start.velocity + half * start.acceleration,
+            velocity: start.velocity + dt * start.acceleration,
+            acceleration: start.acceleration,
+            // The spin follows angular momentum and the angle the mean spin: no stored rate can ring.
+            angle: start.angle + dt * start.spin,
+            spin: start.spin,
+            spin_rate: 0.0,
+        };
+        match self.kind {
+            Frame::Fixed => frame = start,
+            Frame::Hinged(node) => {
+                // The hinge goes where it is told.
+                frame.centre = self.arms.origin + node_vec(&self.prescribed, node);
+                frame.velocity = (frame.centre - start.centre) / dt;
+                frame.acceleration = (frame.velocity - start.velocity) / dt;
             }
-            for axis in 0..2 {
-                let is_free = !self.is_fixed[2 * node + axis];
-                state.acceleration[2 * node + axis] = if is_free { acceleration[axis] } else { 0.0 };
-            }
+            Frame::Free => {}
         }
-        spread_accelerations(&self.model, &self.is_fixed, &mut state.acceleration);
+        self.frame_q = frame;
+        self.frame = frame;
     }
 
     fn factorize(&mut self, weights: Weights) -> Result<(), CholeskyError> {
@@ -176,8 +269,7 @@ impl FlexBlock {
             return Ok(());
         }
         let rayleigh = self.model.rayleigh();
-        self.effective
-            .assign_scaled(weights.b0 + rayleigh.stiffness * weights.b1, self.model.stiffness());
+        self.effective.assign_scaled(weights.b0 + rayleigh.stiffness * weights.b1, self.model.stiffness());
         self.model.mass().add_to(1.0 + rayleigh.mass * weights.b1, &mut self.effective);
         self.effective.constrain(&self.is_fixed);
         self.factored_for = None;
@@ -188,101 +280,82 @@ impl FlexBlock {
         Ok(())
     }
 
-    /// Solves for the motion without contact in the frame of the current angle.
+    /// Solves for the increment without contact, in the frame and with the inertial terms of the current iterate.
     pub fn solve_free(&mut self) {
         let rayleigh = self.model.rayleigh();
         let Weights { b0, b1 } = self.step.weights;
-        let s = b0 + rayleigh.stiffness * b1;
-        let turn = rotation(-self.angle);
-        let centre = self.arms.centre(self.frame, &self.q0);
-        let drift = self.arms.centre(self.frame, &self.q1);
-        let spin = self.spin_of_iterate(rayleigh.stiffness);
-        for node in 0..self.model.n_nodes() {
-            let reference = node_vec(&self.arms.reference, node);
-            let mut star = turn * (node_vec(&self.q0, node) - centre) - reference;
-            if rayleigh.stiffness > 0.0 {
-                let strained = turn * (node_vec(&self.position, node) - centre) - reference;
-                let rate = turn * (node_vec(&self.q1, node) - drift) - spin * perp(strained);
-                star += rayleigh.stiffness * rate;
-            }
-            star /= s;
-            self.free_increment[2 * node] = -star.x;
-            self.free_increment[2 * node + 1] = -star.y;
+        let (s, alpha) = (b0 + rayleigh.stiffness * b1, rayleigh.mass);
+        let kept = 1.0 + alpha * b1;
+        for dof in 0..self.local.len() {
+            let star = (self.displacement_q[dof] + rayleigh.stiffness * self.rate_q[dof]) / s;
+            self.free_increment[dof] = -star;
+            // Accelerations before the increment, less what the stiffness would give back.
+            self.scratch[dof] = self.start_acceleration[dof] + alpha * self.rate_q[dof] - kept * star;
         }
-        self.load_right_hand_side(turn, rayleigh.mass, b1);
-        self.add_prescribed(turn, s);
+        if self.kind == Frame::Fixed {
+            self.local.copy_from_slice(&self.force);
+        } else {
+            self.add_frame_inertia(alpha);
+        }
+        self.model.mass().multiply_add(-1.0, &self.scratch, &mut self.local);
+        self.add_prescribed(s);
         self.factor.solve_in_place(&mut self.local);
         self.n_solves += 1;
-        for (free, y) in self.free_increment.iter_mut().zip(&self.local) {
-            *free += y;
+        for (free, solved) in self.free_increment.iter_mut().zip(&self.local) {
+            *free += solved;
         }
     }
 
-    /// `Rᵀ(f - M q2 - α M q1) + (1 + α b1) M u*/s`, written over `local`.
-    fn load_right_hand_side(&mut self, turn: Mat2, alpha: f64, b1: f64) {
+    /// Turns the forces into the frame and adds its accelerations, `h` included, to the scratch vector.
+    fn add_frame_inertia(&mut self, alpha: f64) {
+        let back = rotation(-self.frame.angle);
+        let frame = &self.frame;
+        let shift = back * (self.frame_q.acceleration + alpha * self.frame_q.velocity);
+        let turn = alpha * self.frame_q.spin;
+        // α J u, with the mean turn of the iterate, beyond what δ_θ J X holds.
+        let swing = frame.spin_rate + alpha * frame.spin;
+        let squared = frame.spin * frame.spin;
         for node in 0..self.model.n_nodes() {
-            let inertial = turn
-                * (node_vec(&self.start.acceleration, node) + alpha * node_vec(&self.q1, node))
-                + (1.0 + alpha * b1) * node_vec(&self.free_increment, node);
-            self.increment[2 * node] = inertial.x;
-            self.increment[2 * node + 1] = inertial.y;
-            let applied = turn * node_vec(&self.force, node);
-            self.local[2 * node] = applied.x;
-            self.local[2 * node + 1] = applied.y;
+            let reference = node_vec(&self.arms.reference, node);
+            let u = node_vec(&self.displacement, node);
+            let inertial = shift + turn * perp(reference) + swing * perp(u) - squared * (reference + u)
+                + 2.0 * frame.spin * perp(node_vec(&self.rate, node));
+            add_node_vec(&mut self.scratch, node, inertial);
+            set_node_vec(&mut self.local, node, back * node_vec(&self.force, node));
         }
-        self.model.mass().multiply_add(-1.0, &self.increment, &mut self.local);
     }
 
     /// Puts the known values of the pinned dofs into the right-hand side.
-    fn add_prescribed(&mut self, turn: Mat2, s: f64) {
+    fn add_prescribed(&mut self, s: f64) {
         let b0 = self.step.weights.b0;
-        for node in 0..self.model.n_nodes() {
-            if !(self.is_fixed[2 * node] || self.is_fixed[2 * node + 1]) {
+        for dof in 0..self.local.len() {
+            if !self.is_fixed[dof] {
                 continue;
             }
-            let target = node_vec(self.model.rest_positions(), node) + node_vec(&self.prescribed, node);
-            let increment = turn * (target - node_vec(&self.q0, node)) / b0;
-            let known = increment - node_vec(&self.free_increment, node);
-            for axis in 0..2 {
-                let dof = 2 * node + axis;
-                if self.is_fixed[dof] {
-                    self.local[dof] = known[axis];
-                    if known[axis] != 0.0 {
-                        self.move_to_right_hand_side(node, axis, s * known[axis]);
-                    }
-                }
+            // A hinge is the centre of its frame: its displacement there is zero.
+            let target = if self.kind == Frame::Fixed { self.prescribed[dof] } else { 0.0 };
+            let increment = (target - self.displacement_q[dof]) / b0;
+            let known = increment - self.free_increment[dof];
+            self.local[dof] = known;
+            if known != 0.0 {
+                self.move_to_right_hand_side(dof, s * known);
             }
         }
     }
 
     /// Subtracts the stiffness column of one pinned dof from the rows of its free neighbours.
-    fn move_to_right_hand_side(&mut self, node: usize, axis: usize, scaled: f64) {
+    fn move_to_right_hand_side(&mut self, dof: usize, scaled: f64) {
         let stiffness = self.model.stiffness();
+        let (node, axis) = (dof / 2, dof % 2);
         for (&neighbour, block) in stiffness.neighbours(node).iter().zip(stiffness.row_blocks(node)) {
             for other in 0..2 {
-                let dof = 2 * neighbour as usize + other;
-                if !self.is_fixed[dof] {
+                let row = 2 * neighbour as usize + other;
+                if !self.is_fixed[row] {
                     // The matrix is symmetric: the column of the pinned dof is its row.
-                    self.local[dof] -= block[2 * axis + other] * scaled;
+                    self.local[row] -= block[2 * axis + other] * scaled;
                 }
             }
         }
-    }
-
-    /// Angular velocity of the iterate, needed only where the damping must not feel a rigid spin.
-    fn spin_of_iterate(&self, stiffness_damping: f64) -> f64 {
-        if stiffness_damping == 0.0 || self.frame == Frame::Fixed {
-            return 0.0;
-        }
-        let centre = self.arms.centre(self.frame, &self.position);
-        let drift = self.arms.centre(self.frame, &self.velocity);
-        let (mut momentum, mut inertia) = (0.0, 0.0);
-        for (node, mass) in self.arms.node_mass.iter().enumerate() {
-            let arm = node_vec(&self.position, node) - centre;
-            momentum += mass * cross(arm, node_vec(&self.velocity, node) - drift);
-            inertia += mass * arm.norm_squared();
-        }
-        momentum / inertia
     }
 
     /// Clears the contact forces of the iterate.
@@ -295,42 +368,40 @@ impl FlexBlock {
         add_node_vec(&mut self.contact_force, node, force);
     }
 
-    /// Contact forces of the iterate, interleaved (N).
-    pub fn contact_force(&self) -> &[f64] {
-        &self.contact_force
-    }
-
-    /// Computes the end of the step for the free solve and the contact forces given, and the angle it turns to.
+    /// Computes the end of the step from the free solve and the contact forces given.
     ///
-    /// Returns how far the new angle is from the one solved with (rad), weighted by nothing: the residual of the frame.
+    /// Returns how far the frame's angle moved (rad).
     pub fn correct(&mut self, has_contact: bool) -> f64 {
-        let turn = rotation(self.angle);
         if has_contact {
-            self.respond_to_contact_force();
+            self.respond(false);
             for (sum, free) in self.local.iter_mut().zip(&self.free_increment) {
                 *sum += free;
             }
         } else {
             self.local.copy_from_slice(&self.free_increment);
         }
-        let spin_rate = self.frame_spin_rate;
-        for node in 0..self.model.n_nodes() {
-            let swing = spin_rate * perp(node_vec(&self.arms.reference, node));
-            let increment = turn * (node_vec(&self.local, node) + swing);
-            self.increment[2 * node] = increment.x;
-            self.increment[2 * node + 1] = increment.y;
+        self.increment.copy_from_slice(&self.local);
+        if self.kind == Frame::Fixed {
+            self.advance(Vec2::zeros(), 0.0);
+            return 0.0;
         }
-        self.advance();
-        self.update_frame()
+        let (shift, turn) = self.arms.split(self.kind, &mut self.local);
+        let angle = self.frame.angle;
+        self.advance(shift, turn + self.spin_correction);
+        self.balance_angular_momentum();
+        (self.frame.angle - angle).abs()
     }
 
-    /// `A⁻¹ Rᵀ f_contact`, written over `local`.
-    fn respond_to_contact_force(&mut self) {
-        let back = rotation(-self.angle);
-        for (dofs, force) in self.local.chunks_exact_mut(2).zip(self.contact_force.chunks_exact(2)) {
-            let force = back * Vec2::new(force[0], force[1]);
-            dofs[0] = force.x;
-            dofs[1] = force.y;
+    /// `A⁻¹ Rᵀ f` for the contact forces, or for the impulses, written over `local`.
+    fn respond(&mut self, to_impulse: bool) {
+        let source = if to_impulse { &self.impulse } else { &self.contact_force };
+        if self.kind == Frame::Fixed {
+            self.local.copy_from_slice(source);
+        } else {
+            let back = rotation(-self.frame.angle);
+            for node in 0..self.model.n_nodes() {
+                set_node_vec(&mut self.local, node, back * node_vec(source, node));
+            }
         }
         for (value, &is_fixed) in self.local.iter_mut().zip(&self.is_fixed) {
             if is_fixed {
@@ -341,48 +412,90 @@ impl FlexBlock {
         self.n_solves += 1;
     }
 
-    fn advance(&mut self) {
+    /// Applies the increments; `local` holds `δ_u`.
+    fn advance(&mut self, shift: Vec2, turn: f64) {
         let Weights { b0, b1 } = self.step.weights;
-        for dof in 0..self.q0.len() {
-            self.position[dof] = self.q0[dof] + b0 * self.increment[dof];
-            self.velocity[dof] = self.q1[dof] + b1 * self.increment[dof];
+        for dof in 0..self.local.len() {
+            self.displacement[dof] = self.displacement_q[dof] + b0 * self.local[dof];
+            self.rate[dof] = self.rate_q[dof] + b1 * self.local[dof];
+        }
+        if self.kind != Frame::Fixed {
+            let shift = rotation(self.frame.angle) * shift;
+            let before = &self.frame_q;
+            self.frame.centre = before.centre + b0 * shift;
+            self.frame.velocity = before.velocity + b1 * shift;
+            self.frame.acceleration = before.acceleration + shift;
+            self.frame.angle = before.angle + 0.5 * self.step.dt * b1 * turn;
+            self.frame.spin = before.spin + b1 * turn;
+            self.frame.spin_rate = b1 * turn / self.step.dt;
+        }
+        self.place();
+    }
+
+    /// World positions and velocities of the iterate.
+    fn place(&mut self) {
+        if self.kind == Frame::Fixed {
+            for ((x, rest), u) in
+                self.position.iter_mut().zip(self.model.rest_positions()).zip(&self.displacement)
+            {
+                *x = rest + u;
+            }
+            self.velocity.copy_from_slice(&self.rate);
+            return;
+        }
+        let frame = &self.frame;
+        let turn = rotation(frame.angle);
+        for node in 0..self.model.n_nodes() {
+            let arm = node_vec(&self.arms.reference, node) + node_vec(&self.displacement, node);
+            let own = node_vec(&self.rate, node) + frame.spin * perp(arm);
+            set_node_vec(&mut self.position, node, frame.centre + turn * arm);
+            set_node_vec(&mut self.velocity, node, frame.velocity + turn * own);
         }
     }
 
-    /// Torque that balances the internal forces and the angle of the new positions.
-    fn update_frame(&mut self) -> f64 {
-        if self.frame == Frame::Fixed {
-            return 0.0;
-        }
-        let centre = self.arms.centre(self.frame, &self.position);
-        let alpha = self.model.rayleigh().mass;
-        // Torque of f + Gᵀλ - M (a' + α v') must vanish about the centre; `local` is free scratch here.
-        for node in 0..self.model.n_nodes() {
-            let inertial = node_vec(&self.start.acceleration, node)
-                + node_vec(&self.increment, node)
-                + alpha * node_vec(&self.velocity, node);
-            self.local[2 * node] = inertial.x;
-            self.local[2 * node + 1] = inertial.y;
-        }
+    /// `I(u) ω + Σ m u × u̇` (N m s).
+    fn angular_momentum_of(&self, frame: &FrameMotion, u: &[f64], rate: &[f64]) -> f64 {
+        self.inertia_of(u) * frame.spin + self.model.mass().moment(Vec2::zeros(), u, rate)
+    }
+
+    /// `I(u) = Σ m (X + u)²` (kg m²).
+    fn inertia_of(&self, u: &[f64]) -> f64 {
+        let linear: f64 = self.arms.mass_moment.iter().zip(u).map(|(moment, u)| moment * u).sum();
+        self.arms.polar + 2.0 * linear + self.model.mass().inner(u, u)
+    }
+
+    /// Corrects the turn so that angular momentum grows by the impulse of the torques.
+    fn balance_angular_momentum(&mut self) {
         let mut torque = 0.0;
-        let inertial_torque = self.model.mass().moment(centre, &self.position, &self.local);
         for node in 0..self.model.n_nodes() {
             let force = node_vec(&self.force, node) + node_vec(&self.contact_force, node);
-            torque += cross(node_vec(&self.position, node) - centre, force);
+            torque += cross(node_vec(&self.position, node) - self.frame.centre, force);
         }
-        torque -= inertial_torque;
-        let (angle, inertia) = self.arms.angle(&self.position, centre, self.angle);
-        self.inertia = inertia;
-        self.frame_spin_rate +=
-            torque / (inertia * (1.0 + alpha * self.step.weights.b1));
-        let change = angle - self.angle;
-        self.angle = angle;
-        change.abs()
+        let momentum = self.angular_momentum_of(&self.frame, &self.displacement, &self.rate);
+        torque -= self.model.rayleigh().mass * momentum;
+        if let Frame::Hinged(_) = self.kind {
+            torque -= self.hinge_inertia();
+        }
+        self.torque = torque;
+        let Weights { b1, .. } = self.step.weights;
+        let impulse = (self.step.dt - b1) * self.start_torque + b1 * torque;
+        let missing = self.start_momentum + impulse - momentum;
+        let damped = 1.0 + self.model.rayleigh().mass * b1;
+        self.spin_correction += missing / (self.inertia_of(&self.displacement) * b1 * damped);
+    }
+
+    /// Torque of the frame's own acceleration when the hinge is moved.
+    fn hinge_inertia(&self) -> f64 {
+        let acceleration = self.frame.acceleration;
+        let masses = self.arms.node_mass.iter().enumerate();
+        masses
+            .map(|(node, mass)| mass * cross(node_vec(&self.position, node) - self.frame.centre, acceleration))
+            .sum()
     }
 
     /// Whether the frame turns, so that the step is non-linear.
     pub fn is_nonlinear(&self) -> bool {
-        self.frame != Frame::Fixed
+        self.kind != Frame::Fixed
     }
 
     /// Makes [`super::Block::compliance`] known from `node`.
@@ -395,53 +508,59 @@ impl FlexBlock {
     /// See [`super::Block::compliance`].
     pub fn compliance(&self, at: usize, from: usize) -> Mat2 {
         let local = self.compliance.get(at, from);
-        if self.frame == Frame::Fixed {
+        if self.kind == Frame::Fixed {
             return local;
         }
-        let turn = rotation(self.angle);
+        let turn = rotation(self.frame.angle);
         turn * local * turn.transpose()
     }
 
-    /// Adds the response to the nodal impulses given since [`FlexBlock::clear_impulse`] to the end velocity (N s), or
-    /// to the end acceleration (N).
+    /// Clears the impulses gathered for [`FlexBlock::apply_impulse`].
+    pub fn clear_impulse(&mut self) {
+        self.impulse.fill(0.0);
+    }
+
+    /// Gathers an impulse at a node (N s).
+    pub fn gather_impulse(&mut self, node: usize, impulse: Vec2) {
+        add_node_vec(&mut self.impulse, node, impulse);
+    }
+
+    /// Adds the response to the gathered impulses to the end velocity (N s), or to the end acceleration (N).
     pub fn apply_impulse(&mut self, to: Response) {
-        std::mem::swap(&mut self.contact_force, &mut self.impulse);
-        self.respond_to_contact_force();
-        std::mem::swap(&mut self.contact_force, &mut self.impulse);
-        let turn = rotation(self.angle);
-        let target = match to {
-            Response::Velocity => &mut self.velocity,
-            Response::Acceleration => &mut self.increment,
-        };
-        for (target, local) in target.chunks_exact_mut(2).zip(self.local.chunks_exact(2)) {
-            let response = turn * Vec2::new(local[0], local[1]);
-            target[0] += response.x;
-            target[1] += response.y;
+        self.respond(true);
+        if to == Response::Acceleration {
+            self.torque += self.arms.polar * self.arms.turn_of(&self.local);
+            for (sum, response) in self.increment.iter_mut().zip(&self.local) {
+                *sum += response;
+            }
+            return;
+        }
+        let turn = rotation(self.frame.angle);
+        for node in 0..self.model.n_nodes() {
+            let response = turn * node_vec(&self.local, node);
+            add_node_vec(&mut self.velocity, node, response);
+        }
+        if self.kind != Frame::Fixed {
+            self.balance_impulse();
         }
     }
-}
 
-/// What a response is added to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Response {
-    /// The end velocity.
-    Velocity,
-    /// The end acceleration.
-    Acceleration,
-}
-
-/// Gives massless nodes the mean acceleration of the nodes that carry their mass: their own is a remainder without
-/// inertia that the trapezoidal rule would amplify.
-pub(super) fn spread_accelerations(model: &Model, is_fixed: &[bool], acceleration: &mut [f64]) {
-    for (node, support) in model.massless_support() {
-        if support.is_empty() {
-            continue;
+    /// Turns the velocities so that the impulses' moment about the deformed centre is what angular momentum gained.
+    fn balance_impulse(&mut self) {
+        let centre = self.frame.centre;
+        let wanted: f64 = (0..self.model.n_nodes())
+            .map(|node| cross(node_vec(&self.position, node) - centre, node_vec(&self.impulse, node)))
+            .sum();
+        let turn = rotation(self.frame.angle);
+        for node in 0..self.model.n_nodes() {
+            let response = turn * node_vec(&self.local, node);
+            set_node_vec(&mut self.scratch, node, response);
         }
-        let sum: Vec2 = support.iter().map(|&massive| node_vec(acceleration, massive)).sum();
-        for axis in 0..2 {
-            if !is_fixed[2 * node + axis] {
-                acceleration[2 * node + axis] = sum[axis] / support.len() as f64;
-            }
+        let gained = self.model.mass().moment(centre, &self.position, &self.scratch);
+        let spin = (wanted - gained) / self.inertia_of(&self.displacement);
+        for node in 0..self.model.n_nodes() {
+            let swing = spin * perp(node_vec(&self.position, node) - centre);
+            add_node_vec(&mut self.velocity, node, swing);
         }
     }
 }

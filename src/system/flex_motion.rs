@@ -1,11 +1,11 @@
 //! What a flexible block tells about its motion: positions, velocities, energy, momentum, and the state it commits.
 
-use super::flex_block::{FlexBlock, spread_accelerations};
+use super::flex_block::FlexBlock;
 use crate::body::{FlexState, Frame};
-use crate::fe::model::MassMatrix;
-use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
+use crate::fe::model::{MassMatrix, Model};
+use crate::math::{Vec2, add_node_vec, cross, node_vec, rotation, set_node_vec};
 
-/// Energy and momentum of one motion of a body.
+/// Energy of one motion of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Balance {
     /// Kinetic energy (J).
@@ -17,12 +17,12 @@ pub struct Balance {
 impl FlexBlock {
     /// Position of a node at the beginning of the step (m).
     pub fn start_position(&self, node: usize) -> Vec2 {
-        node_vec(&self.start.position, node)
+        node_vec(&self.start_position, node)
     }
 
     /// Velocity of a node at the beginning of the step (m/s).
     pub fn start_velocity(&self, node: usize) -> Vec2 {
-        node_vec(&self.start.velocity, node)
+        node_vec(&self.start_velocity, node)
     }
 
     /// Position of a node at the current iterate (m).
@@ -33,11 +33,6 @@ impl FlexBlock {
     /// Velocity of a node at the current iterate (m/s).
     pub fn velocity(&self, node: usize) -> Vec2 {
         node_vec(&self.velocity, node)
-    }
-
-    /// Predicted position `q0` of a node (m).
-    pub fn predicted_position(&self, node: usize) -> Vec2 {
-        node_vec(&self.q0, node)
     }
 
     /// All positions of the current iterate, interleaved (m).
@@ -57,15 +52,19 @@ impl FlexBlock {
 
     /// Displacement of a node from the current iterate to the end of the step without contact (m).
     pub fn free_offset(&self, node: usize) -> Vec2 {
-        let turn = rotation(self.angle);
-        let swing = self.frame_spin_rate * perp(node_vec(&self.arms.reference, node));
-        let increment = turn * (node_vec(&self.free_increment, node) + swing);
-        node_vec(&self.q0, node) + self.step.weights.b0 * increment - node_vec(&self.position, node)
+        let missing = node_vec(&self.free_increment, node) - node_vec(&self.increment, node);
+        self.step.weights.b0 * (rotation(self.frame.angle) * missing)
     }
 
-    /// Acceleration of a node at the end of the step (m/s²).
+    /// Acceleration of a node at the end of the step, linear in the increments (m/s²).
     pub fn end_acceleration(&self, node: usize) -> Vec2 {
-        node_vec(&self.start.acceleration, node) + node_vec(&self.increment, node)
+        let own = node_vec(&self.start_acceleration, node) + node_vec(&self.increment, node);
+        self.start_frame.acceleration + rotation(self.frame.angle) * own
+    }
+
+    /// Contact forces of the iterate, interleaved (N).
+    pub fn contact_force(&self) -> &[f64] {
+        &self.contact_force
     }
 
     /// Applied force at a node, gravity included (N).
@@ -78,33 +77,19 @@ impl FlexBlock {
     pub fn drop_hard_force(&mut self, node: usize, force: Vec2) {
         let mass = self.arms.node_mass[node];
         if mass > 0.0 && !self.is_fixed[2 * node] && !self.is_fixed[2 * node + 1] {
-            add_node_vec(&mut self.increment, node, -force / mass);
+            let arm = node_vec(&self.position, node) - self.frame.centre;
+            self.torque -= cross(arm, force);
+            let local = rotation(-self.frame.angle) * force;
+            add_node_vec(&mut self.increment, node, -local / mass);
             add_node_vec(&mut self.velocity, node, -self.step.weights.b1 * force / mass);
-        }
-    }
-
-    /// Clears the impulses gathered for [`FlexBlock::apply_impulse`].
-    pub fn clear_impulse(&mut self) {
-        self.impulse.fill(0.0);
-    }
-
-    /// Gathers an impulse at a node (N s).
-    pub fn gather_impulse(&mut self, node: usize, impulse: Vec2) {
-        add_node_vec(&mut self.impulse, node, impulse);
-    }
-
-    /// Adds `scale` times the response to the gathered impulses to the velocities of the nodes with mass.
-    pub fn scale_velocity_response(&mut self, scale: f64, response: &[f64]) {
-        for (v, r) in self.velocity.iter_mut().zip(response) {
-            *v += scale * r;
         }
     }
 
     /// Mobility of the whole body moving rigidly, `n·M⁻¹·n` at a node (1/kg); zero when its pins hold it.
     pub fn rigid_mobility(&self, node: usize, direction: Vec2) -> f64 {
-        let centre = self.arms.centre(self.frame, &self.position);
+        let centre = self.frame.centre;
         let lever = cross(node_vec(&self.position, node) - centre, direction);
-        match self.frame {
+        match self.kind {
             Frame::Fixed => 0.0,
             Frame::Hinged(_) => lever * lever / self.polar_inertia(centre),
             Frame::Free => 1.0 / self.arms.mass + lever * lever / self.polar_inertia(centre),
@@ -117,31 +102,24 @@ impl FlexBlock {
     }
 
     /// Energy at the beginning of the step.
-    pub fn start_balance(&mut self) -> Balance {
-        let kinetic = 0.5 * self.model.mass().inner(&self.start.velocity, &self.start.velocity);
-        let position = std::mem::take(&mut self.start.position);
-        let elastic = self.elastic_energy(&position, self.start.angle);
-        self.start.position = position;
-        Balance { kinetic, elastic }
+    pub fn start_balance(&self) -> Balance {
+        Balance {
+            kinetic: 0.5 * self.model.mass().inner(&self.start_velocity, &self.start_velocity),
+            elastic: self.model.elastic_energy(&self.start_displacement),
+        }
     }
 
     /// Energy of the current iterate.
-    pub fn end_balance(&mut self) -> Balance {
-        let kinetic = 0.5 * self.model.mass().inner(&self.velocity, &self.velocity);
-        let position = std::mem::take(&mut self.position);
-        let elastic = self.elastic_energy(&position, self.angle);
-        self.position = position;
-        Balance { kinetic, elastic }
+    pub fn end_balance(&self) -> Balance {
+        Balance {
+            kinetic: self.kinetic_energy(),
+            elastic: self.model.elastic_energy(&self.displacement),
+        }
     }
 
-    fn elastic_energy(&mut self, position: &[f64], angle: f64) -> f64 {
-        let centre = self.arms.centre(self.frame, position);
-        let turn = rotation(-angle);
-        for node in 0..self.model.n_nodes() {
-            let u = turn * (node_vec(position, node) - centre) - node_vec(&self.arms.reference, node);
-            set_node_vec(&mut self.local, node, u);
-        }
-        self.model.elastic_energy(&self.local)
+    /// Kinetic energy of the current iterate (J).
+    pub fn kinetic_energy(&self) -> f64 {
+        0.5 * self.model.mass().inner(&self.velocity, &self.velocity)
     }
 
     /// Linear momentum (N s) and first moment of mass `Σ m x` (kg m).
@@ -168,7 +146,7 @@ impl FlexBlock {
 
     /// Work of the applied forces over the step, `Σ f·(x' - x)` (J).
     pub fn applied_work(&self) -> f64 {
-        let moved = self.position.iter().zip(&self.start.position);
+        let moved = self.position.iter().zip(&self.start_position);
         moved.zip(&self.force).map(|((end, start), force)| force * (end - start)).sum()
     }
 
@@ -176,19 +154,29 @@ impl FlexBlock {
     pub fn commit(&self, state: &mut FlexState) {
         state.position.copy_from_slice(&self.position);
         state.velocity.copy_from_slice(&self.velocity);
-        for ((end, start), increment) in
-            state.acceleration.iter_mut().zip(&self.start.acceleration).zip(&self.increment)
-        {
-            *end = start + increment;
+        state.displacement.copy_from_slice(&self.displacement);
+        state.frame = self.frame;
+        state.torque = self.torque;
+        state.acceleration.copy_from_slice(&self.increment);
+        let (shift, _) = self.arms.split(self.kind, &mut state.acceleration);
+        for (end, start) in state.acceleration.iter_mut().zip(&self.start_acceleration) {
+            *end += start;
+        }
+        if self.kind == Frame::Free {
+            // The increment may have changed since the frame was advanced: hard contacts, settled accelerations.
+            state.frame.acceleration = self.start_frame.acceleration + rotation(self.frame.angle) * shift;
         }
         for (dof, &is_fixed) in self.is_fixed.iter().enumerate() {
             if is_fixed {
-                state.velocity[dof] = (self.position[dof] - self.start.position[dof]) / self.step.dt;
                 state.acceleration[dof] = 0.0;
+                if self.kind == Frame::Fixed {
+                    state.velocity[dof] = (self.position[dof] - self.start_position[dof]) / self.step.dt;
+                }
             }
         }
+        state.split_position(&self.arms, self.kind);
+        state.split_velocity(&self.arms, self.kind);
         spread_accelerations(&self.model, &self.is_fixed, &mut state.acceleration);
-        state.angle = self.angle;
     }
 
     /// Reaction at a pinned node, the force the pin exerts on the body (N).
@@ -197,18 +185,17 @@ impl FlexBlock {
             return Vec2::zeros();
         }
         let rayleigh = self.model.rayleigh();
-        let turn = rotation(self.angle);
-        let centre = self.arms.centre(self.frame, &self.position);
         let stiffness = self.model.stiffness();
         let mut force = Vec2::zeros();
         for (&other, block) in stiffness.neighbours(node).iter().zip(stiffness.row_blocks(node)) {
             let other = other as usize;
-            let u = turn.transpose() * (node_vec(&self.position, other) - centre)
-                - node_vec(&self.arms.reference, other)
-                + rayleigh.stiffness * (turn.transpose() * node_vec(&self.velocity, other));
+            let u = node_vec(&self.displacement, other)
+                + rayleigh.stiffness * node_vec(&self.rate, other);
             force += Vec2::new(block[0] * u.x + block[1] * u.y, block[2] * u.x + block[3] * u.y);
         }
-        let mut reaction = turn * force - node_vec(&self.force, node) - node_vec(&self.contact_force, node);
+        let turn = rotation(self.frame.angle);
+        let mut reaction =
+            turn * force - node_vec(&self.force, node) - node_vec(&self.contact_force, node);
         if let MassMatrix::Lumped(mass) = self.model.mass() {
             reaction += mass[node] * rayleigh.mass * node_vec(&self.velocity, node);
         }
@@ -218,5 +205,20 @@ impl FlexBlock {
             }
         }
         reaction
+    }
+}
+
+/// Gives massless nodes the mean acceleration of the nodes that carry their mass: their own is a remainder without
+/// inertia that the trapezoidal rule would amplify.
+fn spread_accelerations(model: &Model, is_fixed: &[bool], acceleration: &mut [f64]) {
+    for (node, support) in model.massless_support() {
+        if support.is_empty() {
+            continue;
+        }
+        let sum: Vec2 = support.iter().map(|&massive| node_vec(acceleration, massive)).sum();
+        let mean = sum / support.len() as f64;
+        let old = node_vec(acceleration, *node);
+        let kept = |axis: usize| if is_fixed[2 * node + axis] { old[axis] } else { mean[axis] };
+        set_node_vec(acceleration, *node, Vec2::new(kept(0), kept(1)));
     }
 }

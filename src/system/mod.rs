@@ -8,7 +8,7 @@ mod flex_block;
 mod flex_motion;
 mod rigid_block;
 
-pub use flex_block::{FlexBlock, Response, Step};
+pub use flex_block::{FlexBlock, FlexLoad, Response, Step};
 pub use flex_motion::Balance;
 pub use rigid_block::{RigidBlock, RigidLoad, RigidMotion};
 

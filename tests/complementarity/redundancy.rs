@@ -221,6 +221,7 @@ fn a_pyramid_on_the_limit_of_its_friction_is_steady_once_it_has_been_solved() {
         let case = pyramid(n_layers, coefficient);
         let (mut multipliers, mut status, outcome) = case.solve();
         assert!(outcome.residual <= 1e-12, "{n_layers} layers: {outcome:?}");
+        assert_eq!(outcome.n_lemke_pivots, 0, "sweeps are enough: {outcome:?}");
         let on_ground: f64 = multipliers[..8 * n_layers].iter().step_by(2).sum();
         let weight = (n_layers * (n_layers + 1) / 2) as f64;
         assert!(

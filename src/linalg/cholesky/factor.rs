@@ -1,12 +1,15 @@
-//! The numeric factorization: `L_jj L_jjᵀ = A_jj − Σ_k L_jk L_jkᵀ`, `L_ij = (A_ij − Σ_k L_ik L_jkᵀ) L_jj⁻ᵀ`.
+//! The numeric factorization: `L_jj L_jjᵀ = A_jj − Σ_k L_jk L_jkᵀ`.
 //!
-//! It looks left: each panel in turn gathers its columns of `A` into full-length rows, subtracts what earlier panels
-//! contribute, factorizes its diagonal block and scales the rows below. The rows are indexed by position, so no
-//! relative places are ever looked up.
+//! Below the diagonal, `L_ij = (A_ij − Σ_k L_ik L_jkᵀ) L_jj⁻ᵀ`.
 //!
-//! Throughout, `K` is the number of dof columns of a panel (2, 4, 6 or 8), and `N` the number of places per dof row
-//! in which the columns of the target panel are kept (2, 4 or 8).
+//! It looks left: each panel in turn gathers its columns of `A` into full-length rows, subtracts
+//! what earlier panels contribute, factorizes its diagonal block and scales the rows below. The
+//! rows are indexed by position, so no relative places are ever looked up.
+//!
+//! Throughout, `K` is the number of dof columns of a panel (2, 4, 6 or 8), and `N` the number of
+//! places per dof row in which the columns of the target panel are kept (2, 4 or 8).
 
+use super::diagonal::invert_factor;
 use super::ordering::Ordering;
 use super::panels::{Panel, Panels, View};
 use crate::linalg::block_matrix::BlockMatrix;
@@ -15,15 +18,13 @@ use faer::traits::pulp::{Simd, WithSimd};
 /// The two dof rows of one node, `N` places each, one after the other.
 pub(super) type NodeRow = [f64; 16];
 
-/// A pivot must exceed this part of its diagonal entry: below it, cancellation has left no digit to trust.
-const PIVOT_TOLERANCE: f64 = 64.0 * f64::EPSILON;
-
 /// Where the entries of each column of the permuted matrix come from.
 #[derive(Debug, Clone)]
 pub(super) struct Sources {
     /// Where the blocks of each position begin in `blocks`.
     start: Vec<u32>,
-    /// The place of block `(column, row)` among the blocks of the matrix, and the position of its row.
+    /// The place of block `(column, row)` among the blocks of the matrix, and the position of its
+    /// row.
     blocks: Vec<[u32; 2]>,
 }
 
@@ -62,7 +63,8 @@ pub(super) struct Factorize<'a> {
     pub sources: &'a Sources,
     pub blocks: &'a [[f64; 4]],
     pub values: &'a mut [[f64; 4]],
-    /// Zero at entry, and again at the end unless it fails. The last row takes what belongs to no row.
+    /// Zero at entry, and again at the end unless it fails. The last row takes what belongs to no
+    /// row.
     pub rows: &'a mut [NodeRow],
 }
 
@@ -172,7 +174,8 @@ impl Factorize<'_> {
         }
     }
 
-    /// Writes the panel: the inverse of its diagonal factor, and the rows below times its transpose.
+    /// Writes the panel: the inverse of its diagonal factor, and the rows below times its
+    /// transpose.
     #[inline(always)]
     fn store<const K: usize, const N: usize>(&mut self, panel: &Panel, inverse: &[[f64; N]; K]) {
         let indices = &self.panels.rows[panel.rows[0] as usize..panel.rows[1] as usize];
@@ -195,7 +198,8 @@ impl Factorize<'_> {
     }
 }
 
-/// Takes the rows below a panel times the transposed inverse of its diagonal factor, and leaves them zero.
+/// Takes the rows below a panel times the transposed inverse of its diagonal factor, and leaves
+/// them zero.
 #[inline(always)]
 fn scale_rows<const K: usize, const N: usize>(
     transposed: &[[f64; N]; K],
@@ -208,7 +212,8 @@ fn scale_rows<const K: usize, const N: usize>(
         for (half, &row) in pair.iter().enumerate() {
             let row = &mut rows[row as usize][..2 * N];
             for j in 0..K {
-                // The transposed inverse is upper triangular: whole registers of zeros are passed over.
+                // The transposed inverse is upper triangular: whole registers of zeros are passed
+                // over.
                 for l in j / 4 * 4..N {
                     out[2 * half][l] += row[j] * transposed[j][l];
                     out[2 * half + 1][l] += row[N + j] * transposed[j][l];
@@ -222,9 +227,11 @@ fn scale_rows<const K: usize, const N: usize>(
     }
 }
 
-/// Subtracts `L_ik L_jkᵀ` of one earlier panel `k` from the rows of the panel `j` that begins at position `first`.
+/// Subtracts `L_ik L_jkᵀ` of one earlier panel `k` from the rows of the panel `j` that begins at
+/// position `first`.
 ///
-/// - `reach`: which rows of the earlier panel are columns of the panel `j`; they and all below are changed.
+/// - `reach`: which rows of the earlier panel are columns of the panel `j`; they and all below are
+///   changed.
 #[inline(always)]
 fn subtract_panel<const K: usize, const N: usize>(
     source: View<'_>,
@@ -282,71 +289,5 @@ pub(super) fn subtract_product<const K: usize, const N: usize>(
         }
         rows[upper][..2 * N].copy_from_slice(&a[..2 * N]);
         rows[lower][..2 * N].copy_from_slice(&b[..2 * N]);
-    }
-}
-
-/// The inverse of the factor of a symmetric diagonal block, or the first column whose pivot fails, with it.
-///
-/// With `B = U D Uᵀ` (`U` unit lower triangular), elimination by rows turns `[B | 1]` into `[D Uᵀ | U⁻¹]`; the
-/// inverse factor is `D^(-1/2) U⁻¹`. Square roots stay out of the chain from pivot to pivot that way.
-#[inline(always)]
-fn invert_factor<const K: usize, const N: usize>(
-    mut block: [[f64; N]; K],
-    diagonal: &[f64; K],
-) -> Result<[[f64; N]; K], (usize, f64)> {
-    let mut pivots = [0.0; K];
-    eliminate_column::<K, N, 0>(&mut block, &mut pivots);
-    eliminate_column::<K, N, 1>(&mut block, &mut pivots);
-    if K > 2 {
-        eliminate_column::<K, N, 2>(&mut block, &mut pivots);
-        eliminate_column::<K, N, 3>(&mut block, &mut pivots);
-    }
-    if K > 4 {
-        eliminate_column::<K, N, 4>(&mut block, &mut pivots);
-        eliminate_column::<K, N, 5>(&mut block, &mut pivots);
-    }
-    if K > 6 {
-        eliminate_column::<K, N, 6>(&mut block, &mut pivots);
-        eliminate_column::<K, N, 7>(&mut block, &mut pivots);
-    }
-    for j in 0..K {
-        let is_positive = pivots[j] > PIVOT_TOLERANCE * diagonal[j];
-        if !is_positive {
-            return Err((j, pivots[j]));
-        }
-        let scale = 1.0 / pivots[j].sqrt();
-        for l in 0..N {
-            block[j][l] = match l.cmp(&j) {
-                std::cmp::Ordering::Less => block[j][l] * scale,
-                std::cmp::Ordering::Equal => scale,
-                std::cmp::Ordering::Greater => 0.0,
-            };
-        }
-    }
-    Ok(block)
-}
-
-/// One column of the elimination; `J` is a constant so that the rows stay in registers.
-///
-/// The zeros that elimination makes below the pivot are not kept: their places take the entries that it makes of
-/// the unit matrix beside the block.
-#[inline(always)]
-fn eliminate_column<const K: usize, const N: usize, const J: usize>(
-    block: &mut [[f64; N]; K],
-    pivots: &mut [f64; K],
-) {
-    let row = block[J];
-    pivots[J] = row[J];
-    let reciprocal = 1.0 / row[J];
-    for i in J + 1..K {
-        let multiplier = row[i] * reciprocal;
-        for l in 0..N {
-            let (old, factor) = if l == J {
-                (0.0, 1.0)
-            } else {
-                (block[i][l], row[l])
-            };
-            block[i][l] = old - multiplier * factor;
-        }
     }
 }

@@ -1,7 +1,8 @@
 //! The order in which nodes are eliminated: `P A Pᵀ` has a sparser Cholesky factor than `A`.
 //!
-//! Approximate minimum degree (Amestoy, Davis, Duff 1996; faer's implementation) on the graph of nodes, then a
-//! postorder of the elimination tree, so that columns with nearly the same pattern become neighbours.
+//! Approximate minimum degree (Amestoy, Davis, Duff 1996; faer's implementation) on the graph of
+//! nodes, then a postorder of the elimination tree, so that columns with nearly the same pattern
+//! become neighbours.
 
 use crate::linalg::block_matrix::BlockMatrix;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -50,15 +51,16 @@ impl Ordering {
         }
     }
 
-    /// Visits children before parents, and among siblings the one with the longest column last: it is the
-    /// one that shares most of its parent's pattern, and so the one worth joining to it.
+    /// Visits children before parents, and among siblings the one with the longest column last: it
+    /// is the one that shares most of its parent's pattern, and so the one worth joining to it.
     fn postorder(&self) -> Vec<u32> {
         let n = self.parent.len();
         let mut by_length: Vec<u32> = (0..n as u32).collect();
         by_length.sort_by_key(|&position| self.n_below[position as usize]);
         let (mut first_child, mut next_sibling) = (vec![NONE; n], vec![NONE; n]);
         let mut stack: Vec<u32> = Vec::new();
-        // Pushing at the front: the shortest child ends up last in the list and first off the stack.
+        // Pushing at the front: the shortest child ends up last in the list and first off the
+        // stack.
         for &position in &by_length {
             match self.parent[position as usize] {
                 NONE => stack.push(position),
@@ -120,7 +122,8 @@ fn elimination_tree(matrix: &BlockMatrix, node_at: &[u32], position_of: &[u32]) 
     parent
 }
 
-/// Counts the blocks below the diagonal of each column, walking the subtree that makes up each row of the factor.
+/// Counts the blocks below the diagonal of each column, walking the subtree that makes up each row
+/// of the factor.
 fn column_counts(
     matrix: &BlockMatrix,
     node_at: &[u32],
@@ -142,7 +145,8 @@ fn column_counts(
     count
 }
 
-/// faer's approximate minimum degree; the given order if it fails, which costs fill but no correctness.
+/// faer's approximate minimum degree; the given order if it fails, which costs fill but no
+/// correctness.
 fn minimum_degree(matrix: &BlockMatrix) -> Vec<u32> {
     let n = matrix.n_nodes();
     let mut order: Vec<u32> = (0..n as u32).collect();

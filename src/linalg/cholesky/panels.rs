@@ -1,8 +1,9 @@
 //! The pattern of the factor: panels of up to four node columns that share their rows.
 //!
-//! Columns with the same rows below them ("supernodes") are stored together, so that a row is looked up once for
-//! eight dofs instead of once for two. A child that nearly fits its parent is joined to it, at the price of stored
-//! zeros, whenever a model of the solve says that the joined panel is cheaper (Ashcraft, Grimes 1989).
+//! Columns with the same rows below them ("supernodes") are stored together, so that a row is
+//! looked up once for eight dofs instead of once for two. A child that nearly fits its parent is
+//! joined to it, at the price of stored zeros, whenever a model of the solve says that the joined
+//! panel is cheaper (Ashcraft, Grimes 1989).
 
 use super::ordering::Ordering;
 use crate::linalg::block_matrix::BlockMatrix;
@@ -25,7 +26,8 @@ pub(super) struct Panel {
     pub updates: [u32; 2],
 }
 
-/// Says that the rows `rows[0]..rows[1]` of panel `source` are columns of the panel it is listed for.
+/// Says that the rows `rows[0]..rows[1]` of panel `source` are columns of the panel it is listed
+/// for.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Update {
     pub source: u32,
@@ -55,7 +57,8 @@ pub(super) struct View<'a> {
 }
 
 impl Panels {
-    /// The parts of a panel of `K` dof columns. A tile is four dof rows by `K` columns, column after column.
+    /// The parts of a panel of `K` dof columns. A tile is four dof rows by `K` columns, column
+    /// after column.
     #[inline(always)]
     pub fn view<'a, const K: usize>(&'a self, panel: &Panel, values: &'a [[f64; 4]]) -> View<'a> {
         let indices = &self.rows[panel.rows[0] as usize..panel.rows[1] as usize];
@@ -153,8 +156,8 @@ impl Panels {
     }
 }
 
-/// The modelled cost of a solve with `width` columns of a supernode over `n_rows` common rows: two per column of
-/// each tile, and for each panel its diagonal block and a start.
+/// The modelled cost of a solve with `width` columns of a supernode over `n_rows` common rows: two
+/// per column of each tile, and for each panel its diagonal block and a start.
 fn solve_cost(width: u32, n_rows: u32) -> u32 {
     let mut cost = 0;
     let mut left = width;
@@ -166,8 +169,9 @@ fn solve_cost(width: u32, n_rows: u32) -> u32 {
     cost
 }
 
-/// The start of a panel in [`solve_cost`]. Of 0 to 100, 4 solved fastest at 126 and 1,458 dofs and within 2 % of
-/// the fastest at 8,442; larger values store more zeros, smaller ones leave more panels.
+/// The start of a panel in [`solve_cost`]. Of 2, 4 and 6, 4 solves fastest at 126 and 1,458 dofs
+/// (by 10 to 20 %), and all are within 2 % at 8,442; 2 would factorize small bodies a quarter
+/// faster.
 const PANEL_COST: u32 = 4;
 
 /// Groups the columns into supernodes and finds their rows.
@@ -207,7 +211,8 @@ fn supernodes(matrix: &BlockMatrix, ordering: &Ordering) -> Vec<Supernode> {
     supernodes
 }
 
-/// Joins successive columns into ranges `(first, end)` as long as the modelled solve becomes cheaper.
+/// Joins successive columns into ranges `(first, end)` as long as the modelled solve becomes
+/// cheaper.
 fn joined_columns(ordering: &Ordering) -> Vec<(u32, u32)> {
     // A column opens as a range of its own; the range before it is joined to it if it is its child.
     let mut ranges: Vec<(u32, u32)> = Vec::new();

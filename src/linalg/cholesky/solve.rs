@@ -1,8 +1,8 @@
 //! Substitution: `L y = P b`, then `Lᵀ P x = y`, one right-hand side or eight at a time.
 //!
-//! Forwards, a panel solves for its own dofs and subtracts from the rows below; backwards, it gathers the rows below
-//! and then solves. Its diagonal block is kept as an inverse, so solving is multiplying, without divisions in line.
-//! `K` is the number of dof columns of a panel.
+//! Forwards, a panel solves for its own dofs and subtracts from the rows below; backwards, it
+//! gathers the rows below and then solves. Its diagonal block is kept as an inverse, so solving is
+//! multiplying, without divisions in line. `K` is the number of dof columns of a panel.
 
 use super::factor::{NodeRow, subtract_product};
 use super::panels::{Panel, Panels};

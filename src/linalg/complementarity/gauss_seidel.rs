@@ -37,3 +37,34 @@ pub(super) fn sweep(problem: Checked, multipliers: &mut [f64], n_sweeps: usize) 
     }
     n_sweeps
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::problem::{Problem, RowKind};
+    use super::*;
+
+    #[test]
+    fn sweeps_converge_to_the_impulses_of_a_braked_rod() {
+        // W p + b = 0 for the normal row, with p_t = -p_n / 4: (3 - 1/4) p_n = 11
+        let problem = Problem {
+            delassus: &[3.0, 1.0, 1.0, 2.0],
+            free: &[-11.0, 20.0],
+            rows: &[
+                RowKind::Unilateral,
+                RowKind::Friction {
+                    normal: 0,
+                    coefficient: 0.25,
+                },
+            ],
+        };
+        let mut multipliers = [0.0; 2];
+        let n_sweeps = problem
+            .check()
+            .map(|problem| sweep(problem, &mut multipliers, 100));
+        assert!(
+            n_sweeps.is_ok_and(|n_sweeps| n_sweeps < 60),
+            "the sweeps did not stall"
+        );
+        assert!((multipliers[0] - 4.0).abs() < 1e-12 && (multipliers[1] + 1.0).abs() < 1e-12);
+    }
+}
