@@ -28,7 +28,9 @@ pub mod system;
 
 /// What most programs need.
 pub mod prelude {
-    pub use crate::body::{ContactInertia, FlexBody, FlexBodyBuilder, FlexBodyHandle, FlexBodySet, Pin};
+    pub use crate::body::{
+        ContactInertia, FlexBody, FlexBodyBuilder, FlexBodyHandle, FlexBodySet, Pin,
+    };
     pub use crate::fe::material::{LinearElastic, Material};
     pub use crate::fe::mesh::{CellKind, Mesh};
     pub use crate::fe::model::MassKind;

@@ -89,7 +89,9 @@ impl FlexBodyBuilder {
 
     /// An annulus about the origin, of quadrilaterals with edges of about `target_edge` (m).
     pub fn annulus(inner: f64, outer: f64, target_edge: f64) -> Self {
-        Self::from_result(generate::annulus(inner, outer, target_edge, CellKind::Quad4).map(Arc::new))
+        Self::from_result(
+            generate::annulus(inner, outer, target_edge, CellKind::Quad4).map(Arc::new),
+        )
     }
 
     /// Any polygon with holes, of six-node triangles with edges of about `target_edge` (m).
@@ -189,7 +191,11 @@ impl FlexBodyBuilder {
     /// Pins all nodes chosen by their mesh coordinates (m).
     pub fn pin_where(mut self, choose: impl Fn([f64; 2]) -> bool, pin: Pin) -> Self {
         if let Ok(mesh) = &self.mesh {
-            let chosen = mesh.nodes().iter().enumerate().filter(|(_, at)| choose(**at));
+            let chosen = mesh
+                .nodes()
+                .iter()
+                .enumerate()
+                .filter(|(_, at)| choose(**at));
             self.pins.extend(chosen.map(|(node, _)| (node, pin)));
         }
         self
@@ -286,10 +292,18 @@ impl FlexBodyBuilder {
             thickness: self.thickness,
             mass_kind: self.mass_kind,
             massless,
-            held: (0..n_nodes).map(|node| is_fixed[2 * node] && is_fixed[2 * node + 1]).collect(),
+            held: (0..n_nodes)
+                .map(|node| is_fixed[2 * node] && is_fixed[2 * node + 1])
+                .collect(),
         })?;
         let nodal_force = self.gather_nodal_forces(n_nodes)?;
-        let mut body = FlexBody::new(Arc::new(model), is_fixed, frame, self.contact, self.user_data);
+        let mut body = FlexBody::new(
+            Arc::new(model),
+            is_fixed,
+            frame,
+            self.contact,
+            self.user_data,
+        );
         body.set_initial_velocity(&self.initial_velocity(&body, &rest)?);
         body.load(nodal_force, self.body_force, self.gravity_scale);
         Ok(body)
@@ -311,13 +325,24 @@ impl FlexBodyBuilder {
         ];
         for (name, value) in numbers {
             if !value.is_finite() {
-                return Err(BuildError::Number { name, value, cure: finite });
+                return Err(BuildError::Number {
+                    name,
+                    value,
+                    cure: finite,
+                });
             }
         }
-        let contact = [("friction", self.contact.friction), ("restitution", self.contact.restitution)];
+        let contact = [
+            ("friction", self.contact.friction),
+            ("restitution", self.contact.restitution),
+        ];
         for (name, value) in contact {
             if !(value.is_finite() && value >= 0.0) {
-                return Err(BuildError::Number { name, value, cure: positive });
+                return Err(BuildError::Number {
+                    name,
+                    value,
+                    cure: positive,
+                });
             }
         }
         Ok(())
@@ -327,7 +352,11 @@ impl FlexBodyBuilder {
         let mut is_fixed = vec![false; 2 * n_nodes];
         for &(node, pin) in &self.pins {
             if node >= n_nodes {
-                return Err(BuildError::Node { name: "pin", node, n_nodes });
+                return Err(BuildError::Node {
+                    name: "pin",
+                    node,
+                    n_nodes,
+                });
             }
             is_fixed[2 * node] |= pin.x;
             is_fixed[2 * node + 1] |= pin.y;
@@ -338,19 +367,26 @@ impl FlexBodyBuilder {
     fn massless_nodes(&self, mesh: &Mesh, is_fixed: &[bool]) -> Result<Vec<bool>, BuildError> {
         let n_nodes = mesh.n_nodes();
         let chosen = match (&self.contact_inertia, self.mass_kind) {
-            (ContactInertia::Kept, _) | (ContactInertia::Redistributed, MassKind::Consistent) => &[][..],
+            (ContactInertia::Kept, _) | (ContactInertia::Redistributed, MassKind::Consistent) => {
+                &[][..]
+            }
             (ContactInertia::Redistributed, _) => mesh.boundary().nodes(),
             (ContactInertia::RedistributedAt(nodes), _) => nodes,
         };
         let mut massless = vec![false; n_nodes];
         for &node in chosen {
             if node >= n_nodes {
-                return Err(BuildError::Node { name: "contact_inertia", node, n_nodes });
+                return Err(BuildError::Node {
+                    name: "contact_inertia",
+                    node,
+                    n_nodes,
+                });
             }
             massless[node] = !(is_fixed[2 * node] && is_fixed[2 * node + 1]);
         }
         // Without a free node inside there is nothing to carry the mass: the boundary keeps it.
-        let carries = |node: usize| !massless[node] && !(is_fixed[2 * node] && is_fixed[2 * node + 1]);
+        let carries =
+            |node: usize| !massless[node] && !(is_fixed[2 * node] && is_fixed[2 * node + 1]);
         if !(0..n_nodes).any(carries) {
             massless.fill(false);
         }
@@ -361,7 +397,11 @@ impl FlexBodyBuilder {
         let mut force = vec![0.0; 2 * n_nodes];
         for &(node, value) in &self.nodal_forces {
             if node >= n_nodes {
-                return Err(BuildError::Node { name: "nodal_force", node, n_nodes });
+                return Err(BuildError::Node {
+                    name: "nodal_force",
+                    node,
+                    n_nodes,
+                });
             }
             for axis in 0..2 {
                 if !value[axis].is_finite() {
@@ -387,7 +427,11 @@ impl FlexBodyBuilder {
         }
         if let Some(own) = &self.velocities {
             if own.len() != n_nodes {
-                return Err(BuildError::Length { name: "velocities", found: own.len(), n_nodes });
+                return Err(BuildError::Length {
+                    name: "velocities",
+                    found: own.len(),
+                    n_nodes,
+                });
             }
             for (v, own) in velocity.chunks_exact_mut(2).zip(own) {
                 for axis in 0..2 {

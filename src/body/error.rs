@@ -19,7 +19,9 @@ pub enum BuildError {
     #[error(transparent)]
     Model(#[from] ModelError),
     /// No material was given.
-    #[error("the body has no material: call `.material(LinearElastic::plane_stress(E, nu).density(rho))`")]
+    #[error(
+        "the body has no material: call `.material(LinearElastic::plane_stress(E, nu).density(rho))`"
+    )]
     NoMaterial,
     /// A number is not finite or out of its range.
     #[error("{name} is {value}: {cure}")]
@@ -32,7 +34,9 @@ pub enum BuildError {
         cure: &'static str,
     },
     /// A setting names a node that does not exist.
-    #[error("{name} names node {node} of a mesh with {n_nodes} nodes: use an index below {n_nodes}")]
+    #[error(
+        "{name} names node {node} of a mesh with {n_nodes} nodes: use an index below {n_nodes}"
+    )]
     Node {
         /// Which setting.
         name: &'static str,
@@ -82,6 +86,8 @@ pub enum FlexBodyError {
     #[error("{0} holds a number that is not finite: nothing was changed")]
     NotFinite(&'static str),
     /// The world does not hold the body's carrier.
-    #[error("the world given does not hold the carrier of {0:?}: use the world it was inserted into, and remove the body from its set first")]
+    #[error(
+        "the world given does not hold the carrier of {0:?}: use the world it was inserted into, and remove the body from its set first"
+    )]
     NoCarrier(FlexBodyHandle),
 }

@@ -8,7 +8,7 @@ use crate::fe::model::{Model, ModelError};
 use crate::fe::recovery::Stress;
 use crate::math::{Vec2, cross, node_vec};
 use crate::rapier::prelude::{
-    ActiveEvents, ColliderHandle, CoefficientCombineRule, InteractionGroups, RigidBodyHandle,
+    ActiveEvents, CoefficientCombineRule, ColliderHandle, InteractionGroups, RigidBodyHandle,
 };
 use std::sync::Arc;
 
@@ -216,7 +216,9 @@ impl FlexBody {
 
     fn mean(&self, dofs: &[f64]) -> Vec2 {
         let masses = self.arms.node_mass.iter().enumerate();
-        let sum: Vec2 = masses.map(|(node, mass)| *mass * node_vec(dofs, node)).sum();
+        let sum: Vec2 = masses
+            .map(|(node, mass)| *mass * node_vec(dofs, node))
+            .sum();
         sum / self.arms.mass
     }
 
@@ -227,7 +229,9 @@ impl FlexBody {
 
     /// Angular momentum about a point (N m s).
     pub fn angular_momentum(&self, about: [f64; 2]) -> f64 {
-        self.model.mass().moment(about.into(), &self.state.position, &self.state.velocity)
+        self.model
+            .mass()
+            .moment(about.into(), &self.state.position, &self.state.velocity)
     }
 
     /// Displacements in the body's frame, interleaved (m): deformation without rigid motion for a free body.
@@ -238,7 +242,11 @@ impl FlexBody {
     /// Kinetic and elastic energy (J).
     pub fn energy(&self) -> BodyEnergy {
         BodyEnergy {
-            kinetic: 0.5 * self.model.mass().inner(&self.state.velocity, &self.state.velocity),
+            kinetic: 0.5
+                * self
+                    .model
+                    .mass()
+                    .inner(&self.state.velocity, &self.state.velocity),
             elastic: self.model.elastic_energy(self.local_displacements()),
         }
     }
@@ -354,11 +362,18 @@ impl FlexBody {
     /// If the length is not two per node or a velocity is not finite.
     pub fn set_velocities(&mut self, velocities: &[f64]) -> Result<(), FlexBodyError> {
         if velocities.len() != self.state.velocity.len() {
-            return Err(FlexBodyError::Node { node: velocities.len() / 2, n_nodes: self.n_nodes() });
+            return Err(FlexBodyError::Node {
+                node: velocities.len() / 2,
+                n_nodes: self.n_nodes(),
+            });
         }
         check_finite("the velocities", velocities)?;
-        for ((own, &new), &is_fixed) in
-            self.state.velocity.iter_mut().zip(velocities).zip(&self.is_fixed)
+        for ((own, &new), &is_fixed) in self
+            .state
+            .velocity
+            .iter_mut()
+            .zip(velocities)
+            .zip(&self.is_fixed)
         {
             *own = if is_fixed { 0.0 } else { new };
         }
@@ -368,7 +383,11 @@ impl FlexBody {
 
     fn check_node(&self, node: usize) -> Result<(), FlexBodyError> {
         let n_nodes = self.n_nodes();
-        if node < n_nodes { Ok(()) } else { Err(FlexBodyError::Node { node, n_nodes }) }
+        if node < n_nodes {
+            Ok(())
+        } else {
+            Err(FlexBodyError::Node { node, n_nodes })
+        }
     }
 }
 
@@ -419,7 +438,9 @@ impl FlexBody {
 }
 
 fn sum_of_nodes(dofs: &[f64]) -> Vec2 {
-    dofs.chunks_exact(2).map(|value| Vec2::new(value[0], value[1])).sum()
+    dofs.chunks_exact(2)
+        .map(|value| Vec2::new(value[0], value[1]))
+        .sum()
 }
 
 fn check_finite(name: &'static str, values: &[f64]) -> Result<(), FlexBodyError> {

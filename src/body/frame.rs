@@ -51,7 +51,14 @@ impl Arms {
         let mut mass_moment = vec![0.0; reference.len()];
         model.mass().multiply_add(1.0, &reference, &mut mass_moment);
         let polar = reference.iter().zip(&mass_moment).map(|(x, m)| x * m).sum();
-        Self { reference, mass_moment, node_mass, mass, polar, origin }
+        Self {
+            reference,
+            mass_moment,
+            node_mass,
+            mass,
+            polar,
+            origin,
+        }
     }
 
     /// Centre of the frame for nodal positions (or velocities) `dofs`.
@@ -67,8 +74,15 @@ impl Arms {
     /// `atan2(Σ m X × (x - c), Σ m X · (x - c))`.
     pub fn angle(&self, position: &[f64], centre: Vec2, near: f64) -> f64 {
         let (mut sine, mut cosine) = (0.0, 0.0);
-        for (moment, x) in self.mass_moment.chunks_exact(2).zip(position.chunks_exact(2)) {
-            let (moment, x) = (Vec2::new(moment[0], moment[1]), Vec2::new(x[0], x[1]) - centre);
+        for (moment, x) in self
+            .mass_moment
+            .chunks_exact(2)
+            .zip(position.chunks_exact(2))
+        {
+            let (moment, x) = (
+                Vec2::new(moment[0], moment[1]),
+                Vec2::new(x[0], x[1]) - centre,
+            );
             sine += cross(moment, x);
             cosine += moment.dot(&x);
         }
@@ -88,7 +102,10 @@ impl Arms {
             _ => Vec2::zeros(),
         };
         let turn = self.turn_of(local);
-        for (value, reference) in local.chunks_exact_mut(2).zip(self.reference.chunks_exact(2)) {
+        for (value, reference) in local
+            .chunks_exact_mut(2)
+            .zip(self.reference.chunks_exact(2))
+        {
             value[0] -= shift.x - turn * reference[1];
             value[1] -= shift.y + turn * reference[0];
         }
@@ -98,7 +115,9 @@ impl Arms {
     /// `Σ m X × δ / Σ m X²`.
     pub fn turn_of(&self, local: &[f64]) -> f64 {
         let pairs = self.mass_moment.chunks_exact(2).zip(local.chunks_exact(2));
-        let sum: f64 = pairs.map(|(moment, value)| moment[0] * value[1] - moment[1] * value[0]).sum();
+        let sum: f64 = pairs
+            .map(|(moment, value)| moment[0] * value[1] - moment[1] * value[0])
+            .sum();
         sum / self.polar
     }
 }

@@ -33,7 +33,11 @@ impl Default for FlexBodySet {
 impl FlexBodySet {
     /// An empty set.
     pub fn new() -> Self {
-        Self { id: NEXT_SET.fetch_add(1, Ordering::Relaxed), slots: Vec::new(), vacant: Vec::new() }
+        Self {
+            id: NEXT_SET.fetch_add(1, Ordering::Relaxed),
+            slots: Vec::new(),
+            vacant: Vec::new(),
+        }
     }
 
     /// Number of bodies.
@@ -52,7 +56,10 @@ impl FlexBodySet {
     /// If the handle is stale or foreign.
     pub fn try_get(&self, handle: FlexBodyHandle) -> Result<&FlexBody, FlexBodyError> {
         self.check(handle)?;
-        self.slots[handle.index as usize].body.as_ref().ok_or(FlexBodyError::Stale(handle))
+        self.slots[handle.index as usize]
+            .body
+            .as_ref()
+            .ok_or(FlexBodyError::Stale(handle))
     }
 
     /// The body of a handle, to change.
@@ -61,7 +68,10 @@ impl FlexBodySet {
     /// If the handle is stale or foreign.
     pub fn try_get_mut(&mut self, handle: FlexBodyHandle) -> Result<&mut FlexBody, FlexBodyError> {
         self.check(handle)?;
-        self.slots[handle.index as usize].body.as_mut().ok_or(FlexBodyError::Stale(handle))
+        self.slots[handle.index as usize]
+            .body
+            .as_mut()
+            .ok_or(FlexBodyError::Stale(handle))
     }
 
     /// The body of a handle, `None` if it is stale or foreign.
@@ -77,25 +87,43 @@ impl FlexBodySet {
     /// All bodies with their handles, in the order of their slots.
     pub fn iter(&self) -> impl Iterator<Item = (FlexBodyHandle, &FlexBody)> {
         let set = self.id;
-        self.slots.iter().enumerate().filter_map(move |(index, slot)| {
-            let handle = FlexBodyHandle { set, index: index as u32, generation: slot.generation };
-            slot.body.as_ref().map(|body| (handle, body))
-        })
+        self.slots
+            .iter()
+            .enumerate()
+            .filter_map(move |(index, slot)| {
+                let handle = FlexBodyHandle {
+                    set,
+                    index: index as u32,
+                    generation: slot.generation,
+                };
+                slot.body.as_ref().map(|body| (handle, body))
+            })
     }
 
     /// All bodies with their handles, to change.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = (FlexBodyHandle, &mut FlexBody)> {
         let set = self.id;
-        self.slots.iter_mut().enumerate().filter_map(move |(index, slot)| {
-            let handle = FlexBodyHandle { set, index: index as u32, generation: slot.generation };
-            slot.body.as_mut().map(|body| (handle, body))
-        })
+        self.slots
+            .iter_mut()
+            .enumerate()
+            .filter_map(move |(index, slot)| {
+                let handle = FlexBodyHandle {
+                    set,
+                    index: index as u32,
+                    generation: slot.generation,
+                };
+                slot.body.as_mut().map(|body| (handle, body))
+            })
     }
 
     /// The handle and body in a slot.
     pub fn at_index(&self, index: u32) -> Option<(FlexBodyHandle, &FlexBody)> {
         let slot = self.slots.get(index as usize)?;
-        let handle = FlexBodyHandle { set: self.id, index, generation: slot.generation };
+        let handle = FlexBodyHandle {
+            set: self.id,
+            index,
+            generation: slot.generation,
+        };
         slot.body.as_ref().map(|body| (handle, body))
     }
 
@@ -108,11 +136,22 @@ impl FlexBodySet {
         if let Some(index) = self.vacant.pop() {
             let slot = &mut self.slots[index as usize];
             slot.body = Some(body);
-            return FlexBodyHandle { set: self.id, index, generation: slot.generation };
+            return FlexBodyHandle {
+                set: self.id,
+                index,
+                generation: slot.generation,
+            };
         }
         let index = self.slots.len() as u32;
-        self.slots.push(Slot { generation: 0, body: Some(body) });
-        FlexBodyHandle { set: self.id, index, generation: 0 }
+        self.slots.push(Slot {
+            generation: 0,
+            body: Some(body),
+        });
+        FlexBodyHandle {
+            set: self.id,
+            index,
+            generation: 0,
+        }
     }
 
     /// Takes a body out; its handle is stale from now on.

@@ -40,6 +40,8 @@ pub struct FlexState {
     pub acceleration: Vec<f64>,
     /// Torque of all forces about the centre at the end of the step (N m).
     pub torque: f64,
+    /// Elastic energy (J).
+    pub elastic_energy: f64,
 }
 
 impl FlexState {
@@ -49,11 +51,15 @@ impl FlexState {
         Self {
             position: rest.to_vec(),
             velocity: zeros.clone(),
-            frame: FrameMotion { centre, ..FrameMotion::default() },
+            frame: FrameMotion {
+                centre,
+                ..FrameMotion::default()
+            },
             displacement: zeros.clone(),
             rate: zeros.clone(),
             acceleration: zeros,
             torque: 0.0,
+            elastic_energy: 0.0,
         }
     }
 
@@ -69,14 +75,22 @@ impl FlexState {
         (self.frame.centre, self.frame.angle) = (centre, angle);
         let back = rotation(-angle);
         for node in 0..self.position.len() / 2 {
-            let u = back * (node_vec(&self.position, node) - centre) - node_vec(&arms.reference, node);
+            let u =
+                back * (node_vec(&self.position, node) - centre) - node_vec(&arms.reference, node);
             set_node_vec(&mut self.displacement, node, u);
         }
     }
 
     /// Splits world velocities into the motion of the frame and rates in it.
     pub fn split_velocity(&mut self, arms: &Arms, kind: Frame) {
-        let motion = split_velocity(arms, kind, &self.frame, &self.position, &self.velocity, &mut self.rate);
+        let motion = split_velocity(
+            arms,
+            kind,
+            &self.frame,
+            &self.position,
+            &self.velocity,
+            &mut self.rate,
+        );
         (self.frame.velocity, self.frame.spin) = motion;
     }
 }

@@ -16,7 +16,10 @@ struct Bounds {
 
 impl Bounds {
     fn of(points: &[Vec2]) -> Self {
-        let mut bounds = Self { low: points[0], high: points[0] };
+        let mut bounds = Self {
+            low: points[0],
+            high: points[0],
+        };
         for point in points {
             bounds.low = bounds.low.inf(point);
             bounds.high = bounds.high.sup(point);
@@ -25,12 +28,18 @@ impl Bounds {
     }
 
     fn merged(self, other: Self) -> Self {
-        Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
+        Self {
+            low: self.low.inf(&other.low),
+            high: self.high.sup(&other.high),
+        }
     }
 
     fn loosened(self, by: f64) -> Self {
         let margin = Vec2::new(by, by);
-        Self { low: self.low - margin, high: self.high + margin }
+        Self {
+            low: self.low - margin,
+            high: self.high + margin,
+        }
     }
 
     fn intersects(&self, other: &Self) -> bool {
@@ -76,12 +85,19 @@ fn part_bounds(rigid: &RigidBlock, part: &PlacedPart) -> Bounds {
 }
 
 /// Adds the parts of a collider to the island; `offset` is the collider's pose about its body's centre of mass.
-pub(super) fn add_parts(island: &mut Island, parts: &[ShapePart], offset: Pose2) -> std::ops::Range<usize> {
+pub(super) fn add_parts(
+    island: &mut Island,
+    parts: &[ShapePart],
+    offset: Pose2,
+) -> std::ops::Range<usize> {
     let first = island.parts.len();
     for shape in parts {
         let turn = offset.sin.atan2(offset.cos) + shape.pose.sin.atan2(shape.pose.cos);
         let pose = Pose2::new(offset.transform(shape.pose.translation), turn);
-        island.parts.push(PlacedPart { part: shape.part.clone(), pose });
+        island.parts.push(PlacedPart {
+            part: shape.part.clone(),
+            pose,
+        });
     }
     first..island.parts.len()
 }
@@ -98,7 +114,9 @@ pub(super) fn flex_rigid(
 ) {
     let first_part = parts.start;
     for part in parts {
-        let (Block::Flex(body), Block::Rigid(motion)) = (&island.blocks[flex], &island.blocks[rigid]) else {
+        let (Block::Flex(body), Block::Rigid(motion)) =
+            (&island.blocks[flex], &island.blocks[rigid])
+        else {
             return;
         };
         let placed = &island.parts[part];
@@ -131,7 +149,11 @@ pub(super) fn flex_rigid(
                     target: names.other,
                     part: part_name,
                 };
-                let pair = Pair::NodeOnPart { node: (flex, node), rigid, part };
+                let pair = Pair::NodeOnPart {
+                    node: (flex, node),
+                    rigid,
+                    part,
+                };
                 island.candidates.push(Candidate { key, pair, law });
             }
         }
@@ -144,7 +166,13 @@ pub(super) fn flex_rigid(
                 part: 0,
             };
             let arm = pose.transform(at);
-            let pair = Pair::VertexOnSurface { rigid, arm, radius, flex, segments };
+            let pair = Pair::VertexOnSurface {
+                rigid,
+                arm,
+                radius,
+                flex,
+                segments,
+            };
             island.candidates.push(Candidate { key, pair, law });
         }
     }
@@ -160,8 +188,19 @@ pub(super) fn flex_flex(
     edge: f64,
 ) {
     one_sided(island, contactor, target, names, law, edge, |_, _| true);
-    let swapped = Names { one: names.other, other: names.one };
-    one_sided(island, target, contactor, swapped, law, edge, is_sharp_corner);
+    let swapped = Names {
+        one: names.other,
+        other: names.one,
+    };
+    one_sided(
+        island,
+        target,
+        contactor,
+        swapped,
+        law,
+        edge,
+        is_sharp_corner,
+    );
 }
 
 fn one_sided(
@@ -173,14 +212,20 @@ fn one_sided(
     edge: f64,
     choose: impl Fn(&FlexBlock, usize) -> bool,
 ) {
-    let (Block::Flex(points), Block::Flex(surface)) = (&island.blocks[contactor], &island.blocks[target]) else {
+    let (Block::Flex(points), Block::Flex(surface)) =
+        (&island.blocks[contactor], &island.blocks[target])
+    else {
         return;
     };
     let bounds_of = |block: &FlexBlock| {
         let n = block.model().mesh().boundary().segments().len();
-        (0..n).map(|segment| segment_bounds(block, segment)).reduce(Bounds::merged)
+        (0..n)
+            .map(|segment| segment_bounds(block, segment))
+            .reduce(Bounds::merged)
     };
-    let (Some(points_box), Some(surface_box)) = (bounds_of(points), bounds_of(surface)) else { return };
+    let (Some(points_box), Some(surface_box)) = (bounds_of(points), bounds_of(surface)) else {
+        return;
+    };
     let (points_box, surface_box) = (points_box.loosened(edge), surface_box.loosened(edge));
     let first = island.segments.len();
     for segment in 0..surface.model().mesh().boundary().segments().len() {
@@ -195,8 +240,17 @@ fn one_sided(
     for (index, &node) in points.model().mesh().boundary().nodes().iter().enumerate() {
         let bounds = Bounds::of(&[points.start_position(node), points.position(node)]);
         if bounds.intersects(&surface_box) && choose(points, index) {
-            let key = ContactKey { contactor: names.one, point: node as u32, target: names.other, part: 0 };
-            let pair = Pair::NodeOnSurface { node: (contactor, node), flex: target, segments };
+            let key = ContactKey {
+                contactor: names.one,
+                point: node as u32,
+                target: names.other,
+                part: 0,
+            };
+            let pair = Pair::NodeOnSurface {
+                node: (contactor, node),
+                flex: target,
+                segments,
+            };
             island.candidates.push(Candidate { key, pair, law });
         }
     }
@@ -228,17 +282,32 @@ pub(super) fn rigid_rigid(
     let first_parts = [parts[0].start, parts[1].start];
     for a in parts[0].clone() {
         for b in parts[1].clone() {
-            let (Block::Rigid(block_a), Block::Rigid(block_b)) = (&island.blocks[one], &island.blocks[other]) else {
+            let (Block::Rigid(block_a), Block::Rigid(block_b)) =
+                (&island.blocks[one], &island.blocks[other])
+            else {
                 return;
             };
             let (part_a, part_b) = (&island.parts[a], &island.parts[b]);
             let reach = approach(block_a) + approach(block_b) + prediction;
-            let boxes = [part_bounds(block_a, part_a).loosened(prediction), part_bounds(block_b, part_b)];
+            let boxes = [
+                part_bounds(block_a, part_a).loosened(prediction),
+                part_bounds(block_b, part_b),
+            ];
             if !boxes[0].intersects(&boxes[1]) {
                 continue;
             }
-            let poses = [world_pose(block_a.start(), part_a), world_pose(block_b.start(), part_b)];
-            let found = polygon_pair(&part_a.part, &poses[0], &part_b.part, &poses[1], reach, None);
+            let poses = [
+                world_pose(block_a.start(), part_a),
+                world_pose(block_b.start(), part_b),
+            ];
+            let found = polygon_pair(
+                &part_a.part,
+                &poses[0],
+                &part_b.part,
+                &poses[1],
+                reach,
+                None,
+            );
             let placed = [part_a.pose, part_b.pose];
             let radius = part_a.part.radius() + part_b.part.radius();
             for contact in found.iter() {

@@ -4,7 +4,9 @@
 //! vertices are rewritten in place after every step. Its solver groups are empty, so rapier lists its contacts and
 //! pushes nothing.
 
-use crate::body::{BuildError, FlexBody, FlexBodyBuilder, FlexBodyError, FlexBodyHandle, FlexBodySet};
+use crate::body::{
+    BuildError, FlexBody, FlexBodyBuilder, FlexBodyError, FlexBodyHandle, FlexBodySet,
+};
 use crate::math::{node_vec, to_rapier};
 use crate::rapier::parry::shape::{Polyline, PolylineFlags};
 use crate::rapier::prelude::*;
@@ -89,8 +91,16 @@ fn surface(body: &FlexBody) -> Polyline {
     for (index, &node) in boundary.nodes().iter().enumerate() {
         slot[node] = index as u32;
     }
-    let vertices = boundary.nodes().iter().map(|&node| to_rapier(node_vec(body.positions(), node))).collect();
-    let segments = boundary.segments().iter().map(|&[a, b]| [slot[a], slot[b]]).collect();
+    let vertices = boundary
+        .nodes()
+        .iter()
+        .map(|&node| to_rapier(node_vec(body.positions(), node)))
+        .collect();
+    let segments = boundary
+        .segments()
+        .iter()
+        .map(|&[a, b]| [slot[a], slot[b]])
+        .collect();
     Polyline::with_flags(vertices, Some(segments), PolylineFlags::DEFORMABLE)
 }
 
@@ -105,14 +115,23 @@ pub(crate) fn write_surface(
     let handle = body.collider_handle();
     let nodes = body.mesh().boundary().nodes();
     let moved = |vertices: &[Vector]| {
-        nodes.iter().zip(vertices).any(|(&node, old)| *old != to_rapier(node_vec(body.positions(), node)))
+        nodes
+            .iter()
+            .zip(vertices)
+            .any(|(&node, old)| *old != to_rapier(node_vec(body.positions(), node)))
     };
-    let current = colliders.get(handle).and_then(|collider| collider.shape().as_polyline());
+    let current = colliders
+        .get(handle)
+        .and_then(|collider| collider.shape().as_polyline());
     if !current.is_some_and(|polyline| moved(polyline.vertices())) {
         return;
     }
-    let Some(collider) = colliders.get_mut(handle) else { return };
-    let Some(polyline) = collider.shape_mut().as_polyline_mut() else { return };
+    let Some(collider) = colliders.get_mut(handle) else {
+        return;
+    };
+    let Some(polyline) = collider.shape_mut().as_polyline_mut() else {
+        return;
+    };
     polyline.update_vertices(|vertices| {
         for (vertex, &node) in vertices.iter_mut().zip(nodes) {
             *vertex = to_rapier(node_vec(body.positions(), node));

@@ -82,23 +82,30 @@ impl Claims {
         for (index, flex) in self.flex.iter().enumerate() {
             let near = flex.swept.loosened(fastest * dt);
             let mut visit = |handle: ColliderHandle, collider: &Collider| {
-                if handle != flex.collider && swept_box(sets.bodies, collider, dt).intersects(&flex.swept) {
+                if handle != flex.collider
+                    && swept_box(sets.bodies, collider, dt).intersects(&flex.swept)
+                {
                     self.swept_hits.push((index, handle));
                 }
             };
             if tree_is_stale {
-                sets.colliders.iter().for_each(|(handle, collider)| visit(handle, collider));
+                sets.colliders
+                    .iter()
+                    .for_each(|(handle, collider)| visit(handle, collider));
                 continue;
             }
             let dispatcher = sets.narrow_phase.query_dispatcher();
             let filter = QueryFilter::new();
-            let query = sets.broad_phase.as_query_pipeline(dispatcher, sets.bodies, sets.colliders, filter);
+            let query =
+                sets.broad_phase
+                    .as_query_pipeline(dispatcher, sets.bodies, sets.colliders, filter);
             for (handle, collider) in query.intersect_aabb_conservative(near) {
                 visit(handle, collider);
             }
         }
         // The order of the tree is not that of the handles.
-        self.swept_hits.sort_unstable_by_key(|(index, handle)| (*index, handle.into_raw_parts()));
+        self.swept_hits
+            .sort_unstable_by_key(|(index, handle)| (*index, handle.into_raw_parts()));
     }
 
     fn gather_flex(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
@@ -121,9 +128,15 @@ impl Claims {
             let fall = from_rapier(sets.gravity).norm() * body.gravity_scale().abs() * dt * dt;
             let margin = 0.5 * edge + fall;
             let swept = swept.loosened(margin as Real);
-            self.flex_of_collider.insert(body.collider_handle(), self.flex.len());
+            self.flex_of_collider
+                .insert(body.collider_handle(), self.flex.len());
             let index = handle.into_raw_parts().0;
-            self.flex.push(ClaimedFlex { index, collider: body.collider_handle(), swept, edge });
+            self.flex.push(ClaimedFlex {
+                index,
+                collider: body.collider_handle(),
+                swept,
+                edge,
+            });
         }
     }
 
@@ -145,7 +158,9 @@ impl Claims {
         while next < self.rigid.len() {
             let handle = self.rigid[next];
             next += 1;
-            let Some(body) = sets.bodies.get(handle) else { continue };
+            let Some(body) = sets.bodies.get(handle) else {
+                continue;
+            };
             for &collider in body.colliders() {
                 self.add_rigid_pairs(sets, handle, collider);
             }
@@ -157,7 +172,11 @@ impl Claims {
         let own = self.flex[flex];
         self.neighbours.clear();
         for pair in sets.narrow_phase.contact_pairs_with(own.collider) {
-            let other = if pair.collider1 == own.collider { pair.collider2 } else { pair.collider1 };
+            let other = if pair.collider1 == own.collider {
+                pair.collider2
+            } else {
+                pair.collider1
+            };
             self.neighbours.push(other);
         }
         let first = self.swept_hits.partition_point(|(index, _)| *index < flex);
@@ -169,13 +188,21 @@ impl Claims {
                 self.neighbours.push(handle);
             }
         }
-        self.neighbours.sort_unstable_by_key(|handle| handle.into_raw_parts());
+        self.neighbours
+            .sort_unstable_by_key(|handle| handle.into_raw_parts());
         self.neighbours.dedup();
     }
 
     /// What rapier's narrow phase would ask of a pair it does not list yet.
-    fn passes_filters(&self, sets: &RapierSets<'_>, own: ColliderHandle, other: ColliderHandle) -> bool {
-        let (Some(own), Some(other)) = (sets.colliders.get(own), sets.colliders.get(other)) else { return false };
+    fn passes_filters(
+        &self,
+        sets: &RapierSets<'_>,
+        own: ColliderHandle,
+        other: ColliderHandle,
+    ) -> bool {
+        let (Some(own), Some(other)) = (sets.colliders.get(own), sets.colliders.get(other)) else {
+            return false;
+        };
         other.is_enabled()
             && !own.is_sensor()
             && !other.is_sensor()
@@ -190,7 +217,9 @@ impl Claims {
             }
             return;
         }
-        let Some(collider) = sets.colliders.get(other) else { return };
+        let Some(collider) = sets.colliders.get(other) else {
+            return;
+        };
         let swept = swept_box(sets.bodies, collider, sets.integration_parameters.dt);
         if collider.is_sensor() || !swept.intersects(&self.flex[flex].swept) {
             return;
@@ -202,14 +231,28 @@ impl Claims {
         }
     }
 
-    fn add_rigid_pairs(&mut self, sets: &RapierSets<'_>, body: RigidBodyHandle, own: ColliderHandle) {
-        let Some(own_collider) = sets.colliders.get(own) else { return };
+    fn add_rigid_pairs(
+        &mut self,
+        sets: &RapierSets<'_>,
+        body: RigidBodyHandle,
+        own: ColliderHandle,
+    ) {
+        let Some(own_collider) = sets.colliders.get(own) else {
+            return;
+        };
         let dt = sets.integration_parameters.dt;
         let own_box = swept_box(sets.bodies, own_collider, dt);
         self.neighbours.clear();
         for pair in sets.narrow_phase.contact_pairs_with(own) {
-            let other = if pair.collider1 == own { pair.collider2 } else { pair.collider1 };
-            let touches = pair.manifolds().iter().any(|manifold| !manifold.points.is_empty());
+            let other = if pair.collider1 == own {
+                pair.collider2
+            } else {
+                pair.collider1
+            };
+            let touches = pair
+                .manifolds()
+                .iter()
+                .any(|manifold| !manifold.points.is_empty());
             let near = sets
                 .colliders
                 .get(other)
@@ -218,18 +261,26 @@ impl Claims {
                 self.neighbours.push(other);
             }
         }
-        self.neighbours.sort_unstable_by_key(|handle| handle.into_raw_parts());
+        self.neighbours
+            .sort_unstable_by_key(|handle| handle.into_raw_parts());
         self.neighbours.dedup();
         for slot in 0..self.neighbours.len() {
             let other = self.neighbours[slot];
             let is_ordered = own.into_raw_parts() < other.into_raw_parts();
-            let ordered = if is_ordered { (own, other) } else { (other, own) };
-            let Some(collider) = sets.colliders.get(other) else { continue };
+            let ordered = if is_ordered {
+                (own, other)
+            } else {
+                (other, own)
+            };
+            let Some(collider) = sets.colliders.get(other) else {
+                continue;
+            };
             let solves = own_collider.solver_groups().test(collider.solver_groups());
             if !solves || collider.is_sensor() || !self.seen.insert(ordered) {
                 continue;
             }
-            self.pairs.push(ClaimedPair::RigidRigid(ordered.0, ordered.1));
+            self.pairs
+                .push(ClaimedPair::RigidRigid(ordered.0, ordered.1));
             if let Some(parent) = claimable_parent(sets, collider) {
                 let other_member = self.claim(parent);
                 let own_member = self.claim(body);
@@ -267,7 +318,10 @@ impl Claims {
 }
 
 /// The dynamic rigid body of a collider, if the flexible stage can solve for it.
-pub(crate) fn claimable_parent(sets: &RapierSets<'_>, collider: &Collider) -> Option<RigidBodyHandle> {
+pub(crate) fn claimable_parent(
+    sets: &RapierSets<'_>,
+    collider: &Collider,
+) -> Option<RigidBodyHandle> {
     let parent = collider.parent()?;
     let body = sets.bodies.get(parent)?;
     let is_free = body.is_dynamic() && body.is_enabled() && !body.is_soft_frame();
@@ -278,7 +332,9 @@ pub(crate) fn claimable_parent(sets: &RapierSets<'_>, collider: &Collider) -> Op
 /// Box of a collider from where it is to where its velocity takes it.
 pub(crate) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) -> Aabb {
     let aabb = collider.compute_aabb();
-    let Some(body) = collider.parent().and_then(|parent| bodies.get(parent)) else { return aabb };
+    let Some(body) = collider.parent().and_then(|parent| bodies.get(parent)) else {
+        return aabb;
+    };
     if body.is_fixed() {
         return aabb;
     }

@@ -48,7 +48,11 @@ pub(crate) struct GatherSettings {
 impl Gatherer {
     /// The number of numeric factorizations of a body so far.
     pub fn n_factorizations(&self) -> u64 {
-        self.pool.iter().flatten().map(|block| block.n_factorizations()).sum()
+        self.pool
+            .iter()
+            .flatten()
+            .map(|block| block.n_factorizations())
+            .sum()
     }
 
     /// The rebuildable half of a body, if it took part in a step.
@@ -60,7 +64,8 @@ impl Gatherer {
     pub fn retain(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
         for (index, slot) in self.pool.iter_mut().enumerate() {
             let lives = flex_bodies.at_index(index as u32).is_some_and(|(_, body)| {
-                slot.as_ref().is_some_and(|block| Arc::ptr_eq(block.model(), body.model()))
+                slot.as_ref()
+                    .is_some_and(|block| Arc::ptr_eq(block.model(), body.model()))
             });
             if !lives {
                 *slot = None;
@@ -126,7 +131,9 @@ impl Gatherer {
         island: &mut Island,
     ) -> Result<(), KktError> {
         let index = claims.flex[flex].index;
-        let Some(body) = flex_bodies.at_index_mut(index) else { return Ok(()) };
+        let Some(body) = flex_bodies.at_index_mut(index) else {
+            return Ok(());
+        };
         let slot = index as usize;
         if self.pool.len() <= slot {
             self.pool.resize_with(slot + 1, || None);
@@ -144,16 +151,31 @@ impl Gatherer {
         let mut outcome = Ok(());
         if !body.is_started() {
             body.start_with(|state, force, prescribed| {
-                outcome = block.start(settings.step, state, &FlexLoad { force, gravity, prescribed });
+                outcome = block.start(
+                    settings.step,
+                    state,
+                    &FlexLoad {
+                        force,
+                        gravity,
+                        prescribed,
+                    },
+                );
                 outcome.is_ok()
             });
         }
-        let load = FlexLoad { force: body.nodal_force(), gravity, prescribed: body.prescribed() };
+        let load = FlexLoad {
+            force: body.nodal_force(),
+            gravity,
+            prescribed: body.prescribed(),
+        };
         let outcome = outcome.and_then(|()| block.predict(settings.step, body.state(), &load));
         island.blocks.push(Block::Flex(block));
         island.flex_index.push(Some(index));
         self.flex_blocks.insert(flex, island.blocks.len() - 1);
-        outcome.map_err(|source| KktError::Factorization { body: index, source })
+        outcome.map_err(|source| KktError::Factorization {
+            body: index,
+            source,
+        })
     }
 
     fn add_claimed(
@@ -164,7 +186,9 @@ impl Gatherer {
         masters: &Masters,
         island: &mut Island,
     ) {
-        let Some(body) = sets.bodies.get(handle) else { return };
+        let Some(body) = sets.bodies.get(handle) else {
+            return;
+        };
         let (motion, acceleration) = masters.motion(handle, body);
         let load = load_of(body, from_rapier(sets.gravity));
         let Step { dt, weights } = settings.step;
@@ -173,7 +197,12 @@ impl Gatherer {
         self.bodies.push((island.blocks.len() - 1, handle));
     }
 
-    fn push_rigid(&mut self, block: RigidBlock, handle: Option<RigidBodyHandle>, island: &mut Island) -> usize {
+    fn push_rigid(
+        &mut self,
+        block: RigidBlock,
+        handle: Option<RigidBodyHandle>,
+        island: &mut Island,
+    ) -> usize {
         island.blocks.push(Block::Rigid(block));
         island.flex_index.push(None);
         let index = island.blocks.len() - 1;
@@ -193,22 +222,44 @@ impl Gatherer {
         island: &mut Island,
     ) {
         match pair {
-            ClaimedPair::FlexRigid(flex, collider) if claims.component_of_flex(flex) == component => {
+            ClaimedPair::FlexRigid(flex, collider)
+                if claims.component_of_flex(flex) == component =>
+            {
                 let own = claims.flex[flex];
-                let Some(block) = self.flex_blocks.get(&flex).copied() else { return };
-                let Some(placed) = self.place(collider, settings, sets, island) else { return };
-                let names = Names { one: Owner::Flex(own.index), other: owner_of(collider) };
+                let Some(block) = self.flex_blocks.get(&flex).copied() else {
+                    return;
+                };
+                let Some(placed) = self.place(collider, settings, sets, island) else {
+                    return;
+                };
+                let names = Names {
+                    one: Owner::Flex(own.index),
+                    other: owner_of(collider),
+                };
                 let law = law_of(sets.colliders, own.collider, collider);
-                candidates::flex_rigid(island, block, placed.block, placed.parts, names, law, own.edge);
+                candidates::flex_rigid(
+                    island,
+                    block,
+                    placed.block,
+                    placed.parts,
+                    names,
+                    law,
+                    own.edge,
+                );
             }
             ClaimedPair::FlexFlex(one, other) if claims.component_of_flex(one) == component => {
                 // The finer surface is the contactor; the lower slot if they are equal.
                 let is_finer = claims.flex[other].edge < claims.flex[one].edge * (1.0 - 1e-9);
                 let (contactor, target) = if is_finer { (other, one) } else { (one, other) };
                 let blocks = [contactor, target].map(|flex| self.flex_blocks.get(&flex).copied());
-                let [Some(points), Some(surface)] = blocks else { return };
+                let [Some(points), Some(surface)] = blocks else {
+                    return;
+                };
                 let (points_of, surface_of) = (claims.flex[contactor], claims.flex[target]);
-                let names = Names { one: Owner::Flex(points_of.index), other: Owner::Flex(surface_of.index) };
+                let names = Names {
+                    one: Owner::Flex(points_of.index),
+                    other: Owner::Flex(surface_of.index),
+                };
                 let law = law_of(sets.colliders, points_of.collider, surface_of.collider);
                 let edge = points_of.edge.max(surface_of.edge);
                 candidates::flex_flex(island, points, surface, names, law, edge);
@@ -217,9 +268,16 @@ impl Gatherer {
                 if self.component_of_pair([one, other], sets, claims) != Some(component) {
                     return;
                 }
-                let Some(first) = self.place(one, settings, sets, island) else { return };
-                let Some(second) = self.place(other, settings, sets, island) else { return };
-                let names = Names { one: owner_of(one), other: owner_of(other) };
+                let Some(first) = self.place(one, settings, sets, island) else {
+                    return;
+                };
+                let Some(second) = self.place(other, settings, sets, island) else {
+                    return;
+                };
+                let names = Names {
+                    one: owner_of(one),
+                    other: owner_of(other),
+                };
                 let law = law_of(sets.colliders, one, other);
                 let blocks = [first.block, second.block];
                 let parts = [first.parts, second.parts];
@@ -252,12 +310,17 @@ impl Gatherer {
             return Some(placed.clone());
         }
         let collider = sets.colliders.get(handle)?;
-        let parent = collider.parent().and_then(|parent| Some((parent, sets.bodies.get(parent)?)));
+        let parent = collider
+            .parent()
+            .and_then(|parent| Some((parent, sets.bodies.get(parent)?)));
         let (block, offset) = match parent {
             None => {
                 let pose = pose_of(collider.position());
                 let motion = at_rest(&pose);
-                (self.push_rigid(RigidBlock::prescribed(motion, motion), None, island), Pose2::identity())
+                (
+                    self.push_rigid(RigidBlock::prescribed(motion, motion), None, island),
+                    Pose2::identity(),
+                )
             }
             Some((parent, body)) => {
                 let known = self.block_of_body.get(&parent).copied();
@@ -281,20 +344,30 @@ fn owner_of(handle: ColliderHandle) -> Owner {
 
 /// Pose of a collider about its body's centre of mass.
 fn offset_of(collider: &Collider, body: &RigidBody) -> Pose2 {
-    let mut pose = collider.position_wrt_parent().map_or_else(Pose2::identity, pose_of);
+    let mut pose = collider
+        .position_wrt_parent()
+        .map_or_else(Pose2::identity, pose_of);
     pose.translation -= local_centre(body);
     pose
 }
 
 fn at_rest(pose: &Pose2) -> RigidMotion {
-    RigidMotion { centre: pose.translation, angle: pose.sin.atan2(pose.cos), ..RigidMotion::default() }
+    RigidMotion {
+        centre: pose.translation,
+        angle: pose.sin.atan2(pose.cos),
+        ..RigidMotion::default()
+    }
 }
 
 /// A fixed or kinematic body, or one rapier keeps for itself: it moves as rapier says.
 fn prescribed_block(body: &RigidBody, dt: f64) -> RigidBlock {
     let start = read_motion(body);
     if body.is_fixed() {
-        let rest = RigidMotion { velocity: Vec2::zeros(), spin: 0.0, ..start };
+        let rest = RigidMotion {
+            velocity: Vec2::zeros(),
+            spin: 0.0,
+            ..start
+        };
         return RigidBlock::prescribed(rest, rest);
     }
     let next = match body.body_type() {
@@ -324,7 +397,10 @@ fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
     ];
     let mass = f64::from(body.mass());
     let force = from_rapier(body.user_force()) + mass * f64::from(body.gravity_scale()) * gravity;
-    let (linear, angular) = (f64::from(body.linear_damping()), f64::from(body.angular_damping()));
+    let (linear, angular) = (
+        f64::from(body.linear_damping()),
+        f64::from(body.angular_damping()),
+    );
     RigidLoad {
         inverse_mass,
         force: [force.x, force.y, f64::from(body.user_torque())],
@@ -348,6 +424,8 @@ fn law_of(colliders: &ColliderSet, one: ColliderHandle, other: ColliderHandle) -
         one.restitution_combine_rule(),
         other.restitution_combine_rule(),
     );
-    ContactLaw { friction: f64::from(friction).max(0.0), restitution: f64::from(restitution).max(0.0) }
+    ContactLaw {
+        friction: f64::from(friction).max(0.0),
+        restitution: f64::from(restitution).max(0.0),
+    }
 }
-

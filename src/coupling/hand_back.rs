@@ -25,7 +25,12 @@ pub(crate) struct Landing {
 impl Landing {
     /// Notes the end of a claimed body's step.
     pub fn new(handle: RigidBodyHandle, motion: RigidMotion, acceleration: [f64; 3]) -> Self {
-        Self { handle, motion, acceleration, axes: LockedAxes::empty() }
+        Self {
+            handle,
+            motion,
+            acceleration,
+            axes: LockedAxes::empty(),
+        }
     }
 }
 
@@ -34,13 +39,18 @@ pub(crate) fn hand_back(landings: &mut [Landing], sets: &mut RapierSets<'_>) {
     let dt = f64::from(sets.integration_parameters.dt);
     let iterations = sets.integration_parameters.num_solver_iterations;
     for landing in landings {
-        let Some(body) = sets.bodies.get_mut(landing.handle) else { continue };
+        let Some(body) = sets.bodies.get_mut(landing.handle) else {
+            continue;
+        };
         landing.axes = body.locked_axes();
         let n = (iterations + body.additional_solver_iterations()).max(1) as f64;
         let angle = f64::from(body.rotation().im).atan2(f64::from(body.rotation().re));
         let turned = wrap(landing.motion.angle - angle);
         let moved = landing.motion.centre - from_rapier(body.center_of_mass());
-        body.set_locked_axes(LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED, false);
+        body.set_locked_axes(
+            LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED,
+            false,
+        );
         body.set_linvel(to_rapier(moved / dt), false);
         // Rapier integrates a linearised rotation, `n` times per step.
         body.set_angvel(((turned / n).tan() * n / dt) as Real, false);
@@ -52,7 +62,9 @@ pub(crate) fn hand_back(landings: &mut [Landing], sets: &mut RapierSets<'_>) {
 /// Where rapier's continuous collision detection stopped a body earlier, its pose counts.
 pub(crate) fn land(landings: &[Landing], sets: &mut RapierSets<'_>, masters: &mut Masters) {
     for landing in landings {
-        let Some(body) = sets.bodies.get_mut(landing.handle) else { continue };
+        let Some(body) = sets.bodies.get_mut(landing.handle) else {
+            continue;
+        };
         body.set_locked_axes(landing.axes, false);
         body.set_linvel(to_rapier(landing.motion.velocity), false);
         body.set_angvel(landing.motion.spin as Real, false);

@@ -26,7 +26,11 @@ pub(crate) struct Masters {
 
 impl Masters {
     /// The motion of a body, and its smooth acceleration if it was claimed in the last step and not touched since.
-    pub fn motion(&self, handle: RigidBodyHandle, body: &RigidBody) -> (RigidMotion, Option<[f64; 3]>) {
+    pub fn motion(
+        &self,
+        handle: RigidBodyHandle,
+        body: &RigidBody,
+    ) -> (RigidMotion, Option<[f64; 3]>) {
         if let Some(master) = self.last.get(&handle) {
             let same_pose = master.pose == *body.position();
             let same_velocity = master.linvel == body.linvel() && master.angvel == body.angvel();
@@ -35,7 +39,11 @@ impl Masters {
             }
             if same_pose {
                 let read = read_motion(body);
-                let motion = RigidMotion { velocity: read.velocity, spin: read.spin, ..master.motion };
+                let motion = RigidMotion {
+                    velocity: read.velocity,
+                    spin: read.spin,
+                    ..master.motion
+                };
                 return (motion, Some(master.acceleration));
             }
         }
@@ -43,7 +51,13 @@ impl Masters {
     }
 
     /// Keeps a body's motion after the hand-back.
-    pub fn keep(&mut self, handle: RigidBodyHandle, motion: RigidMotion, acceleration: [f64; 3], body: &RigidBody) {
+    pub fn keep(
+        &mut self,
+        handle: RigidBodyHandle,
+        motion: RigidMotion,
+        acceleration: [f64; 3],
+        body: &RigidBody,
+    ) {
         let master = Master {
             motion,
             acceleration,

@@ -31,7 +31,9 @@ struct Entry {
 
 impl std::fmt::Debug for ShapeCache {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("ShapeCache").field("n_shapes", &self.entries.len()).finish()
+        f.debug_struct("ShapeCache")
+            .field("n_shapes", &self.entries.len())
+            .finish()
     }
 }
 
@@ -39,11 +41,20 @@ impl ShapeCache {
     /// The parts of a collider's shape.
     pub fn parts(&mut self, handle: ColliderHandle, collider: &Collider) -> &[ShapePart] {
         let shape = collider.shared_shape();
-        let is_current = self.entries.get(&handle).is_some_and(|entry| Arc::ptr_eq(&entry.shape.0, &shape.0));
+        let is_current = self
+            .entries
+            .get(&handle)
+            .is_some_and(|entry| Arc::ptr_eq(&entry.shape.0, &shape.0));
         if !is_current {
             let mut parts = Vec::new();
             convert(shape.as_ref(), Pose2::identity(), &mut parts);
-            self.entries.insert(handle, Entry { shape: shape.clone(), parts });
+            self.entries.insert(
+                handle,
+                Entry {
+                    shape: shape.clone(),
+                    parts,
+                },
+            );
         }
         &self.entries[&handle].parts
     }
@@ -62,12 +73,20 @@ pub fn pose_of(pose: &Pose) -> Pose2 {
 }
 
 fn convert(shape: &dyn Shape, pose: Pose2, parts: &mut Vec<ShapePart>) {
-    let mut push = |part: ConvexPart| parts.push(ShapePart { part: Arc::new(part), pose });
+    let mut push = |part: ConvexPart| {
+        parts.push(ShapePart {
+            part: Arc::new(part),
+            pose,
+        })
+    };
     match shape.as_typed_shape() {
         TypedShape::Ball(ball) => push(ConvexPart::ball(Vec2::zeros(), f64::from(ball.radius))),
         TypedShape::Cuboid(cuboid) => push(box_part(from_rapier(cuboid.half_extents), 0.0)),
         TypedShape::RoundCuboid(round) => {
-            push(box_part(from_rapier(round.inner_shape.half_extents), f64::from(round.border_radius)));
+            push(box_part(
+                from_rapier(round.inner_shape.half_extents),
+                f64::from(round.border_radius),
+            ));
         }
         TypedShape::Capsule(capsule) => push(ConvexPart::capsule(
             from_rapier(capsule.segment.a),
@@ -75,16 +94,26 @@ fn convert(shape: &dyn Shape, pose: Pose2, parts: &mut Vec<ShapePart>) {
             f64::from(capsule.radius),
         )),
         TypedShape::Segment(segment) => push(segment_part(segment)),
-        TypedShape::Triangle(triangle) => push(points_part(&[triangle.a, triangle.b, triangle.c], 0.0)),
+        TypedShape::Triangle(triangle) => {
+            push(points_part(&[triangle.a, triangle.b, triangle.c], 0.0))
+        }
         TypedShape::RoundTriangle(round) => {
             let inner = &round.inner_shape;
-            push(points_part(&[inner.a, inner.b, inner.c], f64::from(round.border_radius)));
+            push(points_part(
+                &[inner.a, inner.b, inner.c],
+                f64::from(round.border_radius),
+            ));
         }
         TypedShape::ConvexPolygon(polygon) => push(points_part(polygon.points(), 0.0)),
         TypedShape::RoundConvexPolygon(round) => {
-            push(points_part(round.inner_shape.points(), f64::from(round.border_radius)));
+            push(points_part(
+                round.inner_shape.points(),
+                f64::from(round.border_radius),
+            ));
         }
-        TypedShape::HalfSpace(half_space) => push(ConvexPart::half_space(from_rapier(half_space.normal))),
+        TypedShape::HalfSpace(half_space) => {
+            push(ConvexPart::half_space(from_rapier(half_space.normal)))
+        }
         TypedShape::TriMesh(mesh) => {
             for triangle in mesh.triangles() {
                 push(points_part(&[triangle.a, triangle.b, triangle.c], 0.0));
@@ -124,7 +153,10 @@ fn box_part(half: Vec2, radius: f64) -> ConvexPart {
 }
 
 fn points_part(points: &[Vector], radius: f64) -> ConvexPart {
-    ConvexPart::polygon(points.iter().map(|&point| from_rapier(point)).collect(), radius)
+    ConvexPart::polygon(
+        points.iter().map(|&point| from_rapier(point)).collect(),
+        radius,
+    )
 }
 
 fn segment_part(segment: &crate::rapier::parry::shape::Segment) -> ConvexPart {

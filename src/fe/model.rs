@@ -48,7 +48,9 @@ pub enum ModelError {
     #[error("the thickness is {0} m: give a finite positive one")]
     Thickness(f64),
     /// Redistribution needs nodal masses.
-    #[error("a consistent mass cannot be redistributed: choose a lumped mass, or keep the inertia of the contact boundary")]
+    #[error(
+        "a consistent mass cannot be redistributed: choose a lumped mass, or keep the inertia of the contact boundary"
+    )]
     ConsistentRedistribution,
 }
 
@@ -181,7 +183,10 @@ impl Model {
         }
         let mesh = Arc::clone(&description.mesh);
         let n_nodes = mesh.n_nodes();
-        let mut stiffness = BlockMatrix::from_cells(n_nodes, (0..mesh.n_cells()).map(|cell| mesh.cell(cell).nodes));
+        let mut stiffness = BlockMatrix::from_cells(
+            n_nodes,
+            (0..mesh.n_cells()).map(|cell| mesh.cell(cell).nodes),
+        );
         let mut consistent = match description.mass_kind {
             MassKind::Consistent => Some(stiffness.clone()),
             MassKind::Lumped => None,
@@ -189,20 +194,29 @@ impl Model {
         let mut lumped = vec![0.0; n_nodes];
         let mut matrix = [0.0; 4 * MAX_NODES * MAX_NODES];
         for (index, cell) in mesh.cells().enumerate() {
-            let wrap = |source| ModelError::Element { cell: index, source };
+            let wrap = |source| ModelError::Element {
+                cell: index,
+                source,
+            };
             let element = element_of(&description.elements, index, &cell)?;
             let n = cell.nodes.len();
             let corners = placed_nodes(&description.rest_positions, &cell);
             let matrix = &mut matrix[..4 * n * n];
             let material = description.material.as_ref();
-            element.stiffness(&corners[..n], material, thickness, matrix).map_err(wrap)?;
+            element
+                .stiffness(&corners[..n], material, thickness, matrix)
+                .map_err(wrap)?;
             stiffness.add_cell(cell.nodes, matrix);
             let density = material.density();
             if let Some(consistent) = &mut consistent {
-                element.consistent_mass(&corners[..n], density, thickness, &mut matrix[..n * n]).map_err(wrap)?;
+                element
+                    .consistent_mass(&corners[..n], density, thickness, &mut matrix[..n * n])
+                    .map_err(wrap)?;
                 add_scalar_cell(consistent, cell.nodes, &matrix[..n * n]);
             } else {
-                element.lumped_mass(&corners[..n], density, thickness, &mut matrix[..n]).map_err(wrap)?;
+                element
+                    .lumped_mass(&corners[..n], density, thickness, &mut matrix[..n])
+                    .map_err(wrap)?;
                 for (&node, mass) in cell.nodes.iter().zip(&matrix[..n]) {
                     lumped[node] += mass;
                 }
@@ -224,7 +238,13 @@ impl Model {
         }
         let support = massive_support(&description.massless, &stiffness);
         let largest_frequency = frequency_bound(&stiffness, &mass, has_massless);
-        Ok(Self { description, stiffness, mass, support, largest_frequency })
+        Ok(Self {
+            description,
+            stiffness,
+            mass,
+            support,
+            largest_frequency,
+        })
     }
 
     /// The mesh, in its own coordinates.
@@ -309,7 +329,10 @@ impl Model {
         let mut stresses = Vec::new();
         let mut spans = Vec::new();
         for (index, cell) in self.mesh().cells().enumerate() {
-            let wrap = |source| ModelError::Element { cell: index, source };
+            let wrap = |source| ModelError::Element {
+                cell: index,
+                source,
+            };
             let element = element_of(&self.description.elements, index, &cell)?;
             let n = cell.nodes.len();
             let corners = placed_nodes(&self.description.rest_positions, &cell);
@@ -320,14 +343,28 @@ impl Model {
             let first = stresses.len();
             stresses.resize(first + element.quadrature().len(), Stress::default());
             let points = &mut stresses[first..];
-            point_stresses(element.as_ref(), &corners[..n], material, &local[..2 * n], points).map_err(wrap)?;
+            point_stresses(
+                element.as_ref(),
+                &corners[..n],
+                material,
+                &local[..2 * n],
+                points,
+            )
+            .map_err(wrap)?;
             spans.push((first, element.area(&corners[..n]).map_err(wrap)?));
             elements.push(element);
         }
-        let cells = self.mesh().cells().zip(&elements).zip(&spans).map(|((cell, element), &(first, weight))| {
-            let last = first + element.quadrature().len();
-            CellStress { nodes: cell.nodes, element: element.as_ref(), stresses: &stresses[first..last], weight }
-        });
+        let cells = self.mesh().cells().zip(&elements).zip(&spans).map(
+            |((cell, element), &(first, weight))| {
+                let last = first + element.quadrature().len();
+                CellStress {
+                    nodes: cell.nodes,
+                    element: element.as_ref(),
+                    stresses: &stresses[first..last],
+                    weight,
+                }
+            },
+        );
         let mut nodal = vec![Stress::default(); self.n_nodes()];
         smooth_to_nodes(cells, &mut vec![0.0; self.n_nodes()], &mut nodal);
         Ok(nodal)
@@ -341,10 +378,16 @@ fn element_of(
     cell: &Cell<'_>,
 ) -> Result<Arc<dyn Element>, ModelError> {
     let n_nodes = cell.nodes.len();
-    let own = elements.iter().rev().find(|element| element.n_nodes() == n_nodes);
+    let own = elements
+        .iter()
+        .rev()
+        .find(|element| element.n_nodes() == n_nodes);
     own.cloned()
         .or_else(|| default_element(n_nodes))
-        .ok_or(ModelError::NoElement { cell: index, n_nodes })
+        .ok_or(ModelError::NoElement {
+            cell: index,
+            n_nodes,
+        })
 }
 
 /// Nodes of a cell in the world's axes; only the first `cell.nodes.len()` entries are meaningful.
@@ -374,8 +417,11 @@ fn redistribute(
     lumped: &mut [f64],
     pattern: &BlockMatrix,
 ) -> Result<(), MassError> {
-    let nodes: Vec<[f64; 2]> =
-        description.rest_positions.chunks_exact(2).map(|p| [p[0], p[1]]).collect();
+    let nodes: Vec<[f64; 2]> = description
+        .rest_positions
+        .chunks_exact(2)
+        .map(|p| [p[0], p[1]])
+        .collect();
     let is_held = |node: usize| description.held.get(node).copied().unwrap_or(false);
     let neighbours: Vec<Vec<usize>> = (0..nodes.len())
         .map(|node| {
@@ -383,7 +429,9 @@ fn redistribute(
             all.filter(|&n| n != node && !is_held(n)).collect()
         })
         .collect();
-    mass::redistribute(&nodes, lumped, &description.massless, |node| &neighbours[node])?;
+    mass::redistribute(&nodes, lumped, &description.massless, |node| {
+        &neighbours[node]
+    })?;
     Ok(())
 }
 

@@ -203,8 +203,7 @@ mod tests {
         let (mut q0, mut q1) = ([0.0], [0.0]);
         for _ in 0..n {
             Beta2::predict(dt, [&x, &v, &a], &mut q0, &mut q1);
-            let increment =
-                (-omega * omega * q0[0] - a[0]) / (1.0 + omega * omega * w.b0);
+            let increment = (-omega * omega * q0[0] - a[0]) / (1.0 + omega * omega * w.b0);
             x[0] = q0[0] + w.b0 * increment;
             v[0] = q1[0] + w.b1 * increment;
             a[0] += increment;
@@ -217,7 +216,10 @@ mod tests {
         for method in [
             Beta2::trapezoidal(),
             Beta2::linear_acceleration(),
-            Beta2 { beta0: 1.0, beta1: 0.5 },
+            Beta2 {
+                beta0: 1.0,
+                beta1: 0.5,
+            },
         ] {
             let error = |n: usize| (oscillate(method, 3.0, 1.0 / n as f64, n) - 3f64.cos()).abs();
             let order = (error(200) / error(400)).log2();

@@ -50,7 +50,11 @@ pub(super) fn assemble<'a>(
 
 fn end_of_contact(rows: &[RowDirection], first: usize) -> usize {
     let contact = rows[first].contact;
-    first + rows[first..].iter().take_while(|row| row.contact == contact).count()
+    first
+        + rows[first..]
+            .iter()
+            .take_while(|row| row.contact == contact)
+            .count()
 }
 
 /// `Σ w_a w_b (A⁻¹)_ab` over the grips that two contacts have on common blocks; `None` if there is none.

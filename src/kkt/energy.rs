@@ -85,12 +85,17 @@ impl Island {
                 })
                 .sum();
             let force = contact.multiplier[0].max(contact.remembered.normal);
-            let drag = contact.multiplier[1].abs().max(contact.remembered.tangent.abs());
+            let drag = contact.multiplier[1]
+                .abs()
+                .max(contact.remembered.tangent.abs());
             work += driven.norm() * (force + drag);
         }
         work
     }
 
+    /// Keeps contact, and turning frames, from adding energy.
+    ///
+    /// `reserve` is what contact has taken since it began and may give back (J); a debt is kept until it is paid.
     pub(super) fn limit_energy(
         &mut self,
         settings: &SolveSettings,
@@ -103,31 +108,42 @@ impl Island {
             .iter()
             .any(|contact| contact.multiplier[0] > 0.0 || contact.remembered.normal > 0.0);
         if !touches {
-            *reserve = 0.0;
-            return;
+            *reserve = reserve.min(0.0);
         }
         let [kinetic, elastic] = summary.end_energy;
-        let gain = kinetic + elastic - summary.start_energy[0] - summary.start_energy[1] - allowance;
+        let gain =
+            kinetic + elastic - summary.start_energy[0] - summary.start_energy[1] - allowance;
         *reserve -= gain;
-        let noise = 1e-12 * (kinetic + elastic + allowance.abs());
-        if *reserve >= -noise {
+        let band = if touches { ROUND_OFF } else { FLIGHT_BAND };
+        let debt = -*reserve - band * (kinetic + elastic);
+        if debt <= 0.0 {
             return;
         }
-        let taken = self.remove_kinetic_energy(-*reserve, settings);
+        let mut taken = if touches {
+            self.remove_along_contacts(debt, settings)
+        } else {
+            0.0
+        };
+        if taken < debt {
+            taken += self.remove_vibration(debt - taken);
+        }
         summary.limited = taken;
         summary.end_energy[0] -= taken;
-        *reserve = 0.0;
+        *reserve += taken;
     }
 
     /// Changes the end velocity along the response to the contact forces until `excess` (J) is gone, or as far as that
     /// direction carries energy; returns what was removed.
-    fn remove_kinetic_energy(&mut self, excess: f64, settings: &SolveSettings) -> f64 {
+    fn remove_along_contacts(&mut self, excess: f64, settings: &SolveSettings) -> f64 {
         self.rows.clear();
         self.multipliers.clear();
         for (index, contact) in self.contacts.iter().enumerate() {
             let force = contact.multiplier[0].max(contact.remembered.normal);
             if force > 0.0 && !contact.is_hard {
-                self.rows.push(RowDirection { contact: index, direction: contact.kinematics.normal });
+                self.rows.push(RowDirection {
+                    contact: index,
+                    direction: contact.kinematics.normal,
+                });
                 self.multipliers.push(force * settings.dt);
             }
         }
@@ -135,27 +151,65 @@ impl Island {
             return 0.0;
         }
         // Kinetic energy along v' + s z is a parabola in s; three samples give it exactly.
-        let before = self.end_energy()[0];
+        let before = self.kinetic_energy();
         self.apply_rows(Response::Velocity, 1.0);
-        let after = self.end_energy()[0];
+        let after = self.kinetic_energy();
         self.apply_rows(Response::Velocity, -2.0);
-        let mirrored = self.end_energy()[0];
+        let mirrored = self.kinetic_energy();
         let curvature = 0.5 * (after + mirrored) - before;
         let slope = 0.5 * (after - mirrored);
-        let step = if curvature > 0.0 {
-            let discriminant = slope * slope - 4.0 * curvature * excess;
-            if discriminant > 0.0 {
-                // The root nearer to zero of curvature s² + slope s + excess = 0.
-                let root = discriminant.sqrt();
-                if slope >= 0.0 { (-slope + root) / (2.0 * curvature) } else { (-slope - root) / (2.0 * curvature) }
-            } else {
-                -slope / (2.0 * curvature)
-            }
-        } else {
-            0.0
-        };
+        let step = step_of_parabola(curvature, slope, excess);
         self.apply_rows(Response::Velocity, 1.0 + step);
-        let left = self.end_energy()[0];
-        before - left
+        before - self.kinetic_energy()
     }
+
+    /// Scales down the vibration of the flexible blocks until `excess` (J) is gone; returns what was removed.
+    fn remove_vibration(&mut self, excess: f64) -> f64 {
+        let mut vibration = 0.0;
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                vibration += block.vibration_energy();
+            }
+        }
+        if vibration <= 0.0 {
+            return 0.0;
+        }
+        let before = self.kinetic_energy();
+        let factor = (1.0 - excess / vibration).max(0.0).sqrt();
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.scale_vibration(factor);
+            }
+        }
+        before - self.kinetic_energy()
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        self.blocks
+            .iter()
+            .map(|block| match block {
+                Block::Flex(block) => block.kinetic_energy(),
+                Block::Rigid(block) => block.kinetic_energy(block.current()),
+            })
+            .sum()
+    }
+}
+
+/// Energy error of one step by rounding, relative.
+const ROUND_OFF: f64 = 1e-12;
+
+/// Gain of a freely turning body that is left alone, relative: within its band the trapezoidal rule only fluctuates.
+const FLIGHT_BAND: f64 = 1e-3;
+
+/// The root nearer to zero of `curvature s² + slope s + excess = 0`, or the lowest point of the parabola.
+fn step_of_parabola(curvature: f64, slope: f64, excess: f64) -> f64 {
+    if curvature <= 0.0 {
+        return 0.0;
+    }
+    let discriminant = slope * slope - 4.0 * curvature * excess;
+    if discriminant <= 0.0 {
+        return -slope / (2.0 * curvature);
+    }
+    let root = discriminant.sqrt().copysign(slope);
+    (root - slope) / (2.0 * curvature)
 }

@@ -2,7 +2,9 @@
 
 use super::delassus::RowDirection;
 use super::impact::ImpactTreatment;
-use crate::constraint::contact::{Candidate, ContactMemory, Kinematics, PlacedPart, Remembered, Scene};
+use crate::constraint::contact::{
+    Candidate, ContactMemory, Kinematics, PlacedPart, Remembered, Scene,
+};
 use crate::linalg::cholesky::CholeskyError;
 use crate::linalg::complementarity::{ComplementarityError, RowKind, Solver, Status};
 use crate::system::{Block, Grip};
@@ -68,7 +70,10 @@ impl ActiveContact {
         if self.is_hard {
             self.impulse.map(|impulse| impulse / dt)
         } else {
-            [self.multiplier[0] + self.impulse[0] / dt, self.multiplier[1] + self.impulse[1] / dt]
+            [
+                self.multiplier[0] + self.impulse[0] / dt,
+                self.multiplier[1] + self.impulse[1] / dt,
+            ]
         }
     }
 
@@ -171,7 +176,11 @@ impl Island {
         parts: &'a [PlacedPart],
         segments: &'a [u32],
     ) -> Scene<'a> {
-        Scene { blocks, parts, segments }
+        Scene {
+            blocks,
+            parts,
+            segments,
+        }
     }
 
     /// Accumulates `Gᵀ f` on the blocks: node forces through `on_node`, wrenches of rigid blocks in `wrenches`.

@@ -9,7 +9,7 @@ use crate::linalg::complementarity::{Problem, RowKind, Status};
 use crate::system::{Block, Grip};
 
 /// Turning below this angle (rad) changes no position by more than round-off.
-const ANGLE_TOLERANCE: f64 = 1e-13;
+const ANGLE_TOLERANCE: f64 = 1e-12;
 
 /// Rounds of adding newly violated candidates within one Newton iteration.
 const MAX_ROUNDS: usize = 12;
@@ -55,12 +55,15 @@ impl Island {
         for block in &self.blocks {
             match block {
                 Block::Flex(block) => {
-                    size = block.positions().iter().fold(size, |size, x| size.max(x.abs()));
+                    size = block
+                        .positions()
+                        .iter()
+                        .fold(size, |size, x| size.max(x.abs()));
                 }
                 Block::Rigid(block) => size = size.max(block.start().centre.amax()),
             }
         }
-        1e-13 * (1.0 + size)
+        1e-12 * (1.0 + size)
     }
 
     fn free_motion(&mut self) {
@@ -89,10 +92,17 @@ impl Island {
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for (index, candidate) in self.candidates.iter().enumerate() {
             let remembered = memory.recall(&candidate.key);
-            let Some(kinematics) = candidate.evaluate(&scene, &remembered) else { continue };
+            let Some(kinematics) = candidate.evaluate(&scene, &remembered) else {
+                continue;
+            };
             if kinematics.gap < 0.0 || remembered.normal > 0.0 {
                 self.is_working[index] = true;
-                self.contacts.push(ActiveContact::new(index, kinematics, remembered, &self.blocks));
+                self.contacts.push(ActiveContact::new(
+                    index,
+                    kinematics,
+                    remembered,
+                    &self.blocks,
+                ));
             }
         }
     }
@@ -118,26 +128,49 @@ impl Island {
             let kinematics = &contact.kinematics;
             let free = kinematics.relative(&self.blocks, |block, grip| block.free_offset(grip));
             let normal_row = self.rows.len();
-            self.rows.push(RowDirection { contact: index, direction: kinematics.normal });
+            self.rows.push(RowDirection {
+                contact: index,
+                direction: kinematics.normal,
+            });
             self.kinds.push(RowKind::Unilateral);
-            self.free.push((kinematics.gap + free.dot(&kinematics.normal)) / settings.b0);
+            self.free
+                .push((kinematics.gap + free.dot(&kinematics.normal)) / settings.b0);
             self.multipliers.push(contact.multiplier[0]);
             self.statuses.push(contact.status[0]);
             let coefficient = self.candidates[contact.candidate].law.friction;
             if coefficient > 0.0 {
-                let moved = kinematics
-                    .relative(&self.blocks, |block, grip| block.position(grip) - block.start_position(grip));
-                self.rows.push(RowDirection { contact: index, direction: kinematics.tangent() });
-                self.kinds.push(RowKind::Friction { normal: normal_row, coefficient });
-                self.free.push((moved + free).dot(&kinematics.tangent()) / settings.b0);
+                let moved = kinematics.relative(&self.blocks, |block, grip| {
+                    block.position(grip) - block.start_position(grip)
+                });
+                self.rows.push(RowDirection {
+                    contact: index,
+                    direction: kinematics.tangent(),
+                });
+                self.kinds.push(RowKind::Friction {
+                    normal: normal_row,
+                    coefficient,
+                });
+                self.free
+                    .push((moved + free).dot(&kinematics.tangent()) / settings.b0);
                 self.multipliers.push(contact.multiplier[1]);
                 self.statuses.push(contact.status[1]);
             }
         }
         let contacts = &self.contacts;
-        assemble(&self.blocks, &self.rows, |index| &contacts[index].kinematics, &mut self.delassus);
-        let problem = Problem { delassus: &self.delassus, free: &self.free, rows: &self.kinds };
-        let outcome = self.solver.solve(&problem, &mut self.multipliers, &mut self.statuses)?;
+        assemble(
+            &self.blocks,
+            &self.rows,
+            |index| &contacts[index].kinematics,
+            &mut self.delassus,
+        );
+        let problem = Problem {
+            delassus: &self.delassus,
+            free: &self.free,
+            rows: &self.kinds,
+        };
+        let outcome = self
+            .solver
+            .solve(&problem, &mut self.multipliers, &mut self.statuses)?;
         summary.n_pivots += outcome.n_pivots;
         summary.residual = outcome.residual;
         self.scatter_multipliers();
@@ -176,7 +209,9 @@ impl Island {
         for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
             match block {
                 Block::Flex(block) => turned = turned.max(block.correct(has_contact)),
-                Block::Rigid(block) if !block.is_prescribed() => block.set_position_increment(*wrench),
+                Block::Rigid(block) if !block.is_prescribed() => {
+                    block.set_position_increment(*wrench)
+                }
                 Block::Rigid(_) => {}
             }
         }
@@ -196,7 +231,12 @@ impl Island {
                 && kinematics.gap < -tolerance
             {
                 self.is_working[index] = true;
-                self.contacts.push(ActiveContact::new(index, kinematics, remembered, &self.blocks));
+                self.contacts.push(ActiveContact::new(
+                    index,
+                    kinematics,
+                    remembered,
+                    &self.blocks,
+                ));
             }
         }
         self.contacts.len() > before
@@ -209,14 +249,17 @@ impl Island {
         let mut error = 0.0f64;
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
-            let Some(kinematics) = candidate.evaluate(&scene, &contact.remembered) else { continue };
+            let Some(kinematics) = candidate.evaluate(&scene, &contact.remembered) else {
+                continue;
+            };
             error = error.max(-kinematics.gap);
             if contact.multiplier[0] > 0.0 {
                 error = error.max(kinematics.gap.abs());
             }
             if contact.status[1] == Status::Stick {
-                let moved = kinematics
-                    .relative(&self.blocks, |block, grip| block.position(grip) - block.start_position(grip));
+                let moved = kinematics.relative(&self.blocks, |block, grip| {
+                    block.position(grip) - block.start_position(grip)
+                });
                 error = error.max(moved.dot(&kinematics.tangent()).abs());
             }
             contact.kinematics = kinematics;
@@ -225,14 +268,18 @@ impl Island {
     }
 
     fn gap_violation(&self) -> f64 {
-        self.contacts.iter().fold(0.0, |worst, contact| worst.max(-contact.kinematics.gap))
+        self.contacts
+            .iter()
+            .fold(0.0, |worst, contact| worst.max(-contact.kinematics.gap))
     }
 }
 
 /// Makes the compliances of a contact's nodes known.
 fn prepare(blocks: &mut [Block], kinematics: &Kinematics) {
     for attachment in kinematics.attachments() {
-        if let (Block::Flex(block), Grip::Node(node)) = (&mut blocks[attachment.block], attachment.grip) {
+        if let (Block::Flex(block), Grip::Node(node)) =
+            (&mut blocks[attachment.block], attachment.grip)
+        {
             block.prepare_compliance(node);
         }
     }
@@ -255,7 +302,11 @@ impl ActiveContact {
             kinematics,
             multiplier: [remembered.normal, remembered.tangent],
             impulse: [0.0; 2],
-            status: if pressed { [Status::Stick, Status::Stick] } else { [Status::Open; 2] },
+            status: if pressed {
+                [Status::Stick, Status::Stick]
+            } else {
+                [Status::Open; 2]
+            },
             unresolved: 0.0,
             approach,
             remembered,

@@ -21,7 +21,8 @@ impl Island {
         self.take_out_hard_forces();
         for index in 0..self.contacts.len() {
             if self.contacts[index].is_closed() {
-                self.contacts[index].unresolved = self.unresolved_share(&self.contacts[index].kinematics);
+                self.contacts[index].unresolved =
+                    self.unresolved_share(&self.contacts[index].kinematics);
             }
         }
         self.velocity_rows(settings);
@@ -45,12 +46,24 @@ impl Island {
         for contact in &self.contacts {
             let (blocks, kinematics) = (&mut self.blocks, &contact.kinematics);
             if contact.is_hard {
-                Self::spread(blocks, kinematics, contact.multiplier, None, |block, node, force| {
-                    block.drop_hard_force(node, force);
-                });
+                Self::spread(
+                    blocks,
+                    kinematics,
+                    contact.multiplier,
+                    None,
+                    |block, node, force| {
+                        block.drop_hard_force(node, force);
+                    },
+                );
             } else {
                 let wrenches = Some(&mut self.wrenches[..]);
-                Self::spread(blocks, kinematics, contact.multiplier, wrenches, |_, _, _| {});
+                Self::spread(
+                    blocks,
+                    kinematics,
+                    contact.multiplier,
+                    wrenches,
+                    |_, _, _| {},
+                );
             }
         }
         self.set_soft_forces();
@@ -114,27 +127,44 @@ impl Island {
             let velocity = kinematics.relative(&self.blocks, |block, grip| block.velocity(grip));
             let rebound = law.rebound(contact.approach, settings.restitution_threshold);
             let normal_row = self.rows.len();
-            self.rows.push(RowDirection { contact: index, direction: kinematics.normal });
+            self.rows.push(RowDirection {
+                contact: index,
+                direction: kinematics.normal,
+            });
             self.free.push(velocity.dot(&kinematics.normal) - rebound);
             self.kinds.push(if contact.is_hard {
                 RowKind::Unilateral
             } else {
                 // The multiplier has acted already; together they may not pull.
-                RowKind::Box { low: -settings.dt * contact.multiplier[0], high: f64::INFINITY }
+                RowKind::Box {
+                    low: -settings.dt * contact.multiplier[0],
+                    high: f64::INFINITY,
+                }
             });
             let sticks = contact.status[1] == Status::Stick;
             if law.friction > 0.0 && (contact.is_hard || sticks) {
-                self.rows.push(RowDirection { contact: index, direction: kinematics.tangent() });
+                self.rows.push(RowDirection {
+                    contact: index,
+                    direction: kinematics.tangent(),
+                });
                 self.free.push(velocity.dot(&kinematics.tangent()));
                 self.kinds.push(if contact.is_hard {
-                    RowKind::Friction { normal: normal_row, coefficient: law.friction }
+                    RowKind::Friction {
+                        normal: normal_row,
+                        coefficient: law.friction,
+                    }
                 } else {
                     RowKind::Bilateral
                 });
             }
         }
         let contacts = &self.contacts;
-        assemble(&self.blocks, &self.rows, |index| &contacts[index].kinematics, &mut self.delassus);
+        assemble(
+            &self.blocks,
+            &self.rows,
+            |index| &contacts[index].kinematics,
+            &mut self.delassus,
+        );
         self.soften();
     }
 
@@ -155,8 +185,13 @@ impl Island {
         self.multipliers.resize(self.rows.len(), 0.0);
         self.statuses.clear();
         self.statuses.resize(self.rows.len(), Status::Stick);
-        let problem = Problem { delassus: &self.delassus, free: &self.free, rows: &self.kinds };
-        self.solver.solve(&problem, &mut self.multipliers, &mut self.statuses)?;
+        let problem = Problem {
+            delassus: &self.delassus,
+            free: &self.free,
+            rows: &self.kinds,
+        };
+        self.solver
+            .solve(&problem, &mut self.multipliers, &mut self.statuses)?;
         Ok(())
     }
 
@@ -174,7 +209,11 @@ impl Island {
             let value = scale * self.multipliers[row];
             let kinematics = &self.contacts[direction.contact].kinematics;
             let is_normal = direction.direction == kinematics.normal;
-            let force = if is_normal { [value, 0.0] } else { [0.0, value] };
+            let force = if is_normal {
+                [value, 0.0]
+            } else {
+                [0.0, value]
+            };
             touched |= value != 0.0;
             Self::spread(
                 &mut self.blocks,
@@ -199,10 +238,7 @@ impl Island {
     }
 
     /// Unresolved contacts that stay closed keep no relative acceleration either, or their multipliers would alternate.
-    fn settle_accelerations(
-        &mut self,
-        settings: &SolveSettings,
-    ) -> Result<(), KktError> {
+    fn settle_accelerations(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
         self.hard_accelerations(settings);
         self.rows.clear();
         self.kinds.clear();
@@ -220,9 +256,15 @@ impl Island {
                 }
             }
             let sticks = contact.status[1] == Status::Stick;
-            let directions = [Some(kinematics.normal), sticks.then(|| kinematics.tangent())];
+            let directions = [
+                Some(kinematics.normal),
+                sticks.then(|| kinematics.tangent()),
+            ];
             for direction in directions.into_iter().flatten() {
-                self.rows.push(RowDirection { contact: index, direction });
+                self.rows.push(RowDirection {
+                    contact: index,
+                    direction,
+                });
                 self.free.push(acceleration.dot(&direction));
                 self.kinds.push(RowKind::Bilateral);
             }
@@ -231,7 +273,12 @@ impl Island {
             return Ok(());
         }
         let contacts = &self.contacts;
-        assemble(&self.blocks, &self.rows, |index| &contacts[index].kinematics, &mut self.delassus);
+        assemble(
+            &self.blocks,
+            &self.rows,
+            |index| &contacts[index].kinematics,
+            &mut self.delassus,
+        );
         self.soften();
         self.solve_rows()?;
         self.apply_rows(Response::Acceleration, 1.0);
@@ -244,7 +291,13 @@ impl Island {
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         for contact in self.contacts.iter().filter(|contact| contact.is_hard) {
             let force = contact.impulse.map(|impulse| impulse / settings.dt);
-            Self::spread(&mut self.blocks, &contact.kinematics, force, Some(&mut self.wrenches), |_, _, _| {});
+            Self::spread(
+                &mut self.blocks,
+                &contact.kinematics,
+                force,
+                Some(&mut self.wrenches),
+                |_, _, _| {},
+            );
         }
     }
 }

@@ -32,10 +32,14 @@ pub enum StepError {
     #[error(transparent)]
     Kkt(#[from] KktError),
     /// The step length is negative or not finite.
-    #[error("the step length is {0} s: set `integration_parameters.dt` to zero or a positive finite number")]
+    #[error(
+        "the step length is {0} s: set `integration_parameters.dt` to zero or a positive finite number"
+    )]
     StepLength(f64),
     /// The result is not finite.
-    #[error("flexible body {0:?} would move to a position that is not finite: look at its loads and velocities")]
+    #[error(
+        "flexible body {0:?} would move to a position that is not finite: look at its loads and velocities"
+    )]
     NotFinite(FlexBodyHandle),
 }
 
@@ -212,10 +216,16 @@ impl FlexPipeline {
             if !self.integrator.is_unconditionally_stable() {
                 self.integrator
                     .check_step(dt, body.model().largest_frequency())
-                    .map_err(|source| StepError::Integrator { body: handle, source })?;
+                    .map_err(|source| StepError::Integrator {
+                        body: handle,
+                        source,
+                    })?;
             }
         }
-        Ok(Step { dt, weights: self.integrator.weights(dt) })
+        Ok(Step {
+            dt,
+            weights: self.integrator.weights(dt),
+        })
     }
 
     /// Solves every component; commits nothing.
@@ -244,7 +254,10 @@ impl FlexPipeline {
         }
         self.report.n_islands = self.components.len();
         self.report.n_claimed = self.landings.len();
-        self.report.n_factorizations = self.gatherer.n_factorizations().saturating_sub(factorizations);
+        self.report.n_factorizations = self
+            .gatherer
+            .n_factorizations()
+            .saturating_sub(factorizations);
         Ok(())
     }
 
@@ -261,7 +274,15 @@ impl FlexPipeline {
             prediction: f64::from(sets.integration_parameters.prediction_distance()),
         };
         let (claims, masters, island) = (&mut self.claims, &self.masters, &mut self.island);
-        self.gatherer.gather(component, &gather, sets, flex_bodies, claims, masters, island)?;
+        self.gatherer.gather(
+            component,
+            &gather,
+            sets,
+            flex_bodies,
+            claims,
+            masters,
+            island,
+        )?;
         clock.lap(&mut self.report.times.gather);
         let settings = SolveSettings {
             dt: step.dt,
@@ -290,7 +311,11 @@ impl FlexPipeline {
     fn check_finite(&self, flex_bodies: &FlexBodySet) -> Result<(), StepError> {
         for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
             if let (Block::Flex(block), Some(index)) = (block, index) {
-                let is_finite = block.positions().iter().chain(block.velocities()).all(|x| x.is_finite());
+                let is_finite = block
+                    .positions()
+                    .iter()
+                    .chain(block.velocities())
+                    .all(|x| x.is_finite());
                 if let (false, Some((handle, _))) = (is_finite, flex_bodies.at_index(*index)) {
                     return Err(StepError::NotFinite(handle));
                 }
@@ -310,7 +335,8 @@ impl FlexPipeline {
     ) {
         for &(block, handle) in &self.gatherer.bodies {
             if let Block::Rigid(block) = &self.island.blocks[block] {
-                self.landings.push(Landing::new(handle, *block.current(), block.smooth_end));
+                self.landings
+                    .push(Landing::new(handle, *block.current(), block.smooth_end));
             }
         }
         let n_flex = self.island.flex_index.iter().flatten().count().max(1);
@@ -340,7 +366,8 @@ impl FlexPipeline {
         report.energy_limited += summary.limited;
         report.energy.kinetic += summary.end_energy[0];
         report.energy.elastic += summary.end_energy[1];
-        let gain: f64 = summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
+        let gain: f64 =
+            summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
         report.energy.dissipated += summary.work - gain;
         self.report_momentum(from_rapier(sets.gravity), flex_bodies);
     }
@@ -350,7 +377,9 @@ impl FlexPipeline {
         let law = self.island.candidates[contact.candidate].law;
         let [normal, tangent] = contact.multiplier;
         let report = &mut self.report;
-        report.complementarity_residual = report.complementarity_residual.max(contact.kinematics.gap.abs());
+        report.complementarity_residual = report
+            .complementarity_residual
+            .max(contact.kinematics.gap.abs());
         let excess = (tangent.abs() - law.friction * normal).max(0.0) / normal;
         report.cone_residual = report.cone_residual.max(excess);
     }
@@ -364,10 +393,13 @@ impl FlexPipeline {
     ) -> Option<ContactReport> {
         let key = self.island.candidates[contact.candidate].key;
         let participant = |owner| match owner {
-            Owner::Flex(index) => flex_bodies.at_index(index).map(|(handle, _)| Participant::Flex(handle)),
-            Owner::Collider(index) => {
-                sets.colliders.get_unknown_gen(index).map(|(_, handle)| Participant::Rigid(handle))
-            }
+            Owner::Flex(index) => flex_bodies
+                .at_index(index)
+                .map(|(handle, _)| Participant::Flex(handle)),
+            Owner::Collider(index) => sets
+                .colliders
+                .get_unknown_gen(index)
+                .map(|(_, handle)| Participant::Rigid(handle)),
         };
         let [normal_force, tangential_force] = contact.force(step.dt);
         Some(ContactReport {
@@ -389,7 +421,9 @@ impl FlexPipeline {
             let report = &mut self.report;
             match (block, index) {
                 (Block::Flex(block), Some(index)) => {
-                    let scale = flex_bodies.at_index(*index).map_or(1.0, |(_, body)| body.gravity_scale());
+                    let scale = flex_bodies
+                        .at_index(*index)
+                        .map_or(1.0, |(_, body)| body.gravity_scale());
                     let (momentum, first_moment) = block.momentum();
                     report.momentum[0] += momentum.x;
                     report.momentum[1] += momentum.y;
@@ -402,7 +436,8 @@ impl FlexPipeline {
                     let momentum = Vec2::new(mass * motion.velocity.x, mass_y * motion.velocity.y);
                     report.momentum[0] += momentum.x;
                     report.momentum[1] += momentum.y;
-                    report.angular_momentum += inertia * motion.spin + cross(motion.centre, momentum);
+                    report.angular_momentum +=
+                        inertia * motion.spin + cross(motion.centre, momentum);
                     report.energy.potential -= mass.max(mass_y) * gravity.dot(&motion.centre);
                 }
                 _ => {}
@@ -414,14 +449,22 @@ impl FlexPipeline {
     fn commit(&mut self, sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet) {
         self.memory.turn_over();
         for &(index, reserve) in &self.reserves {
-            let Some(body) = flex_bodies.at_index_mut(index) else { continue };
+            let Some(body) = flex_bodies.at_index_mut(index) else {
+                continue;
+            };
             body.set_energy_reserve(reserve);
             if let Some(block) = self.gatherer.block(index) {
                 block.commit(body.state_mut());
-                body.contact_force_mut().copy_from_slice(block.contact_force());
+                body.contact_force_mut()
+                    .copy_from_slice(block.contact_force());
                 block.write_reactions(body.reaction_mut());
             }
-            write_surface(body, sets.colliders, sets.broad_phase, sets.integration_parameters);
+            write_surface(
+                body,
+                sets.colliders,
+                sets.broad_phase,
+                sets.integration_parameters,
+            );
         }
     }
 }

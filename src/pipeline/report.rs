@@ -193,7 +193,10 @@ impl StepReport {
     pub(super) fn clear(&mut self) {
         let contacts = std::mem::take(&mut self.contacts);
         let dissipated = self.energy.dissipated;
-        *self = Self { contacts, ..Self::default() };
+        *self = Self {
+            contacts,
+            ..Self::default()
+        };
         self.contacts.clear();
         self.energy.dissipated = dissipated;
     }

@@ -69,6 +69,8 @@ pub struct FlexBlock {
     pub(super) start_frame: FrameMotion,
     start_torque: f64,
     start_momentum: f64,
+    pub(super) start_elastic: f64,
+    pub(super) end_elastic: f64,
     /// `u`, `ü` at the beginning.
     pub(super) start_displacement: Vec<f64>,
     pub(super) start_acceleration: Vec<f64>,
@@ -89,7 +91,7 @@ pub struct FlexBlock {
     pub(super) increment: Vec<f64>,
     pub(super) contact_force: Vec<f64>,
     impulse: Vec<f64>,
-    local: Vec<f64>,
+    pub(super) local: Vec<f64>,
     scratch: Vec<f64>,
     /// `u`, `u̇` of the iterate.
     pub(super) displacement: Vec<f64>,
@@ -115,12 +117,17 @@ impl FlexBlock {
             compliance: Compliance::new(&model),
             n_factorizations: 0,
             n_solves: 0,
-            step: Step { dt: 0.0, weights: Weights::default() },
+            step: Step {
+                dt: 0.0,
+                weights: Weights::default(),
+            },
             start_position: zeros(),
             start_velocity: zeros(),
             start_frame: FrameMotion::default(),
             start_torque: 0.0,
             start_momentum: 0.0,
+            start_elastic: 0.0,
+            end_elastic: 0.0,
             start_displacement: zeros(),
             start_acceleration: zeros(),
             force: zeros(),
@@ -165,7 +172,12 @@ impl FlexBlock {
     ///
     /// # Errors
     /// If the effective matrix is not positive definite.
-    pub fn predict(&mut self, step: Step, state: &FlexState, load: &FlexLoad<'_>) -> Result<(), CholeskyError> {
+    pub fn predict(
+        &mut self,
+        step: Step,
+        state: &FlexState,
+        load: &FlexLoad<'_>,
+    ) -> Result<(), CholeskyError> {
         self.factorize(step.weights)?;
         self.step = step;
         self.start_position.copy_from_slice(&state.position);
@@ -174,6 +186,7 @@ impl FlexBlock {
         self.start_acceleration.copy_from_slice(&state.acceleration);
         self.start_frame = state.frame;
         self.start_torque = state.torque;
+        self.start_elastic = state.elastic_energy;
         self.prescribed.copy_from_slice(load.prescribed);
         self.force.copy_from_slice(load.force);
         for (force, mass) in self.force.chunks_exact_mut(2).zip(&self.arms.node_mass) {
@@ -187,11 +200,13 @@ impl FlexBlock {
         self.rate.copy_from_slice(&state.rate);
         self.predict_frame();
         let inertia = self.inertia_of(&state.displacement);
-        self.spin_correction = (step.dt - step.weights.b1) / step.weights.b1 * state.torque / inertia;
+        self.spin_correction =
+            (step.dt - step.weights.b1) / step.weights.b1 * state.torque / inertia;
         self.increment.fill(0.0);
         self.contact_force.fill(0.0);
         if self.kind != Frame::Fixed {
-            self.start_momentum = self.angular_momentum_of(&self.start_frame, &state.displacement, &state.rate);
+            self.start_momentum =
+                self.angular_momentum_of(&self.start_frame, &state.displacement, &state.rate);
         }
         self.place();
         Ok(())
@@ -204,7 +219,12 @@ impl FlexBlock {
     ///
     /// # Errors
     /// If the effective matrix is not positive definite.
-    pub fn start(&mut self, step: Step, state: &mut FlexState, load: &FlexLoad<'_>) -> Result<(), CholeskyError> {
+    pub fn start(
+        &mut self,
+        step: Step,
+        state: &mut FlexState,
+        load: &FlexLoad<'_>,
+    ) -> Result<(), CholeskyError> {
         self.factorize(step.weights)?;
         let rayleigh = self.model.rayleigh();
         for node in 0..self.model.n_nodes() {
@@ -218,8 +238,12 @@ impl FlexBlock {
             set_node_vec(&mut self.scratch, node, inertial);
         }
         self.local.copy_from_slice(load.force);
-        self.model.stiffness().multiply_add(-rayleigh.stiffness, &state.rate, &mut self.local);
-        self.model.mass().multiply_add(1.0, &self.scratch, &mut self.local);
+        self.model
+            .stiffness()
+            .multiply_add(-rayleigh.stiffness, &state.rate, &mut self.local);
+        self.model
+            .mass()
+            .multiply_add(1.0, &self.scratch, &mut self.local);
         for (value, &is_fixed) in self.local.iter_mut().zip(&self.is_fixed) {
             if is_fixed {
                 *value = 0.0;
@@ -233,7 +257,10 @@ impl FlexBlock {
         state.torque = 0.0;
         for (node, mass) in self.arms.node_mass.iter().enumerate() {
             let applied = node_vec(load.force, node) + *mass * load.gravity;
-            state.torque += cross(node_vec(&state.position, node) - state.frame.centre, applied);
+            state.torque += cross(
+                node_vec(&state.position, node) - state.frame.centre,
+                applied,
+            );
         }
         Ok(())
     }
@@ -269,8 +296,13 @@ impl FlexBlock {
             return Ok(());
         }
         let rayleigh = self.model.rayleigh();
-        self.effective.assign_scaled(weights.b0 + rayleigh.stiffness * weights.b1, self.model.stiffness());
-        self.model.mass().add_to(1.0 + rayleigh.mass * weights.b1, &mut self.effective);
+        self.effective.assign_scaled(
+            weights.b0 + rayleigh.stiffness * weights.b1,
+            self.model.stiffness(),
+        );
+        self.model
+            .mass()
+            .add_to(1.0 + rayleigh.mass * weights.b1, &mut self.effective);
         self.effective.constrain(&self.is_fixed);
         self.factored_for = None;
         self.factor.factorize(&self.effective)?;
@@ -290,14 +322,17 @@ impl FlexBlock {
             let star = (self.displacement_q[dof] + rayleigh.stiffness * self.rate_q[dof]) / s;
             self.free_increment[dof] = -star;
             // Accelerations before the increment, less what the stiffness would give back.
-            self.scratch[dof] = self.start_acceleration[dof] + alpha * self.rate_q[dof] - kept * star;
+            self.scratch[dof] =
+                self.start_acceleration[dof] + alpha * self.rate_q[dof] - kept * star;
         }
         if self.kind == Frame::Fixed {
             self.local.copy_from_slice(&self.force);
         } else {
             self.add_frame_inertia(alpha);
         }
-        self.model.mass().multiply_add(-1.0, &self.scratch, &mut self.local);
+        self.model
+            .mass()
+            .multiply_add(-1.0, &self.scratch, &mut self.local);
         self.add_prescribed(s);
         self.factor.solve_in_place(&mut self.local);
         self.n_solves += 1;
@@ -318,7 +353,8 @@ impl FlexBlock {
         for node in 0..self.model.n_nodes() {
             let reference = node_vec(&self.arms.reference, node);
             let u = node_vec(&self.displacement, node);
-            let inertial = shift + turn * perp(reference) + swing * perp(u) - squared * (reference + u)
+            let inertial = shift + turn * perp(reference) + swing * perp(u)
+                - squared * (reference + u)
                 + 2.0 * frame.spin * perp(node_vec(&self.rate, node));
             add_node_vec(&mut self.scratch, node, inertial);
             set_node_vec(&mut self.local, node, back * node_vec(&self.force, node));
@@ -333,7 +369,11 @@ impl FlexBlock {
                 continue;
             }
             // A hinge is the centre of its frame: its displacement there is zero.
-            let target = if self.kind == Frame::Fixed { self.prescribed[dof] } else { 0.0 };
+            let target = if self.kind == Frame::Fixed {
+                self.prescribed[dof]
+            } else {
+                0.0
+            };
             let increment = (target - self.displacement_q[dof]) / b0;
             let known = increment - self.free_increment[dof];
             self.local[dof] = known;
@@ -347,7 +387,11 @@ impl FlexBlock {
     fn move_to_right_hand_side(&mut self, dof: usize, scaled: f64) {
         let stiffness = self.model.stiffness();
         let (node, axis) = (dof / 2, dof % 2);
-        for (&neighbour, block) in stiffness.neighbours(node).iter().zip(stiffness.row_blocks(node)) {
+        for (&neighbour, block) in stiffness
+            .neighbours(node)
+            .iter()
+            .zip(stiffness.row_blocks(node))
+        {
             for other in 0..2 {
                 let row = 2 * neighbour as usize + other;
                 if !self.is_fixed[row] {
@@ -394,7 +438,11 @@ impl FlexBlock {
 
     /// `A⁻¹ Rᵀ f` for the contact forces, or for the impulses, written over `local`.
     fn respond(&mut self, to_impulse: bool) {
-        let source = if to_impulse { &self.impulse } else { &self.contact_force };
+        let source = if to_impulse {
+            &self.impulse
+        } else {
+            &self.contact_force
+        };
         if self.kind == Frame::Fixed {
             self.local.copy_from_slice(source);
         } else {
@@ -435,8 +483,11 @@ impl FlexBlock {
     /// World positions and velocities of the iterate.
     fn place(&mut self) {
         if self.kind == Frame::Fixed {
-            for ((x, rest), u) in
-                self.position.iter_mut().zip(self.model.rest_positions()).zip(&self.displacement)
+            for ((x, rest), u) in self
+                .position
+                .iter_mut()
+                .zip(self.model.rest_positions())
+                .zip(&self.displacement)
             {
                 *x = rest + u;
             }
@@ -460,7 +511,13 @@ impl FlexBlock {
 
     /// `I(u) = Σ m (X + u)²` (kg m²).
     fn inertia_of(&self, u: &[f64]) -> f64 {
-        let linear: f64 = self.arms.mass_moment.iter().zip(u).map(|(moment, u)| moment * u).sum();
+        let linear: f64 = self
+            .arms
+            .mass_moment
+            .iter()
+            .zip(u)
+            .map(|(moment, u)| moment * u)
+            .sum();
         self.arms.polar + 2.0 * linear + self.model.mass().inner(u, u)
     }
 
@@ -481,7 +538,12 @@ impl FlexBlock {
         let impulse = (self.step.dt - b1) * self.start_torque + b1 * torque;
         let missing = self.start_momentum + impulse - momentum;
         let damped = 1.0 + self.model.rayleigh().mass * b1;
-        self.spin_correction += missing / (self.inertia_of(&self.displacement) * b1 * damped);
+        let change = missing / (self.inertia_of(&self.displacement) * damped);
+        self.spin_correction += change / b1;
+        self.frame.spin += change;
+        self.frame.angle += 0.5 * self.step.dt * change;
+        self.frame.spin_rate += change / self.step.dt;
+        self.place();
     }
 
     /// Torque of the frame's own acceleration when the hinge is moved.
@@ -489,7 +551,12 @@ impl FlexBlock {
         let acceleration = self.frame.acceleration;
         let masses = self.arms.node_mass.iter().enumerate();
         masses
-            .map(|(node, mass)| mass * cross(node_vec(&self.position, node) - self.frame.centre, acceleration))
+            .map(|(node, mass)| {
+                mass * cross(
+                    node_vec(&self.position, node) - self.frame.centre,
+                    acceleration,
+                )
+            })
             .sum()
     }
 
@@ -500,7 +567,10 @@ impl FlexBlock {
 
     /// Makes [`super::Block::compliance`] known from `node`.
     pub fn prepare_compliance(&mut self, node: usize) {
-        if self.compliance.prepare(node, &self.is_fixed, &mut self.factor) {
+        if self
+            .compliance
+            .prepare(node, &self.is_fixed, &mut self.factor)
+        {
             self.n_solves += 2;
         }
     }
@@ -549,14 +619,22 @@ impl FlexBlock {
     fn balance_impulse(&mut self) {
         let centre = self.frame.centre;
         let wanted: f64 = (0..self.model.n_nodes())
-            .map(|node| cross(node_vec(&self.position, node) - centre, node_vec(&self.impulse, node)))
+            .map(|node| {
+                cross(
+                    node_vec(&self.position, node) - centre,
+                    node_vec(&self.impulse, node),
+                )
+            })
             .sum();
         let turn = rotation(self.frame.angle);
         for node in 0..self.model.n_nodes() {
             let response = turn * node_vec(&self.local, node);
             set_node_vec(&mut self.scratch, node, response);
         }
-        let gained = self.model.mass().moment(centre, &self.position, &self.scratch);
+        let gained = self
+            .model
+            .mass()
+            .moment(centre, &self.position, &self.scratch);
         let spin = (wanted - gained) / self.inertia_of(&self.displacement);
         for node in 0..self.model.n_nodes() {
             let swing = spin * perp(node_vec(&self.position, node) - centre);

@@ -3,7 +3,7 @@
 use super::flex_block::FlexBlock;
 use crate::body::{FlexState, Frame};
 use crate::fe::model::{MassMatrix, Model};
-use crate::math::{Vec2, add_node_vec, cross, node_vec, rotation, set_node_vec};
+use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
 
 /// Energy of one motion of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -81,7 +81,11 @@ impl FlexBlock {
             self.torque -= cross(arm, force);
             let local = rotation(-self.frame.angle) * force;
             add_node_vec(&mut self.increment, node, -local / mass);
-            add_node_vec(&mut self.velocity, node, -self.step.weights.b1 * force / mass);
+            add_node_vec(
+                &mut self.velocity,
+                node,
+                -self.step.weights.b1 * force / mass,
+            );
         }
     }
 
@@ -98,28 +102,74 @@ impl FlexBlock {
 
     fn polar_inertia(&self, centre: Vec2) -> f64 {
         let masses = self.arms.node_mass.iter().enumerate();
-        masses.map(|(node, mass)| mass * (node_vec(&self.position, node) - centre).norm_squared()).sum()
+        masses
+            .map(|(node, mass)| mass * (node_vec(&self.position, node) - centre).norm_squared())
+            .sum()
     }
 
     /// Energy at the beginning of the step.
     pub fn start_balance(&self) -> Balance {
         Balance {
-            kinetic: 0.5 * self.model.mass().inner(&self.start_velocity, &self.start_velocity),
-            elastic: self.model.elastic_energy(&self.start_displacement),
+            kinetic: 0.5
+                * self
+                    .model
+                    .mass()
+                    .inner(&self.start_velocity, &self.start_velocity),
+            elastic: self.start_elastic,
         }
     }
 
     /// Energy of the current iterate.
-    pub fn end_balance(&self) -> Balance {
+    pub fn end_balance(&mut self) -> Balance {
+        self.end_elastic = self.model.elastic_energy(&self.displacement);
         Balance {
             kinetic: self.kinetic_energy(),
-            elastic: self.model.elastic_energy(&self.displacement),
+            elastic: self.end_elastic,
         }
     }
 
     /// Kinetic energy of the current iterate (J).
     pub fn kinetic_energy(&self) -> f64 {
         0.5 * self.model.mass().inner(&self.velocity, &self.velocity)
+    }
+
+    /// Kinetic energy of the velocities that are not those of a rigid motion (J).
+    pub fn vibration_energy(&mut self) -> f64 {
+        self.split_rigid();
+        0.5 * self.model.mass().inner(&self.local, &self.local)
+    }
+
+    /// Multiplies the velocities that are not those of a rigid motion; momentum stays what it is.
+    pub fn scale_vibration(&mut self, factor: f64) {
+        self.split_rigid();
+        for (v, own) in self.velocity.iter_mut().zip(&self.local) {
+            *v -= (1.0 - factor) * own;
+        }
+    }
+
+    /// Writes the velocities less their rigid part, `Σ m v` and `Σ m (x - c) × v` removed, over `local`.
+    fn split_rigid(&mut self) {
+        self.local.copy_from_slice(&self.velocity);
+        if self.kind == Frame::Fixed {
+            return;
+        }
+        let centre = self.arms.centre(self.kind, &self.position);
+        let drift = self.arms.centre(self.kind, &self.velocity);
+        let spin = self
+            .model
+            .mass()
+            .moment(centre, &self.position, &self.velocity)
+            - self.arms.mass * cross(self.mass_offset(centre), drift);
+        let spin = spin / self.polar_inertia(centre);
+        for node in 0..self.model.n_nodes() {
+            let rigid = drift + spin * perp(node_vec(&self.position, node) - centre);
+            add_node_vec(&mut self.local, node, -rigid);
+        }
+    }
+
+    /// The mass centre from `centre` (m): zero for a free body.
+    fn mass_offset(&self, centre: Vec2) -> Vec2 {
+        self.arms.centre(Frame::Free, &self.position) - centre
     }
 
     /// Linear momentum (N s) and first moment of mass `Σ m x` (kg m).
@@ -134,7 +184,9 @@ impl FlexBlock {
 
     /// Angular momentum about a point (N m s).
     pub fn angular_momentum(&self, about: Vec2) -> f64 {
-        self.model.mass().moment(about, &self.position, &self.velocity)
+        self.model
+            .mass()
+            .moment(about, &self.position, &self.velocity)
     }
 
     /// Writes the support forces of all pinned nodes, interleaved (N).
@@ -147,7 +199,10 @@ impl FlexBlock {
     /// Work of the applied forces over the step, `Σ f·(x' - x)` (J).
     pub fn applied_work(&self) -> f64 {
         let moved = self.position.iter().zip(&self.start_position);
-        moved.zip(&self.force).map(|((end, start), force)| force * (end - start)).sum()
+        moved
+            .zip(&self.force)
+            .map(|((end, start), force)| force * (end - start))
+            .sum()
     }
 
     /// Writes the end of the step over the committed state.
@@ -157,6 +212,7 @@ impl FlexBlock {
         state.displacement.copy_from_slice(&self.displacement);
         state.frame = self.frame;
         state.torque = self.torque;
+        state.elastic_energy = self.end_elastic;
         state.acceleration.copy_from_slice(&self.increment);
         let (shift, _) = self.arms.split(self.kind, &mut state.acceleration);
         for (end, start) in state.acceleration.iter_mut().zip(&self.start_acceleration) {
@@ -164,13 +220,15 @@ impl FlexBlock {
         }
         if self.kind == Frame::Free {
             // The increment may have changed since the frame was advanced: hard contacts, settled accelerations.
-            state.frame.acceleration = self.start_frame.acceleration + rotation(self.frame.angle) * shift;
+            state.frame.acceleration =
+                self.start_frame.acceleration + rotation(self.frame.angle) * shift;
         }
         for (dof, &is_fixed) in self.is_fixed.iter().enumerate() {
             if is_fixed {
                 state.acceleration[dof] = 0.0;
                 if self.kind == Frame::Fixed {
-                    state.velocity[dof] = (self.position[dof] - self.start_position[dof]) / self.step.dt;
+                    state.velocity[dof] =
+                        (self.position[dof] - self.start_position[dof]) / self.step.dt;
                 }
             }
         }
@@ -187,11 +245,18 @@ impl FlexBlock {
         let rayleigh = self.model.rayleigh();
         let stiffness = self.model.stiffness();
         let mut force = Vec2::zeros();
-        for (&other, block) in stiffness.neighbours(node).iter().zip(stiffness.row_blocks(node)) {
+        for (&other, block) in stiffness
+            .neighbours(node)
+            .iter()
+            .zip(stiffness.row_blocks(node))
+        {
             let other = other as usize;
             let u = node_vec(&self.displacement, other)
                 + rayleigh.stiffness * node_vec(&self.rate, other);
-            force += Vec2::new(block[0] * u.x + block[1] * u.y, block[2] * u.x + block[3] * u.y);
+            force += Vec2::new(
+                block[0] * u.x + block[1] * u.y,
+                block[2] * u.x + block[3] * u.y,
+            );
         }
         let turn = rotation(self.frame.angle);
         let mut reaction =
@@ -215,10 +280,19 @@ fn spread_accelerations(model: &Model, is_fixed: &[bool], acceleration: &mut [f6
         if support.is_empty() {
             continue;
         }
-        let sum: Vec2 = support.iter().map(|&massive| node_vec(acceleration, massive)).sum();
+        let sum: Vec2 = support
+            .iter()
+            .map(|&massive| node_vec(acceleration, massive))
+            .sum();
         let mean = sum / support.len() as f64;
         let old = node_vec(acceleration, *node);
-        let kept = |axis: usize| if is_fixed[2 * node + axis] { old[axis] } else { mean[axis] };
+        let kept = |axis: usize| {
+            if is_fixed[2 * node + axis] {
+                old[axis]
+            } else {
+                mean[axis]
+            }
+        };
         set_node_vec(acceleration, *node, Vec2::new(kept(0), kept(1)));
     }
 }

@@ -90,8 +90,9 @@ impl RigidBlock {
         dt: f64,
     ) -> Self {
         let dofs_v = [start.velocity.x, start.velocity.y, start.spin];
-        let drag_free =
-            std::array::from_fn(|i| load.inverse_mass[i] * load.force[i] - load.damping[i] * dofs_v[i]);
+        let drag_free = std::array::from_fn(|i| {
+            load.inverse_mass[i] * load.force[i] - load.damping[i] * dofs_v[i]
+        });
         let smooth_start = acceleration.unwrap_or(drag_free);
         let mut free = start;
         let mut smooth_end = [0.0; 3];
@@ -119,7 +120,9 @@ impl RigidBlock {
         free.angle = x[2];
         free.velocity = Vec2::new(v[0], v[1]);
         free.spin = v[2];
-        let mass = load.inverse_mass.map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 });
+        let mass = load
+            .inverse_mass
+            .map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 });
         Self {
             start,
             current: free,
@@ -175,7 +178,8 @@ impl RigidBlock {
     /// See [`super::Block::free_offset`].
     pub fn free_offset(&self, arm: Vec2) -> Vec2 {
         let lever = rotation(self.current.angle) * arm;
-        self.free.centre - self.current.centre + (self.free.angle - self.current.angle) * perp(lever)
+        self.free.centre - self.current.centre
+            + (self.free.angle - self.current.angle) * perp(lever)
     }
 
     /// See [`super::Block::smooth_acceleration`]; the centripetal part is left out, as in `G a`.
@@ -229,7 +233,9 @@ impl RigidBlock {
     /// Work of the applied forces over the step (J).
     pub fn applied_work(&self) -> f64 {
         let moved = self.current.centre - self.start.centre;
-        self.force[0] * moved.x + self.force[1] * moved.y + self.force[2] * (self.current.angle - self.start.angle)
+        self.force[0] * moved.x
+            + self.force[1] * moved.y
+            + self.force[2] * (self.current.angle - self.start.angle)
     }
 
     /// Kinetic energy of a motion of this body (J).

@@ -64,11 +64,26 @@ impl Kinematics {
     }
 
     fn new(gap: f64, normal: Vec2, position: Vec2, grips: &[(usize, Grip, f64)]) -> Self {
-        let mut attachments = [Attachment { block: 0, grip: Grip::Node(0), weight: 0.0 }; 3];
+        let mut attachments = [Attachment {
+            block: 0,
+            grip: Grip::Node(0),
+            weight: 0.0,
+        }; 3];
         for (slot, &(block, grip, weight)) in attachments.iter_mut().zip(grips) {
-            *slot = Attachment { block, grip, weight };
+            *slot = Attachment {
+                block,
+                grip,
+                weight,
+            };
         }
-        Self { gap, normal, position, feature: None, attachments, n_attachments: grips.len() }
+        Self {
+            gap,
+            normal,
+            position,
+            feature: None,
+            attachments,
+            n_attachments: grips.len(),
+        }
     }
 }
 
@@ -99,22 +114,49 @@ impl Candidate {
             Pair::NodeOnPart { node, rigid, part } => {
                 node_on_part(scene, node, rigid, &scene.parts[part], remembered.feature)
             }
-            Pair::VertexOnSurface { rigid, arm, radius, flex, segments } => {
+            Pair::VertexOnSurface {
+                rigid,
+                arm,
+                radius,
+                flex,
+                segments,
+            } => {
                 let point = scene.blocks[rigid].position(Grip::Arm(arm));
                 let hit = surface_of(scene, flex, segments, point)?;
                 let position = point - (hit.distance) * hit.normal;
                 // The arm of the force ends where the force acts, on the flexible surface.
                 let grip = Grip::Arm(rigid_of(scene, rigid)?.current().arm(position));
-                Some(on_surface(scene, (rigid, grip), flex, &hit, radius, position))
+                Some(on_surface(
+                    scene,
+                    (rigid, grip),
+                    flex,
+                    &hit,
+                    radius,
+                    position,
+                ))
             }
-            Pair::NodeOnSurface { node: (block, node), flex, segments } => {
+            Pair::NodeOnSurface {
+                node: (block, node),
+                flex,
+                segments,
+            } => {
                 let point = scene.blocks[block].position(Grip::Node(node));
                 let hit = surface_of(scene, flex, segments, point)?;
-                Some(on_surface(scene, (block, Grip::Node(node)), flex, &hit, 0.0, point))
+                Some(on_surface(
+                    scene,
+                    (block, Grip::Node(node)),
+                    flex,
+                    &hit,
+                    0.0,
+                    point,
+                ))
             }
-            Pair::PointOnFace { point, face, ends, radius } => {
-                point_on_face(scene, point, face, ends, radius)
-            }
+            Pair::PointOnFace {
+                point,
+                face,
+                ends,
+                radius,
+            } => point_on_face(scene, point, face, ends, radius),
         }
     }
 }
@@ -148,7 +190,10 @@ fn node_on_part(
     let local_start = placed.pose.inverse_transform(motion.start().arm(start));
     let found = separation(&placed.part, local, reference, Some(local_start));
     let normal = rotation(motion.current().angle) * placed.pose.rotate(found.normal);
-    let grips = [(block, Grip::Node(node), 1.0), (rigid, Grip::Arm(arm), -1.0)];
+    let grips = [
+        (block, Grip::Node(node), 1.0),
+        (rigid, Grip::Arm(arm), -1.0),
+    ];
     let mut kinematics = Kinematics::new(found.distance, normal, point, &grips);
     kinematics.feature = Some(found.feature);
     Some(kinematics)
@@ -160,7 +205,11 @@ fn surface_of(
     segments: (usize, usize),
     point: Vec2,
 ) -> Option<SurfacePoint> {
-    closest_surface_point(flex_of(scene, flex)?, &scene.segments[segments.0..segments.1], point)
+    closest_surface_point(
+        flex_of(scene, flex)?,
+        &scene.segments[segments.0..segments.1],
+        point,
+    )
 }
 
 fn on_surface(
@@ -179,7 +228,12 @@ fn on_surface(
     let gap = hit.distance - radius;
     if hit.xi <= 0.0 || hit.xi >= 1.0 {
         let node = if hit.xi <= 0.0 { first } else { second };
-        return Kinematics::new(gap, hit.normal, position, &[point, (flex, Grip::Node(node), -1.0)]);
+        return Kinematics::new(
+            gap,
+            hit.normal,
+            position,
+            &[point, (flex, Grip::Node(node), -1.0)],
+        );
     }
     let grips = [
         point,
@@ -214,6 +268,9 @@ fn point_on_face(
     // Both arms end at the same world point, so that the pair of forces has no couple.
     let position = point - (gap + radius) * normal;
     let own = rigid_of(scene, block)?.current().arm(position);
-    let grips = [(block, Grip::Arm(own), 1.0), (face, Grip::Arm(motion.arm(position)), -1.0)];
+    let grips = [
+        (block, Grip::Arm(own), 1.0),
+        (face, Grip::Arm(motion.arm(position)), -1.0),
+    ];
     Some(Kinematics::new(gap, normal, position, &grips))
 }

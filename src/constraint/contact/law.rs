@@ -27,7 +27,10 @@ mod tests {
 
     #[test]
     fn only_closing_contacts_faster_than_the_threshold_rebound() {
-        let law = ContactLaw { friction: 0.0, restitution: 0.5 };
+        let law = ContactLaw {
+            friction: 0.0,
+            restitution: 0.5,
+        };
         assert_eq!(law.rebound(-2.0, 0.1), 1.0);
         assert_eq!(law.rebound(-0.05, 0.1), 0.0);
         assert_eq!(law.rebound(2.0, 0.1), 0.0);

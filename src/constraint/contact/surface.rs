@@ -46,17 +46,44 @@ pub fn closest_surface_point(
     let own = outward(segment);
     if xi > 0.0 && xi < 1.0 {
         let distance = own.dot(&(point - foot));
-        return Some(SurfacePoint { segment, xi, normal: own, distance });
+        return Some(SurfacePoint {
+            segment,
+            xi,
+            normal: own,
+            distance,
+        });
     }
     // Closest to a node: the sign comes from the mean normal of both its segments, the direction from the node itself.
-    let other = if xi == 0.0 { boundary.previous_segment(segment) } else { boundary.next_segment(segment) };
+    let other = if xi == 0.0 {
+        boundary.previous_segment(segment)
+    } else {
+        boundary.next_segment(segment)
+    };
     let mean = own + outward(other);
-    let mean = if mean.norm() > 1e-9 { mean.normalize() } else { own };
+    let mean = if mean.norm() > 1e-9 {
+        mean.normalize()
+    } else {
+        own
+    };
     let distance = squared.sqrt();
     let (a, b) = ends(segment);
     if distance <= 1e-12 * (b - a).norm() {
-        return Some(SurfacePoint { segment, xi, normal: mean, distance: 0.0 });
+        return Some(SurfacePoint {
+            segment,
+            xi,
+            normal: mean,
+            distance: 0.0,
+        });
     }
-    let sign = if mean.dot(&(point - foot)) >= 0.0 { 1.0 } else { -1.0 };
-    Some(SurfacePoint { segment, xi, normal: sign * (point - foot) / distance, distance: sign * distance })
+    let sign = if mean.dot(&(point - foot)) >= 0.0 {
+        1.0
+    } else {
+        -1.0
+    };
+    Some(SurfacePoint {
+        segment,
+        xi,
+        normal: sign * (point - foot) / distance,
+        distance: sign * distance,
+    })
 }
