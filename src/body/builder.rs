@@ -385,9 +385,9 @@ impl FlexBodyBuilder {
             massless[node] = !(is_fixed[2 * node] && is_fixed[2 * node + 1]);
         }
         // Without a free node inside there is nothing to carry the mass: the boundary keeps it.
-        let carries =
-            |node: usize| !massless[node] && !(is_fixed[2 * node] && is_fixed[2 * node + 1]);
-        if !(0..n_nodes).any(carries) {
+        let is_idle =
+            |node: usize| massless[node] || (is_fixed[2 * node] && is_fixed[2 * node + 1]);
+        if (0..n_nodes).all(is_idle) {
             massless.fill(false);
         }
         Ok(massless)

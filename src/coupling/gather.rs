@@ -39,6 +39,8 @@ pub(crate) struct Gatherer {
 /// What all islands of a step have in common.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GatherSettings {
+    /// The component of the claim to gather.
+    pub component: usize,
     /// Step length and weights.
     pub step: Step,
     /// Prediction distance of rapier (m).
@@ -80,7 +82,6 @@ impl Gatherer {
     /// If an effective matrix is not positive definite. The blocks taken must then be [given back](Self::give_back).
     pub fn gather(
         &mut self,
-        component: usize,
         settings: &GatherSettings,
         sets: &RapierSets<'_>,
         flex_bodies: &mut FlexBodySet,
@@ -88,6 +89,7 @@ impl Gatherer {
         masters: &Masters,
         island: &mut Island,
     ) -> Result<(), KktError> {
+        let component = settings.component;
         island.clear();
         self.placed.clear();
         self.block_of_body.clear();
@@ -106,7 +108,7 @@ impl Gatherer {
         }
         for slot in 0..claims.pairs.len() {
             let pair = claims.pairs[slot];
-            self.add_pair(pair, component, settings, sets, claims, island);
+            self.add_pair(pair, settings, sets, claims, island);
         }
         Ok(())
     }
@@ -138,8 +140,10 @@ impl Gatherer {
         if self.pool.len() <= slot {
             self.pool.resize_with(slot + 1, || None);
         }
-        let is_current = |block: &Box<FlexBlock>| Arc::ptr_eq(block.model(), body.model());
-        let mut block = match self.pool[slot].take().filter(is_current) {
+        let lives = self.pool[slot]
+            .as_ref()
+            .is_some_and(|block| Arc::ptr_eq(block.model(), body.model()));
+        let mut block = match self.pool[slot].take().filter(|_| lives) {
             Some(block) => block,
             None => {
                 let (model, fixed) = (Arc::clone(body.model()), body.fixed_dofs().to_vec());
@@ -215,12 +219,12 @@ impl Gatherer {
     fn add_pair(
         &mut self,
         pair: ClaimedPair,
-        component: usize,
         settings: &GatherSettings,
         sets: &RapierSets<'_>,
         claims: &mut Claims,
         island: &mut Island,
     ) {
+        let component = settings.component;
         match pair {
             ClaimedPair::FlexRigid(flex, collider)
                 if claims.component_of_flex(flex) == component =>

@@ -270,19 +270,13 @@ impl FlexPipeline {
         clock: &mut Clock,
     ) -> Result<(), StepError> {
         let gather = GatherSettings {
+            component,
             step,
             prediction: f64::from(sets.integration_parameters.prediction_distance()),
         };
         let (claims, masters, island) = (&mut self.claims, &self.masters, &mut self.island);
-        self.gatherer.gather(
-            component,
-            &gather,
-            sets,
-            flex_bodies,
-            claims,
-            masters,
-            island,
-        )?;
+        self.gatherer
+            .gather(&gather, sets, flex_bodies, claims, masters, island)?;
         clock.lap(&mut self.report.times.gather);
         let settings = SolveSettings {
             dt: step.dt,

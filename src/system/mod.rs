@@ -24,6 +24,10 @@ pub enum Grip {
 }
 
 /// A member of an island.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "rigid blocks are made anew every step and must not allocate"
+)]
 #[derive(Debug)]
 pub enum Block {
     /// A flexible body.

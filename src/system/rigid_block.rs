@@ -218,8 +218,13 @@ impl RigidBlock {
 
     /// Adds to the smooth end acceleration the response to a wrench.
     pub fn add_smooth_acceleration(&mut self, wrench: [f64; 3]) {
-        for i in 0..3 {
-            self.smooth_end[i] += self.inverse_effective[i] * wrench[i];
+        let change = self
+            .inverse_effective
+            .iter()
+            .zip(wrench)
+            .map(|(inverse, value)| inverse * value);
+        for (sum, change) in self.smooth_end.iter_mut().zip(change) {
+            *sum += change;
         }
     }
 
