@@ -84,7 +84,11 @@ pub struct FlexBlock {
     frame_q: FrameMotion,
     pub(super) frame: FrameMotion,
     /// What the balance of angular momentum adds to `δ_θ`.
-    spin_correction: f64,
+    pub(super) spin_correction: f64,
+    /// The part of it that the iterate's placement holds.
+    pub(super) placed_correction: f64,
+    /// `δ_θ` of the last free solve.
+    free_turn: Option<f64>,
     /// `δ` without contact.
     pub(super) free_increment: Vec<f64>,
     /// `δ` of the iterate.
@@ -137,6 +141,8 @@ impl FlexBlock {
             frame_q: FrameMotion::default(),
             frame: FrameMotion::default(),
             spin_correction: 0.0,
+            placed_correction: 0.0,
+            free_turn: None,
             free_increment: zeros(),
             increment: zeros(),
             contact_force: zeros(),
@@ -202,6 +208,8 @@ impl FlexBlock {
         let inertia = self.inertia_of(&state.displacement);
         self.spin_correction =
             (step.dt - step.weights.b1) / step.weights.b1 * state.torque / inertia;
+        self.placed_correction = self.spin_correction;
+        self.free_turn = None;
         self.increment.fill(0.0);
         self.contact_force.fill(0.0);
         if self.kind != Frame::Fixed {
@@ -338,6 +346,13 @@ impl FlexBlock {
         self.n_solves += 1;
         for (free, solved) in self.free_increment.iter_mut().zip(&self.local) {
             *free += solved;
+        }
+        if self.kind != Frame::Fixed {
+            // What the balance of angular momentum has added is now partly in the row: count it once.
+            let turn = self.arms.turn_of(&self.free_increment);
+            if let Some(before) = self.free_turn.replace(turn) {
+                self.spin_correction -= turn - before;
+            }
         }
     }
 
@@ -540,6 +555,7 @@ impl FlexBlock {
         let damped = 1.0 + self.model.rayleigh().mass * b1;
         let change = missing / (self.inertia_of(&self.displacement) * damped);
         self.spin_correction += change / b1;
+        self.placed_correction = self.spin_correction;
         self.frame.spin += change;
         self.frame.angle += 0.5 * self.step.dt * change;
         self.frame.spin_rate += change / self.step.dt;

@@ -52,7 +52,9 @@ impl FlexBlock {
 
     /// Displacement of a node from the current iterate to the end of the step without contact (m).
     pub fn free_offset(&self, node: usize) -> Vec2 {
-        let missing = node_vec(&self.free_increment, node) - node_vec(&self.increment, node);
+        let turn = self.spin_correction - self.placed_correction;
+        let missing = node_vec(&self.free_increment, node) - node_vec(&self.increment, node)
+            + turn * perp(node_vec(&self.arms.reference, node));
         self.step.weights.b0 * (rotation(self.frame.angle) * missing)
     }
 
