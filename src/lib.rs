@@ -1,5 +1,4 @@
-//! Flexible finite-element bodies for [rapier](https://rapier.rs) worlds.
-
+#![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 

@@ -5,6 +5,8 @@
 //! | [`mesh`] | nodes, cells, boundary |
 //! | [`material`] | `sigma(eps)`, its tangent and its energy |
 //! | [`element`] | `k = int B^T D B t dA`, `m = int rho N^T N t dA` |
+//! | [`mass_matrix`] | `M` and its moments |
+//! | [`model`] | `K`, `M` and stresses of one body |
 //! | [`mass`] | nodal masses with an inertia-free contact boundary |
 //! | [`recovery`] | stresses at points and, smoothed, at nodes |
 //!
@@ -12,6 +14,7 @@
 
 pub mod element;
 pub mod mass;
+pub mod mass_matrix;
 pub mod material;
 pub mod mesh;
 pub mod model;

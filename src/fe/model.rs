@@ -4,23 +4,13 @@
 
 use super::element::{Element, ElementError, MAX_NODES, default_element};
 use super::mass::{self, MassError};
+pub use super::mass_matrix::{MassKind, MassMatrix};
 use super::material::{Material, Rayleigh};
 use super::mesh::{Cell, Mesh};
 use super::recovery::{CellStress, Stress, point_stresses, smooth_to_nodes};
 use crate::linalg::block_matrix::BlockMatrix;
-use crate::math::{Vec2, cross, node_vec};
 use std::sync::Arc;
 use thiserror::Error;
-
-/// How the mass of a body is represented.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum MassKind {
-    /// Nodal masses (row sums; HRZ on quadratic elements).
-    #[default]
-    Lumped,
-    /// `m = ∫ ρ N N t dA`, with the pattern of the stiffness.
-    Consistent,
-}
 
 /// Why a model cannot be assembled.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -52,91 +42,6 @@ pub enum ModelError {
         "a consistent mass cannot be redistributed: choose a lumped mass, or keep the inertia of the contact boundary"
     )]
     ConsistentRedistribution,
-}
-
-/// The mass matrix, the same in x and y.
-#[derive(Clone, Debug)]
-pub enum MassMatrix {
-    /// One mass per node (kg).
-    Lumped(Vec<f64>),
-    /// Blocks `m_ab I` (kg).
-    Consistent(BlockMatrix),
-}
-
-impl MassMatrix {
-    /// Row sums per node, `M 1` (kg).
-    pub fn node_sums(&self) -> Vec<f64> {
-        match self {
-            Self::Lumped(mass) => mass.clone(),
-            Self::Consistent(matrix) => {
-                let ones = vec![1.0; matrix.n_dofs()];
-                let mut sums = vec![0.0; matrix.n_dofs()];
-                matrix.multiply(&ones, &mut sums);
-                sums.iter().step_by(2).copied().collect()
-            }
-        }
-    }
-
-    /// `y += scale M x`; both interleaved.
-    pub fn multiply_add(&self, scale: f64, x: &[f64], y: &mut [f64]) {
-        match self {
-            Self::Lumped(mass) => {
-                for ((y, x), mass) in y.chunks_exact_mut(2).zip(x.chunks_exact(2)).zip(mass) {
-                    let mass = scale * mass;
-                    y[0] += mass * x[0];
-                    y[1] += mass * x[1];
-                }
-            }
-            Self::Consistent(matrix) => matrix.multiply_add(scale, x, y),
-        }
-    }
-
-    /// Adds `scale M` to a block matrix of the same pattern.
-    pub fn add_to(&self, scale: f64, matrix: &mut BlockMatrix) {
-        match self {
-            Self::Lumped(mass) => {
-                for (node, mass) in mass.iter().enumerate() {
-                    matrix.add_diagonal(node, [scale * mass, scale * mass]);
-                }
-            }
-            Self::Consistent(mass) => matrix.add_scaled(scale, mass),
-        }
-    }
-
-    /// `x·M y` over all dofs.
-    pub fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
-        match self {
-            Self::Lumped(mass) => x
-                .chunks_exact(2)
-                .zip(y.chunks_exact(2))
-                .zip(mass)
-                .map(|((x, y), mass)| mass * (x[0] * y[0] + x[1] * y[1]))
-                .sum(),
-            Self::Consistent(matrix) => (0..matrix.n_nodes())
-                .map(|node| {
-                    let [a, b] = matrix.multiply_node(node, y);
-                    x[2 * node] * a + x[2 * node + 1] * b
-                })
-                .sum(),
-        }
-    }
-
-    /// `Σ (x - c) × (M y)`: the moment of the mass-weighted vectors `y` about `centre`.
-    pub fn moment(&self, centre: Vec2, x: &[f64], y: &[f64]) -> f64 {
-        match self {
-            Self::Lumped(mass) => mass
-                .iter()
-                .enumerate()
-                .map(|(node, mass)| mass * cross(node_vec(x, node) - centre, node_vec(y, node)))
-                .sum(),
-            Self::Consistent(matrix) => (0..matrix.n_nodes())
-                .map(|node| {
-                    let [a, b] = matrix.multiply_node(node, y);
-                    cross(node_vec(x, node) - centre, Vec2::new(a, b))
-                })
-                .sum(),
-        }
-    }
 }
 
 /// What a model is assembled from.

@@ -1,5 +1,6 @@
 //! The step: detect, claim, predict, constrain, solve, correct, hand back.
 
+mod accounts;
 mod flex_pipeline;
 mod report;
 

@@ -5,7 +5,9 @@
 
 mod compliance;
 mod flex_block;
+mod flex_momentum;
 mod flex_motion;
+mod flex_solve;
 mod rigid_block;
 
 pub use flex_block::{FlexBlock, FlexLoad, Response, Step};

@@ -1,0 +1,134 @@
+//! Accounts of a solved island: what it wants to commit, and what the report says of it.
+
+use super::flex_pipeline::FlexPipeline;
+use super::report::{ContactReport, Participant};
+use crate::body::FlexBodySet;
+use crate::constraint::contact::{Owner, Remembered};
+use crate::coupling::{Landing, RapierSets};
+use crate::kkt::{ActiveContact, IslandSummary};
+use crate::linalg::complementarity::Status;
+use crate::math::{Vec2, cross, from_rapier};
+use crate::system::{Block, Step};
+
+impl FlexPipeline {
+    /// Notes what the solved island wants to commit and to report.
+    pub(super) fn note(
+        &mut self,
+        step: Step,
+        summary: &IslandSummary,
+        reserve: f64,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) {
+        for &(block, handle) in &self.gatherer.bodies {
+            if let Block::Rigid(block) = &self.island.blocks[block] {
+                self.landings
+                    .push(Landing::new(handle, *block.current(), block.smooth_end));
+            }
+        }
+        let n_flex = self.island.flex_index.iter().flatten().count().max(1);
+        for &index in self.island.flex_index.iter().flatten() {
+            self.reserves.push((index, reserve / n_flex as f64));
+        }
+        for slot in 0..self.island.contacts.len() {
+            let contact = &self.island.contacts[slot];
+            let key = self.island.candidates[contact.candidate].key;
+            let state = Remembered {
+                normal: contact.multiplier[0],
+                tangent: contact.multiplier[1],
+                feature: contact.kinematics.feature,
+            };
+            self.memory.remember(key, state);
+            if contact.is_closed() {
+                let report = self.contact_report(contact, step, sets, flex_bodies);
+                self.report_residuals(slot);
+                self.report.contacts.extend(report);
+            }
+        }
+        let report = &mut self.report;
+        report.gap_violation = report.gap_violation.max(summary.gap_violation);
+        report.solver_residual = report.solver_residual.max(summary.residual);
+        report.n_newton = report.n_newton.max(summary.n_newton);
+        report.n_pivots += summary.n_pivots;
+        report.energy_limited += summary.limited;
+        report.energy.kinetic += summary.end_energy[0];
+        report.energy.elastic += summary.end_energy[1];
+        let gain: f64 =
+            summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
+        report.energy.dissipated += summary.work - gain;
+        self.report_momentum(from_rapier(sets.gravity), flex_bodies);
+    }
+
+    fn report_residuals(&mut self, slot: usize) {
+        let contact = &self.island.contacts[slot];
+        let law = self.island.candidates[contact.candidate].law;
+        let [normal, tangent] = contact.multiplier;
+        let report = &mut self.report;
+        report.complementarity_residual = report
+            .complementarity_residual
+            .max(contact.kinematics.gap.abs());
+        let excess = (tangent.abs() - law.friction * normal).max(0.0) / normal;
+        report.cone_residual = report.cone_residual.max(excess);
+    }
+
+    fn contact_report(
+        &self,
+        contact: &ActiveContact,
+        step: Step,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) -> Option<ContactReport> {
+        let key = self.island.candidates[contact.candidate].key;
+        let participant = |owner| match owner {
+            Owner::Flex(index) => flex_bodies
+                .at_index(index)
+                .map(|(handle, _)| Participant::Flex(handle)),
+            Owner::Collider(index) => sets
+                .colliders
+                .get_unknown_gen(index)
+                .map(|(_, handle)| Participant::Rigid(handle)),
+        };
+        let [normal_force, tangential_force] = contact.force(step.dt);
+        Some(ContactReport {
+            position: contact.kinematics.position.into(),
+            normal: contact.kinematics.normal.into(),
+            gap: contact.kinematics.gap,
+            normal_force,
+            tangential_force,
+            sticks: contact.status[1] == Status::Stick,
+            contactor: participant(key.contactor)?,
+            target: participant(key.target)?,
+        })
+    }
+
+    /// Adds the island's momentum and potential energy.
+    fn report_momentum(&mut self, gravity: Vec2, flex_bodies: &FlexBodySet) {
+        let origin = Vec2::zeros();
+        for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
+            let report = &mut self.report;
+            match (block, index) {
+                (Block::Flex(block), Some(index)) => {
+                    let scale = flex_bodies
+                        .at_index(*index)
+                        .map_or(1.0, |(_, body)| body.gravity_scale());
+                    let (momentum, first_moment) = block.momentum();
+                    report.momentum[0] += momentum.x;
+                    report.momentum[1] += momentum.y;
+                    report.angular_momentum += block.angular_momentum(origin);
+                    report.energy.potential -= scale * gravity.dot(&first_moment);
+                }
+                (Block::Rigid(block), _) if !block.is_prescribed() => {
+                    let [mass, mass_y, inertia] = block.mass();
+                    let motion = block.current();
+                    let momentum = Vec2::new(mass * motion.velocity.x, mass_y * motion.velocity.y);
+                    report.momentum[0] += momentum.x;
+                    report.momentum[1] += momentum.y;
+                    report.angular_momentum +=
+                        inertia * motion.spin + cross(motion.centre, momentum);
+                    report.energy.potential -= mass.max(mass_y) * gravity.dot(&motion.centre);
+                }
+                _ => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Angular momentum of a flexible block: the angle obeys its balance instead of its row of (C.5), which is exact for
+//! finite displacements too; and impulses at velocity level.
+
+use super::flex_block::{FlexBlock, Response};
+use crate::body::{Frame, FrameMotion};
+use crate::integrator::Weights;
+use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
+
+impl FlexBlock {
+    /// `I(u) ω + Σ m u × u̇` (N m s).
+    pub(super) fn angular_momentum_of(&self, frame: &FrameMotion, u: &[f64], rate: &[f64]) -> f64 {
+        self.inertia_of(u) * frame.spin + self.model.mass().moment(Vec2::zeros(), u, rate)
+    }
+
+    /// `I(u) = Σ m (X + u)²` (kg m²).
+    pub(super) fn inertia_of(&self, u: &[f64]) -> f64 {
+        let linear: f64 = self
+            .arms
+            .mass_moment
+            .iter()
+            .zip(u)
+            .map(|(moment, u)| moment * u)
+            .sum();
+        self.arms.polar + 2.0 * linear + self.model.mass().inner(u, u)
+    }
+
+    /// Corrects the turn so that angular momentum grows by the impulse of the torques.
+    pub(super) fn balance_angular_momentum(&mut self) {
+        let mut torque = 0.0;
+        for node in 0..self.model.n_nodes() {
+            let force = node_vec(&self.force, node) + node_vec(&self.contact_force, node);
+            torque += cross(node_vec(&self.position, node) - self.frame.centre, force);
+        }
+        let momentum = self.angular_momentum_of(&self.frame, &self.displacement, &self.rate);
+        torque -= self.model.rayleigh().mass * momentum;
+        if let Frame::Hinged(_) = self.kind {
+            torque -= self.hinge_inertia();
+        }
+        self.torque = torque;
+        let Weights { b1, .. } = self.step.weights;
+        let impulse = (self.step.dt - b1) * self.start_torque + b1 * torque;
+        let missing = self.start_momentum + impulse - momentum;
+        let damped = 1.0 + self.model.rayleigh().mass * b1;
+        let change = missing / (self.inertia_of(&self.displacement) * damped);
+        self.spin_correction += change / b1;
+        self.placed_correction = self.spin_correction;
+        self.frame.spin += change;
+        self.frame.angle += 0.5 * self.step.dt * change;
+        self.frame.spin_rate += change / self.step.dt;
+        self.place();
+    }
+
+    /// Torque of the frame's own acceleration when the hinge is moved.
+    pub(super) fn hinge_inertia(&self) -> f64 {
+        let acceleration = self.frame.acceleration;
+        let masses = self.arms.node_mass.iter().enumerate();
+        masses
+            .map(|(node, mass)| {
+                mass * cross(
+                    node_vec(&self.position, node) - self.frame.centre,
+                    acceleration,
+                )
+            })
+            .sum()
+    }
+
+    /// Clears the impulses gathered for [`FlexBlock::apply_impulse`].
+    pub fn clear_impulse(&mut self) {
+        self.impulse.fill(0.0);
+    }
+
+    /// Gathers an impulse at a node (N s).
+    pub fn gather_impulse(&mut self, node: usize, impulse: Vec2) {
+        add_node_vec(&mut self.impulse, node, impulse);
+    }
+
+    /// Adds the response to the gathered impulses to the end velocity (N s), or to the end acceleration (N).
+    pub fn apply_impulse(&mut self, to: Response) {
+        self.respond(true);
+        if to == Response::Acceleration {
+            self.torque += self.arms.polar * self.arms.turn_of(&self.local);
+            for (sum, response) in self.increment.iter_mut().zip(&self.local) {
+                *sum += response;
+            }
+            return;
+        }
+        let turn = rotation(self.frame.angle);
+        for node in 0..self.model.n_nodes() {
+            let response = turn * node_vec(&self.local, node);
+            add_node_vec(&mut self.velocity, node, response);
+        }
+        if self.kind != Frame::Fixed {
+            self.balance_impulse();
+        }
+    }
+
+    /// Turns the velocities so that the impulses' moment about the deformed centre is what angular momentum gained.
+    pub(super) fn balance_impulse(&mut self) {
+        let centre = self.frame.centre;
+        let wanted: f64 = (0..self.model.n_nodes())
+            .map(|node| {
+                cross(
+                    node_vec(&self.position, node) - centre,
+                    node_vec(&self.impulse, node),
+                )
+            })
+            .sum();
+        let turn = rotation(self.frame.angle);
+        for node in 0..self.model.n_nodes() {
+            let response = turn * node_vec(&self.local, node);
+            set_node_vec(&mut self.scratch, node, response);
+        }
+        let gained = self
+            .model
+            .mass()
+            .moment(centre, &self.position, &self.scratch);
+        let spin = (wanted - gained) / self.inertia_of(&self.displacement);
+        for node in 0..self.model.n_nodes() {
+            let swing = spin * perp(node_vec(&self.position, node) - centre);
+            add_node_vec(&mut self.velocity, node, swing);
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! The solves of a step: free motion, response to contact forces, and what the increments make of them.
+//!
+//! The increments are one local vector `δ = δ_t + δ_θ J X + δ_u`, for which (C.5) reads, with `C = α M + β K` and
+//! `s = b0 + β b1`,
+//!
+//! ```text
+//! A (δ + w) = Rᵀ(f + Gᵀp) - M (a_q + h + α v_q) + (1 + α b1) M w,      w = (u_q + β u̇_q) / s,
+//! ```
+//!
+//! `a_q` the accelerations before the increment, `h` the centripetal and Coriolis terms: the stiffness need never be
+//! multiplied.
+
+use super::flex_block::FlexBlock;
+use crate::body::Frame;
+use crate::integrator::Weights;
+use crate::math::{Mat2, Vec2, add_node_vec, node_vec, perp, rotation, set_node_vec};
+
+impl FlexBlock {
+    /// Solves for the increment without contact, in the frame and with the inertial terms of the current iterate.
+    pub fn solve_free(&mut self) {
+        let rayleigh = self.model.rayleigh();
+        let Weights { b0, b1 } = self.step.weights;
+        let (s, alpha) = (b0 + rayleigh.stiffness * b1, rayleigh.mass);
+        let kept = 1.0 + alpha * b1;
+        for dof in 0..self.local.len() {
+            let star = (self.displacement_q[dof] + rayleigh.stiffness * self.rate_q[dof]) / s;
+            self.free_increment[dof] = -star;
+            // Accelerations before the increment, less what the stiffness would give back.
+            self.scratch[dof] =
+                self.start_acceleration[dof] + alpha * self.rate_q[dof] - kept * star;
+        }
+        if self.kind == Frame::Fixed {
+            self.local.copy_from_slice(&self.force);
+        } else {
+            self.add_frame_inertia(alpha);
+        }
+        self.model
+            .mass()
+            .multiply_add(-1.0, &self.scratch, &mut self.local);
+        self.add_prescribed(s);
+        self.factor.solve_in_place(&mut self.local);
+        self.n_solves += 1;
+        for (free, solved) in self.free_increment.iter_mut().zip(&self.local) {
+            *free += solved;
+        }
+        if self.kind != Frame::Fixed {
+            // What the balance of angular momentum has added is now partly in the row: count it once.
+            let turn = self.arms.turn_of(&self.free_increment);
+            if let Some(before) = self.free_turn.replace(turn) {
+                self.spin_correction -= turn - before;
+            }
+        }
+    }
+
+    /// Turns the forces into the frame and adds its accelerations, `h` included, to the scratch vector.
+    pub(super) fn add_frame_inertia(&mut self, alpha: f64) {
+        let back = rotation(-self.frame.angle);
+        let frame = &self.frame;
+        let shift = back * (self.frame_q.acceleration + alpha * self.frame_q.velocity);
+        let turn = alpha * self.frame_q.spin;
+        // α J u, with the mean turn of the iterate, beyond what δ_θ J X holds.
+        let swing = frame.spin_rate + alpha * frame.spin;
+        let squared = frame.spin * frame.spin;
+        for node in 0..self.model.n_nodes() {
+            let reference = node_vec(&self.arms.reference, node);
+            let u = node_vec(&self.displacement, node);
+            let inertial = shift + turn * perp(reference) + swing * perp(u)
+                - squared * (reference + u)
+                + 2.0 * frame.spin * perp(node_vec(&self.rate, node));
+            add_node_vec(&mut self.scratch, node, inertial);
+            set_node_vec(&mut self.local, node, back * node_vec(&self.force, node));
+        }
+    }
+
+    /// Puts the known values of the pinned dofs into the right-hand side.
+    pub(super) fn add_prescribed(&mut self, s: f64) {
+        let b0 = self.step.weights.b0;
+        for dof in 0..self.local.len() {
+            if !self.is_fixed[dof] {
+                continue;
+            }
+            // A hinge is the centre of its frame: its displacement there is zero.
+            let target = if self.kind == Frame::Fixed {
+                self.prescribed[dof]
+            } else {
+                0.0
+            };
+            let increment = (target - self.displacement_q[dof]) / b0;
+            let known = increment - self.free_increment[dof];
+            self.local[dof] = known;
+            if known != 0.0 {
+                self.move_to_right_hand_side(dof, s * known);
+            }
+        }
+    }
+
+    /// Subtracts the stiffness column of one pinned dof from the rows of its free neighbours.
+    pub(super) fn move_to_right_hand_side(&mut self, dof: usize, scaled: f64) {
+        let stiffness = self.model.stiffness();
+        let (node, axis) = (dof / 2, dof % 2);
+        for (&neighbour, block) in stiffness
+            .neighbours(node)
+            .iter()
+            .zip(stiffness.row_blocks(node))
+        {
+            for other in 0..2 {
+                let row = 2 * neighbour as usize + other;
+                if !self.is_fixed[row] {
+                    // The matrix is symmetric: the column of the pinned dof is its row.
+                    self.local[row] -= block[2 * axis + other] * scaled;
+                }
+            }
+        }
+    }
+
+    /// Clears the contact forces of the iterate.
+    pub fn clear_contact_force(&mut self) {
+        self.contact_force.fill(0.0);
+    }
+
+    /// Adds a contact force at a node (N).
+    pub fn add_contact_force(&mut self, node: usize, force: Vec2) {
+        add_node_vec(&mut self.contact_force, node, force);
+    }
+
+    /// Computes the end of the step from the free solve and the contact forces given.
+    ///
+    /// Returns how far the frame's angle moved (rad).
+    pub fn correct(&mut self, has_contact: bool) -> f64 {
+        if has_contact {
+            self.respond(false);
+            for (sum, free) in self.local.iter_mut().zip(&self.free_increment) {
+                *sum += free;
+            }
+        } else {
+            self.local.copy_from_slice(&self.free_increment);
+        }
+        self.increment.copy_from_slice(&self.local);
+        if self.kind == Frame::Fixed {
+            self.advance(Vec2::zeros(), 0.0);
+            return 0.0;
+        }
+        let (shift, turn) = self.arms.split(self.kind, &mut self.local);
+        let angle = self.frame.angle;
+        self.advance(shift, turn + self.spin_correction);
+        self.balance_angular_momentum();
+        (self.frame.angle - angle).abs()
+    }
+
+    /// `A⁻¹ Rᵀ f` for the contact forces, or for the impulses, written over `local`.
+    pub(super) fn respond(&mut self, to_impulse: bool) {
+        let source = if to_impulse {
+            &self.impulse
+        } else {
+            &self.contact_force
+        };
+        if self.kind == Frame::Fixed {
+            self.local.copy_from_slice(source);
+        } else {
+            let back = rotation(-self.frame.angle);
+            for node in 0..self.model.n_nodes() {
+                set_node_vec(&mut self.local, node, back * node_vec(source, node));
+            }
+        }
+        for (value, &is_fixed) in self.local.iter_mut().zip(&self.is_fixed) {
+            if is_fixed {
+                *value = 0.0;
+            }
+        }
+        self.factor.solve_in_place(&mut self.local);
+        self.n_solves += 1;
+    }
+
+    /// Applies the increments; `local` holds `δ_u`.
+    pub(super) fn advance(&mut self, shift: Vec2, turn: f64) {
+        let Weights { b0, b1 } = self.step.weights;
+        for dof in 0..self.local.len() {
+            self.displacement[dof] = self.displacement_q[dof] + b0 * self.local[dof];
+            self.rate[dof] = self.rate_q[dof] + b1 * self.local[dof];
+        }
+        if self.kind != Frame::Fixed {
+            let shift = rotation(self.frame.angle) * shift;
+            let before = &self.frame_q;
+            self.frame.centre = before.centre + b0 * shift;
+            self.frame.velocity = before.velocity + b1 * shift;
+            self.frame.acceleration = before.acceleration + shift;
+            self.frame.angle = before.angle + 0.5 * self.step.dt * b1 * turn;
+            self.frame.spin = before.spin + b1 * turn;
+            self.frame.spin_rate = b1 * turn / self.step.dt;
+        }
+        self.place();
+    }
+
+    /// World positions and velocities of the iterate.
+    pub(super) fn place(&mut self) {
+        if self.kind == Frame::Fixed {
+            for ((x, rest), u) in self
+                .position
+                .iter_mut()
+                .zip(self.model.rest_positions())
+                .zip(&self.displacement)
+            {
+                *x = rest + u;
+            }
+            self.velocity.copy_from_slice(&self.rate);
+            return;
+        }
+        let frame = &self.frame;
+        let turn = rotation(frame.angle);
+        for node in 0..self.model.n_nodes() {
+            let arm = node_vec(&self.arms.reference, node) + node_vec(&self.displacement, node);
+            let own = node_vec(&self.rate, node) + frame.spin * perp(arm);
+            set_node_vec(&mut self.position, node, frame.centre + turn * arm);
+            set_node_vec(&mut self.velocity, node, frame.velocity + turn * own);
+        }
+    }
+
+    /// Whether the frame turns, so that the step is non-linear.
+    pub fn is_nonlinear(&self) -> bool {
+        self.kind != Frame::Fixed
+    }
+
+    /// Makes [`super::Block::compliance`] known from `node`.
+    pub fn prepare_compliance(&mut self, node: usize) {
+        if self
+            .compliance
+            .prepare(node, &self.is_fixed, &mut self.factor)
+        {
+            self.n_solves += 2;
+        }
+    }
+
+    /// See [`super::Block::compliance`].
+    pub fn compliance(&self, at: usize, from: usize) -> Mat2 {
+        let local = self.compliance.get(at, from);
+        if self.kind == Frame::Fixed {
+            return local;
+        }
+        let turn = rotation(self.frame.angle);
+        turn * local * turn.transpose()
+    }
+}
