@@ -251,6 +251,17 @@ impl FlexBody {
         }
     }
 
+    /// Strains `[e_xx, e_yy, g_xy]` (-) and stresses (Pa) at the quadrature points of a cell, in the body's frame.
+    ///
+    /// # Errors
+    /// If the element cannot evaluate its strain.
+    ///
+    /// # Panics
+    /// If the cell does not exist.
+    pub fn cell_stress(&self, cell: usize) -> Result<Vec<([f64; 3], Stress)>, ModelError> {
+        self.model.cell_stress(cell, self.local_displacements())
+    }
+
     /// Smoothed stress at every node, in the body's frame (Pa).
     ///
     /// # Errors

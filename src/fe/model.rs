@@ -7,7 +7,7 @@ use super::mass::{self, MassError};
 pub use super::mass_matrix::{MassKind, MassMatrix};
 use super::material::{Material, Rayleigh};
 use super::mesh::{Cell, Mesh};
-use super::recovery::{CellStress, Stress, point_stresses, smooth_to_nodes};
+use super::recovery::{CellStress, Stress, smooth_to_nodes};
 use crate::linalg::block_matrix::BlockMatrix;
 use std::sync::Arc;
 use thiserror::Error;
@@ -222,6 +222,44 @@ impl Model {
         0.5 * twice
     }
 
+    /// Strains `[e_xx, e_yy, g_xy]` (-) and stresses (Pa) at the quadrature points of a cell, in the body's frame.
+    ///
+    /// - `u`: displacements in the body's frame, interleaved (m).
+    ///
+    /// # Errors
+    /// If the element cannot evaluate its strain.
+    ///
+    /// # Panics
+    /// If the cell does not exist or `u` is not two entries per node.
+    pub fn cell_stress(
+        &self,
+        cell: usize,
+        u: &[f64],
+    ) -> Result<Vec<([f64; 3], Stress)>, ModelError> {
+        let wrap = |source| ModelError::Element { cell, source };
+        let nodes = self.mesh().cell(cell);
+        let element = element_of(&self.description.elements, cell, &nodes)?;
+        let n = nodes.nodes.len();
+        let corners = placed_nodes(&self.description.rest_positions, &nodes);
+        let mut local = [0.0; 2 * MAX_NODES];
+        for (slot, &node) in nodes.nodes.iter().enumerate() {
+            local[2 * slot..2 * slot + 2].copy_from_slice(&u[2 * node..2 * node + 2]);
+        }
+        let mut strains = vec![[0.0; 3]; element.quadrature().len()];
+        element
+            .point_strains(
+                &corners[..n],
+                self.material(),
+                &local[..2 * n],
+                &mut strains,
+            )
+            .map_err(wrap)?;
+        Ok(strains
+            .into_iter()
+            .map(|strain| (strain, Stress::of(self.material(), strain)))
+            .collect())
+    }
+
     /// Smoothed stress at every node, in the body's frame (Pa).
     ///
     /// - `u`: displacements in the body's frame, interleaved (m).
@@ -229,34 +267,23 @@ impl Model {
     /// # Errors
     /// If an element cannot evaluate its strain.
     pub fn nodal_stress(&self, u: &[f64]) -> Result<Vec<Stress>, ModelError> {
-        let material = self.material();
         let mut elements = Vec::with_capacity(self.mesh().n_cells());
         let mut stresses = Vec::new();
         let mut spans = Vec::new();
         for (index, cell) in self.mesh().cells().enumerate() {
-            let wrap = |source| ModelError::Element {
+            let element = element_of(&self.description.elements, index, &cell)?;
+            let corners = placed_nodes(&self.description.rest_positions, &cell);
+            let area = element.area(&corners[..cell.nodes.len()]);
+            let area = area.map_err(|source| ModelError::Element {
                 cell: index,
                 source,
-            };
-            let element = element_of(&self.description.elements, index, &cell)?;
-            let n = cell.nodes.len();
-            let corners = placed_nodes(&self.description.rest_positions, &cell);
-            let mut local = [0.0; 2 * MAX_NODES];
-            for (slot, &node) in cell.nodes.iter().enumerate() {
-                local[2 * slot..2 * slot + 2].copy_from_slice(&u[2 * node..2 * node + 2]);
-            }
-            let first = stresses.len();
-            stresses.resize(first + element.quadrature().len(), Stress::default());
-            let points = &mut stresses[first..];
-            point_stresses(
-                element.as_ref(),
-                &corners[..n],
-                material,
-                &local[..2 * n],
-                points,
-            )
-            .map_err(wrap)?;
-            spans.push((first, element.area(&corners[..n]).map_err(wrap)?));
+            })?;
+            spans.push((stresses.len(), area));
+            stresses.extend(
+                self.cell_stress(index, u)?
+                    .into_iter()
+                    .map(|(_, stress)| stress),
+            );
             elements.push(element);
         }
         let cells = self.mesh().cells().zip(&elements).zip(&spans).map(

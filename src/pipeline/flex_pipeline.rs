@@ -162,8 +162,50 @@ impl FlexPipeline {
         self.step_sets(RapierSets::of_world(world, hooks, events), flex_bodies)
     }
 
-    /// [`FlexPipeline::step`] for programs that keep rapier's sets apart: the sets hold the arguments of
-    /// `PhysicsPipeline::step`.
+    /// [`FlexPipeline::step`] for programs that keep rapier's sets apart, with the arguments of
+    /// `PhysicsPipeline::step` in their order.
+    ///
+    /// # Errors
+    /// As [`FlexPipeline::step`].
+    #[expect(clippy::too_many_arguments, reason = "they are rapier's")]
+    pub fn step_split(
+        &mut self,
+        flex_bodies: &mut FlexBodySet,
+        physics_pipeline: &mut PhysicsPipeline,
+        gravity: Vector,
+        integration_parameters: &IntegrationParameters,
+        islands: &mut IslandManager,
+        broad_phase: &mut BroadPhaseBvh,
+        narrow_phase: &mut NarrowPhase,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+        impulse_joints: &mut ImpulseJointSet,
+        multibody_joints: &mut MultibodyJointSet,
+        soft_bodies: &mut SoftBodySet,
+        ccd_solver: &mut CCDSolver,
+        hooks: &dyn PhysicsHooks,
+        events: &dyn EventHandler,
+    ) -> Result<&StepReport, StepError> {
+        let sets = RapierSets {
+            physics_pipeline,
+            gravity,
+            integration_parameters,
+            islands,
+            broad_phase,
+            narrow_phase,
+            bodies,
+            colliders,
+            impulse_joints,
+            multibody_joints,
+            soft_bodies,
+            ccd_solver,
+            hooks,
+            events,
+        };
+        self.step_sets(sets, flex_bodies)
+    }
+
+    /// [`FlexPipeline::step_split`] with the arguments as one value.
     ///
     /// # Errors
     /// As [`FlexPipeline::step`].
