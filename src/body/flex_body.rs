@@ -112,7 +112,14 @@ impl FlexBody {
                 *velocity = 0.0;
             }
         }
+        self.velocity_changed();
+    }
+
+    /// Brings the split and the kinetic energy up to date with the nodal velocities.
+    fn velocity_changed(&mut self) {
         self.state.split_velocity(&self.arms, self.frame);
+        let velocity = &self.state.velocity;
+        self.state.kinetic_energy = 0.5 * self.model.mass().inner(velocity, velocity);
     }
 
     pub(super) fn load(&mut self, nodal_force: Vec<f64>, body_force: Vec2, gravity_scale: f64) {
@@ -388,7 +395,7 @@ impl FlexBody {
         {
             *own = if is_fixed { 0.0 } else { new };
         }
-        self.state.split_velocity(&self.arms, self.frame);
+        self.velocity_changed();
         Ok(())
     }
 

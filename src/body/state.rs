@@ -40,6 +40,8 @@ pub struct FlexState {
     pub acceleration: Vec<f64>,
     /// Torque of all forces about the centre at the end of the step (N m).
     pub torque: f64,
+    /// Kinetic energy (J).
+    pub kinetic_energy: f64,
     /// Elastic energy (J).
     pub elastic_energy: f64,
 }
@@ -59,6 +61,7 @@ impl FlexState {
             rate: zeros.clone(),
             acceleration: zeros,
             torque: 0.0,
+            kinetic_energy: 0.0,
             elastic_energy: 0.0,
         }
     }

@@ -56,6 +56,8 @@ pub struct ActiveContact {
     pub status: [Status; 2],
     /// Whether all grips carry inertia.
     pub is_hard: bool,
+    /// Tangential motion since the beginning of the step (m).
+    pub slip: f64,
     /// Share of the contact that is shorter than the step, 0 to 1 (-).
     pub unresolved: f64,
     /// Approach velocity at the beginning of the step, `n·v` (m/s).

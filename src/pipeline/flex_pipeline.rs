@@ -345,11 +345,9 @@ impl FlexPipeline {
     fn check_finite(&self, flex_bodies: &FlexBodySet) -> Result<(), StepError> {
         for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
             if let (Block::Flex(block), Some(index)) = (block, index) {
-                let is_finite = block
-                    .positions()
-                    .iter()
-                    .chain(block.velocities())
-                    .all(|x| x.is_finite());
+                // A sum of squares is finite only if every term is.
+                let balance = block.end_balance();
+                let is_finite = (balance.kinetic + balance.elastic).is_finite();
                 if let (false, Some((handle, _))) = (is_finite, flex_bodies.at_index(*index)) {
                     return Err(StepError::NotFinite(handle));
                 }
@@ -368,8 +366,7 @@ impl FlexPipeline {
             body.set_energy_reserve(reserve);
             if let Some(block) = self.gatherer.block(index) {
                 block.commit(body.state_mut());
-                body.contact_force_mut()
-                    .copy_from_slice(block.contact_force());
+                block.write_contact_force(body.contact_force_mut());
                 block.write_reactions(body.reaction_mut());
             }
             write_surface(

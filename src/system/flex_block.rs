@@ -48,6 +48,10 @@ pub struct FlexBlock {
     pub(super) kind: Frame,
     pub(super) arms: Arms,
     pub(super) is_fixed: Vec<bool>,
+    /// The pinned dofs, ascending.
+    pub(super) fixed_dofs: Vec<usize>,
+    /// Largest coordinate of the reference placement (m).
+    extent: f64,
     pub(super) effective: BlockMatrix,
     pub(super) factor: BlockCholesky,
     pub(super) factored_for: Option<Weights>,
@@ -61,10 +65,11 @@ pub struct FlexBlock {
     pub(super) start_frame: FrameMotion,
     pub(super) start_torque: f64,
     pub(super) start_momentum: f64,
-    pub(super) start_elastic: f64,
+    /// Kinetic and elastic energy at the beginning (J).
+    pub(super) start_energy: [f64; 2],
+    /// Elastic energy at the end (J).
     pub(super) end_elastic: f64,
-    /// `u`, `ü` at the beginning.
-    pub(super) start_displacement: Vec<f64>,
+    /// `ü` at the beginning.
     pub(super) start_acceleration: Vec<f64>,
     /// Applied nodal forces, gravity included (N).
     pub(super) force: Vec<f64>,
@@ -75,17 +80,10 @@ pub struct FlexBlock {
     /// Frame before the increment, and at the iterate.
     pub(super) frame_q: FrameMotion,
     pub(super) frame: FrameMotion,
-    /// What the balance of angular momentum adds to `δ_θ`.
-    pub(super) spin_correction: f64,
-    /// The part of it that the iterate's placement holds.
-    pub(super) placed_correction: f64,
-    /// `δ_θ` of the last free solve.
-    pub(super) free_turn: Option<f64>,
-    /// `δ` without contact.
-    pub(super) free_increment: Vec<f64>,
     /// `δ` of the iterate.
     pub(super) increment: Vec<f64>,
     pub(super) contact_force: Vec<f64>,
+    pub(super) has_contact_force: bool,
     pub(super) impulse: Vec<f64>,
     pub(super) local: Vec<f64>,
     pub(super) scratch: Vec<f64>,
@@ -103,10 +101,16 @@ impl FlexBlock {
         let effective = model.stiffness().clone();
         let n = model.n_dofs();
         let zeros = || vec![0.0; n];
+        let extent = model
+            .rest_positions()
+            .iter()
+            .fold(0.0f64, |extent, x| extent.max(x.abs()));
         Self {
             arms: Arms::new(&model, kind),
             kind,
+            fixed_dofs: (0..n).filter(|&dof| is_fixed[dof]).collect(),
             is_fixed,
+            extent,
             factor: BlockCholesky::analyze(&effective),
             effective,
             factored_for: None,
@@ -122,9 +126,8 @@ impl FlexBlock {
             start_frame: FrameMotion::default(),
             start_torque: 0.0,
             start_momentum: 0.0,
-            start_elastic: 0.0,
+            start_energy: [0.0; 2],
             end_elastic: 0.0,
-            start_displacement: zeros(),
             start_acceleration: zeros(),
             force: zeros(),
             prescribed: zeros(),
@@ -132,12 +135,9 @@ impl FlexBlock {
             rate_q: zeros(),
             frame_q: FrameMotion::default(),
             frame: FrameMotion::default(),
-            spin_correction: 0.0,
-            placed_correction: 0.0,
-            free_turn: None,
-            free_increment: zeros(),
             increment: zeros(),
             contact_force: zeros(),
+            has_contact_force: false,
             impulse: zeros(),
             local: zeros(),
             scratch: zeros(),
@@ -148,6 +148,11 @@ impl FlexBlock {
             torque: 0.0,
             model,
         }
+    }
+
+    /// Size of the coordinates that round-off is relative to (m).
+    pub fn extent(&self) -> f64 {
+        self.extent.max(self.frame.centre.amax())
     }
 
     /// The model the block was built for.
@@ -180,16 +185,16 @@ impl FlexBlock {
         self.step = step;
         self.start_position.copy_from_slice(&state.position);
         self.start_velocity.copy_from_slice(&state.velocity);
-        self.start_displacement.copy_from_slice(&state.displacement);
         self.start_acceleration.copy_from_slice(&state.acceleration);
         self.start_frame = state.frame;
         self.start_torque = state.torque;
-        self.start_elastic = state.elastic_energy;
+        self.start_energy = [state.kinetic_energy, state.elastic_energy];
         self.prescribed.copy_from_slice(load.prescribed);
-        self.force.copy_from_slice(load.force);
-        for (force, mass) in self.force.chunks_exact_mut(2).zip(&self.arms.node_mass) {
-            force[0] += mass * load.gravity.x;
-            force[1] += mass * load.gravity.y;
+        for (node, mass) in self.arms.node_mass.iter().enumerate() {
+            for axis in 0..2 {
+                let dof = 2 * node + axis;
+                self.force[dof] = load.force[dof] + mass * load.gravity[axis];
+            }
         }
         let start = [&state.displacement[..], &state.rate, &state.acceleration];
         Beta2::predict(step.dt, start, &mut self.displacement_q, &mut self.rate_q);
@@ -197,13 +202,7 @@ impl FlexBlock {
         self.displacement.copy_from_slice(&state.displacement);
         self.rate.copy_from_slice(&state.rate);
         self.predict_frame();
-        let inertia = self.inertia_of(&state.displacement);
-        self.spin_correction =
-            (step.dt - step.weights.b1) / step.weights.b1 * state.torque / inertia;
-        self.placed_correction = self.spin_correction;
-        self.free_turn = None;
-        self.increment.fill(0.0);
-        self.contact_force.fill(0.0);
+        self.clear_contact_force();
         if self.kind != Frame::Fixed {
             self.start_momentum =
                 self.angular_momentum_of(&self.start_frame, &state.displacement, &state.rate);

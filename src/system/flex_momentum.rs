@@ -42,8 +42,6 @@ impl FlexBlock {
         let missing = self.start_momentum + impulse - momentum;
         let damped = 1.0 + self.model.rayleigh().mass * b1;
         let change = missing / (self.inertia_of(&self.displacement) * damped);
-        self.spin_correction += change / b1;
-        self.placed_correction = self.spin_correction;
         self.frame.spin += change;
         self.frame.angle += 0.5 * self.step.dt * change;
         self.frame.spin_rate += change / self.step.dt;
@@ -76,7 +74,7 @@ impl FlexBlock {
 
     /// Adds the response to the gathered impulses to the end velocity (N s), or to the end acceleration (N).
     pub fn apply_impulse(&mut self, to: Response) {
-        self.respond(true);
+        self.respond_to_impulse();
         if to == Response::Acceleration {
             self.torque += self.arms.polar * self.arms.turn_of(&self.local);
             for (sum, response) in self.increment.iter_mut().zip(&self.local) {

@@ -50,23 +50,15 @@ impl FlexBlock {
         self.model.is_massless(node)
     }
 
-    /// Displacement of a node from the current iterate to the end of the step without contact (m).
-    pub fn free_offset(&self, node: usize) -> Vec2 {
-        let turn = self.spin_correction - self.placed_correction;
-        let missing = node_vec(&self.free_increment, node) - node_vec(&self.increment, node)
-            + turn * perp(node_vec(&self.arms.reference, node));
-        self.step.weights.b0 * (rotation(self.frame.angle) * missing)
-    }
-
     /// Acceleration of a node at the end of the step, linear in the increments (m/s²).
     pub fn end_acceleration(&self, node: usize) -> Vec2 {
         let own = node_vec(&self.start_acceleration, node) + node_vec(&self.increment, node);
         self.start_frame.acceleration + rotation(self.frame.angle) * own
     }
 
-    /// Contact forces of the iterate, interleaved (N).
-    pub fn contact_force(&self) -> &[f64] {
-        &self.contact_force
+    /// Writes the contact forces of the iterate, interleaved (N).
+    pub fn write_contact_force(&self, forces: &mut [f64]) {
+        forces.copy_from_slice(&self.contact_force);
     }
 
     /// Applied force at a node, gravity included (N).
@@ -111,19 +103,39 @@ impl FlexBlock {
 
     /// Energy at the beginning of the step.
     pub fn start_balance(&self) -> Balance {
-        Balance {
-            kinetic: 0.5
-                * self
-                    .model
-                    .mass()
-                    .inner(&self.start_velocity, &self.start_velocity),
-            elastic: self.start_elastic,
-        }
+        let [kinetic, elastic] = self.start_energy;
+        Balance { kinetic, elastic }
     }
 
-    /// Energy of the current iterate.
-    pub fn end_balance(&mut self) -> Balance {
-        self.end_elastic = self.model.elastic_energy(&self.displacement);
+    /// Measures the elastic energy of the iterate, before anything but positions has been corrected.
+    ///
+    /// Where nothing else resists, `½ u·(f + Gᵀp - M (a + α v))` is what `½ u·K u` is, without the product.
+    pub fn measure_elastic_energy(&mut self) {
+        let rayleigh = self.model.rayleigh();
+        let is_moved = self
+            .fixed_dofs
+            .iter()
+            .any(|&dof| self.prescribed[dof] != 0.0);
+        let is_direct = self.kind == Frame::Fixed && rayleigh.stiffness == 0.0 && !is_moved;
+        self.end_elastic = match self.model.mass() {
+            MassMatrix::Lumped(mass) if is_direct => {
+                let mut twice = 0.0;
+                for (dof, u) in self.displacement.iter().enumerate() {
+                    let acceleration = self.start_acceleration[dof]
+                        + self.increment[dof]
+                        + rayleigh.mass * self.velocity[dof];
+                    let inner =
+                        self.force[dof] + self.contact_force[dof] - mass[dof / 2] * acceleration;
+                    twice += u * inner;
+                }
+                0.5 * twice
+            }
+            _ => self.model.elastic_energy(&self.displacement),
+        };
+    }
+
+    /// Energy of the current iterate; the elastic part as last measured.
+    pub fn end_balance(&self) -> Balance {
         Balance {
             kinetic: self.kinetic_energy(),
             elastic: self.end_elastic,
@@ -193,8 +205,8 @@ impl FlexBlock {
 
     /// Writes the support forces of all pinned nodes, interleaved (N).
     pub fn write_reactions(&self, reactions: &mut [f64]) {
-        for node in 0..self.model.n_nodes() {
-            set_node_vec(reactions, node, self.reaction(node));
+        for &dof in &self.fixed_dofs {
+            set_node_vec(reactions, dof / 2, self.reaction(dof / 2));
         }
     }
 
@@ -209,12 +221,14 @@ impl FlexBlock {
 
     /// Writes the end of the step over the committed state.
     pub fn commit(&self, state: &mut FlexState) {
+        let kinetic_energy = self.kinetic_energy();
         state.position.copy_from_slice(&self.position);
         state.velocity.copy_from_slice(&self.velocity);
         state.displacement.copy_from_slice(&self.displacement);
         state.frame = self.frame;
         state.torque = self.torque;
         state.elastic_energy = self.end_elastic;
+        state.kinetic_energy = kinetic_energy;
         state.acceleration.copy_from_slice(&self.increment);
         let (shift, _) = self.arms.split(self.kind, &mut state.acceleration);
         for (end, start) in state.acceleration.iter_mut().zip(&self.start_acceleration) {
@@ -225,13 +239,11 @@ impl FlexBlock {
             state.frame.acceleration =
                 self.start_frame.acceleration + rotation(self.frame.angle) * shift;
         }
-        for (dof, &is_fixed) in self.is_fixed.iter().enumerate() {
-            if is_fixed {
-                state.acceleration[dof] = 0.0;
-                if self.kind == Frame::Fixed {
-                    state.velocity[dof] =
-                        (self.position[dof] - self.start_position[dof]) / self.step.dt;
-                }
+        for &dof in &self.fixed_dofs {
+            state.acceleration[dof] = 0.0;
+            if self.kind == Frame::Fixed {
+                state.velocity[dof] =
+                    (self.position[dof] - self.start_position[dof]) / self.step.dt;
             }
         }
         state.split_position(&self.arms, self.kind);

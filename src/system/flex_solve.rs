@@ -16,39 +16,46 @@ use crate::integrator::Weights;
 use crate::math::{Mat2, Vec2, add_node_vec, node_vec, perp, rotation, set_node_vec};
 
 impl FlexBlock {
-    /// Solves for the increment without contact, in the frame and with the inertial terms of the current iterate.
-    pub fn solve_free(&mut self) {
+    /// Solves for the end of the step under the contact forces given, in the frame and with the inertial terms of the
+    /// current iterate.
+    ///
+    /// Returns how far the frame's angle moved (rad).
+    pub fn solve(&mut self) -> f64 {
         let rayleigh = self.model.rayleigh();
         let Weights { b0, b1 } = self.step.weights;
         let (s, alpha) = (b0 + rayleigh.stiffness * b1, rayleigh.mass);
         let kept = 1.0 + alpha * b1;
         for dof in 0..self.local.len() {
             let star = (self.displacement_q[dof] + rayleigh.stiffness * self.rate_q[dof]) / s;
-            self.free_increment[dof] = -star;
+            self.increment[dof] = -star;
             // Accelerations before the increment, less what the stiffness would give back.
             self.scratch[dof] =
                 self.start_acceleration[dof] + alpha * self.rate_q[dof] - kept * star;
         }
-        if self.kind == Frame::Fixed {
-            self.local.copy_from_slice(&self.force);
-        } else {
-            self.add_frame_inertia(alpha);
-        }
+        self.load_forces(alpha);
         self.model
             .mass()
             .multiply_add(-1.0, &self.scratch, &mut self.local);
         self.add_prescribed(s);
         self.factor.solve_in_place(&mut self.local);
         self.n_solves += 1;
-        for (free, solved) in self.free_increment.iter_mut().zip(&self.local) {
-            *free += solved;
+        for (increment, solved) in self.increment.iter_mut().zip(&self.local) {
+            *increment += solved;
         }
+        self.correct()
+    }
+
+    /// Writes applied and contact forces, in the frame, over `local`.
+    fn load_forces(&mut self, alpha: f64) {
         if self.kind != Frame::Fixed {
-            // What the balance of angular momentum has added is now partly in the row: count it once.
-            let turn = self.arms.turn_of(&self.free_increment);
-            if let Some(before) = self.free_turn.replace(turn) {
-                self.spin_correction -= turn - before;
+            self.add_frame_inertia(alpha);
+        } else if self.has_contact_force {
+            let forces = self.force.iter().zip(&self.contact_force);
+            for (local, (applied, contact)) in self.local.iter_mut().zip(forces) {
+                *local = applied + contact;
             }
+        } else {
+            self.local.copy_from_slice(&self.force);
         }
     }
 
@@ -68,17 +75,16 @@ impl FlexBlock {
                 - squared * (reference + u)
                 + 2.0 * frame.spin * perp(node_vec(&self.rate, node));
             add_node_vec(&mut self.scratch, node, inertial);
-            set_node_vec(&mut self.local, node, back * node_vec(&self.force, node));
+            let force = node_vec(&self.force, node) + node_vec(&self.contact_force, node);
+            set_node_vec(&mut self.local, node, back * force);
         }
     }
 
     /// Puts the known values of the pinned dofs into the right-hand side.
     pub(super) fn add_prescribed(&mut self, s: f64) {
         let b0 = self.step.weights.b0;
-        for dof in 0..self.local.len() {
-            if !self.is_fixed[dof] {
-                continue;
-            }
+        for slot in 0..self.fixed_dofs.len() {
+            let dof = self.fixed_dofs[slot];
             // A hinge is the centre of its frame: its displacement there is zero.
             let target = if self.kind == Frame::Fixed {
                 self.prescribed[dof]
@@ -86,7 +92,7 @@ impl FlexBlock {
                 0.0
             };
             let increment = (target - self.displacement_q[dof]) / b0;
-            let known = increment - self.free_increment[dof];
+            let known = increment - self.increment[dof];
             self.local[dof] = known;
             if known != 0.0 {
                 self.move_to_right_hand_side(dof, s * known);
@@ -115,79 +121,72 @@ impl FlexBlock {
 
     /// Clears the contact forces of the iterate.
     pub fn clear_contact_force(&mut self) {
-        self.contact_force.fill(0.0);
+        if self.has_contact_force {
+            self.contact_force.fill(0.0);
+            self.has_contact_force = false;
+        }
     }
 
     /// Adds a contact force at a node (N).
     pub fn add_contact_force(&mut self, node: usize, force: Vec2) {
         add_node_vec(&mut self.contact_force, node, force);
+        self.has_contact_force = true;
     }
 
-    /// Computes the end of the step from the free solve and the contact forces given.
-    ///
-    /// Returns how far the frame's angle moved (rad).
-    pub fn correct(&mut self, has_contact: bool) -> f64 {
-        if has_contact {
-            self.respond(false);
-            for (sum, free) in self.local.iter_mut().zip(&self.free_increment) {
-                *sum += free;
-            }
-        } else {
-            self.local.copy_from_slice(&self.free_increment);
-        }
-        self.increment.copy_from_slice(&self.local);
+    /// Applies the increments of the iterate; returns how far the frame's angle moved (rad).
+    fn correct(&mut self) -> f64 {
+        let Weights { b0, b1 } = self.step.weights;
         if self.kind == Frame::Fixed {
-            self.advance(Vec2::zeros(), 0.0);
+            let rest = self.model.rest_positions();
+            for dof in 0..self.increment.len() {
+                let increment = self.increment[dof];
+                self.displacement[dof] = self.displacement_q[dof] + b0 * increment;
+                self.rate[dof] = self.rate_q[dof] + b1 * increment;
+                self.position[dof] = rest[dof] + self.displacement[dof];
+                self.velocity[dof] = self.rate[dof];
+            }
             return 0.0;
         }
+        self.local.copy_from_slice(&self.increment);
         let (shift, turn) = self.arms.split(self.kind, &mut self.local);
         let angle = self.frame.angle;
-        self.advance(shift, turn + self.spin_correction);
+        self.advance(shift, turn);
         self.balance_angular_momentum();
         (self.frame.angle - angle).abs()
     }
 
-    /// `A⁻¹ Rᵀ f` for the contact forces, or for the impulses, written over `local`.
-    pub(super) fn respond(&mut self, to_impulse: bool) {
-        let source = if to_impulse {
-            &self.impulse
-        } else {
-            &self.contact_force
-        };
+    /// `A⁻¹ Rᵀ π` for the gathered impulses, written over `local`.
+    pub(super) fn respond_to_impulse(&mut self) {
         if self.kind == Frame::Fixed {
-            self.local.copy_from_slice(source);
+            self.local.copy_from_slice(&self.impulse);
         } else {
             let back = rotation(-self.frame.angle);
             for node in 0..self.model.n_nodes() {
-                set_node_vec(&mut self.local, node, back * node_vec(source, node));
+                set_node_vec(&mut self.local, node, back * node_vec(&self.impulse, node));
             }
         }
-        for (value, &is_fixed) in self.local.iter_mut().zip(&self.is_fixed) {
-            if is_fixed {
-                *value = 0.0;
-            }
+        for &dof in &self.fixed_dofs {
+            self.local[dof] = 0.0;
         }
         self.factor.solve_in_place(&mut self.local);
         self.n_solves += 1;
     }
 
-    /// Applies the increments; `local` holds `δ_u`.
-    pub(super) fn advance(&mut self, shift: Vec2, turn: f64) {
+    /// Applies the increments of a frame that moves; `local` holds `δ_u`.
+    fn advance(&mut self, shift: Vec2, turn: f64) {
         let Weights { b0, b1 } = self.step.weights;
         for dof in 0..self.local.len() {
             self.displacement[dof] = self.displacement_q[dof] + b0 * self.local[dof];
             self.rate[dof] = self.rate_q[dof] + b1 * self.local[dof];
         }
-        if self.kind != Frame::Fixed {
-            let shift = rotation(self.frame.angle) * shift;
-            let before = &self.frame_q;
-            self.frame.centre = before.centre + b0 * shift;
-            self.frame.velocity = before.velocity + b1 * shift;
-            self.frame.acceleration = before.acceleration + shift;
-            self.frame.angle = before.angle + 0.5 * self.step.dt * b1 * turn;
-            self.frame.spin = before.spin + b1 * turn;
-            self.frame.spin_rate = b1 * turn / self.step.dt;
-        }
+        let shift = rotation(self.frame.angle) * shift;
+        let before = &self.frame_q;
+        self.frame.centre = before.centre + b0 * shift;
+        self.frame.velocity = before.velocity + b1 * shift;
+        self.frame.acceleration = before.acceleration + shift;
+        self.frame.angle = before.angle + 0.5 * self.step.dt * b1 * turn;
+        self.frame.spin = before.spin + b1 * turn;
+        self.frame.spin_rate = b1 * turn / self.step.dt;
         self.place();
     }
 

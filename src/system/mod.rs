@@ -86,15 +86,6 @@ impl Block {
         }
     }
 
-    /// Displacement of a grip, linear in the dofs, from the current iterate to the end without multipliers (m).
-    pub fn free_offset(&self, grip: Grip) -> Vec2 {
-        match (self, grip) {
-            (Self::Flex(block), Grip::Node(node)) => block.free_offset(node),
-            (Self::Rigid(block), Grip::Arm(arm)) => block.free_offset(arm),
-            _ => mismatch(),
-        }
-    }
-
     /// Mobility `n·M⁻¹·n` of the block at a grip if it were rigid (1/kg).
     pub fn rigid_mobility(&self, grip: Grip, direction: Vec2) -> f64 {
         match (self, grip) {

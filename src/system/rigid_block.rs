@@ -175,13 +175,6 @@ impl RigidBlock {
         [force.x, force.y, lever.x * force.y - lever.y * force.x]
     }
 
-    /// See [`super::Block::free_offset`].
-    pub fn free_offset(&self, arm: Vec2) -> Vec2 {
-        let lever = rotation(self.current.angle) * arm;
-        self.free.centre - self.current.centre
-            + (self.free.angle - self.current.angle) * perp(lever)
-    }
-
     /// See [`super::Block::smooth_acceleration`]; the centripetal part is left out, as in `G a`.
     pub fn smooth_acceleration(&self, arm: Vec2) -> Vec2 {
         let lever = rotation(self.current.angle) * arm;
