@@ -1,15 +1,13 @@
-//! The description of a flexible body, checked when it is built.
+//! The description of a flexible body.
 
-use super::error::BuildError;
-use super::flex_body::{ContactSettings, FlexBody};
-use super::frame::frame_of_pins;
+use super::contact_settings::ContactSettings;
 use super::pin::Pin;
 use crate::fe::element::Element;
 use crate::fe::material::Material;
 use crate::fe::mesh::generate::{self, PolygonOptions};
 use crate::fe::mesh::{CellKind, Mesh, MeshError};
-use crate::fe::model::{MassKind, Model, ModelDescription};
-use crate::math::{Vec2, perp, rotation};
+use crate::fe::model::MassKind;
+use crate::math::Vec2;
 use crate::rapier::prelude::{ActiveEvents, CoefficientCombineRule, InteractionGroups};
 use std::sync::Arc;
 
@@ -42,23 +40,23 @@ pub enum ContactInertia {
 /// ```
 #[derive(Clone, Debug)]
 pub struct FlexBodyBuilder {
-    mesh: Result<Arc<Mesh>, MeshError>,
-    elements: Vec<Arc<dyn Element>>,
-    material: Option<Arc<dyn Material>>,
-    thickness: f64,
-    mass_kind: MassKind,
-    contact_inertia: ContactInertia,
-    translation: Vec2,
-    rotation: f64,
-    linvel: Vec2,
-    angvel: f64,
-    velocities: Option<Vec<[f64; 2]>>,
-    pins: Vec<(usize, Pin)>,
-    body_force: Vec2,
-    nodal_forces: Vec<(usize, Vec2)>,
-    gravity_scale: f64,
-    contact: ContactSettings,
-    user_data: u128,
+    pub(super) mesh: Result<Arc<Mesh>, MeshError>,
+    pub(super) elements: Vec<Arc<dyn Element>>,
+    pub(super) material: Option<Arc<dyn Material>>,
+    pub(super) thickness: f64,
+    pub(super) mass_kind: MassKind,
+    pub(super) contact_inertia: ContactInertia,
+    pub(super) translation: Vec2,
+    pub(super) rotation: f64,
+    pub(super) linvel: Vec2,
+    pub(super) angvel: f64,
+    pub(super) velocities: Option<Vec<[f64; 2]>>,
+    pub(super) pins: Vec<(usize, Pin)>,
+    pub(super) body_force: Vec2,
+    pub(super) nodal_forces: Vec<(usize, Vec2)>,
+    pub(super) gravity_scale: f64,
+    pub(super) contact: ContactSettings,
+    pub(super) user_data: u128,
 }
 
 impl FlexBodyBuilder {
@@ -260,192 +258,5 @@ impl FlexBodyBuilder {
     pub fn user_data(mut self, data: u128) -> Self {
         self.user_data = data;
         self
-    }
-
-    /// Checks everything and assembles the body, not yet in any world.
-    ///
-    /// # Errors
-    /// [`BuildError`], naming what is wrong and the cure.
-    pub fn build(self) -> Result<FlexBody, BuildError> {
-        self.check_numbers()?;
-        let mesh = self.mesh.clone()?;
-        let material = self.material.clone().ok_or(BuildError::NoMaterial)?;
-        material.validate()?;
-        let n_nodes = mesh.n_nodes();
-        let is_fixed = self.fixed_dofs(n_nodes)?;
-        let turn = rotation(self.rotation);
-        let rest: Vec<f64> = mesh
-            .nodes()
-            .iter()
-            .flat_map(|&node| {
-                let placed = turn * Vec2::from(node) + self.translation;
-                [placed.x, placed.y]
-            })
-            .collect();
-        let frame = frame_of_pins(&rest, &is_fixed).ok_or(BuildError::RotatingPins)?;
-        let massless = self.massless_nodes(&mesh, &is_fixed)?;
-        let model = Model::assemble(ModelDescription {
-            rest_positions: rest.clone(),
-            mesh,
-            elements: self.elements.clone(),
-            material,
-            thickness: self.thickness,
-            mass_kind: self.mass_kind,
-            massless,
-            held: (0..n_nodes)
-                .map(|node| is_fixed[2 * node] && is_fixed[2 * node + 1])
-                .collect(),
-        })?;
-        let nodal_force = self.gather_nodal_forces(n_nodes)?;
-        let mut body = FlexBody::new(
-            Arc::new(model),
-            is_fixed,
-            frame,
-            self.contact,
-            self.user_data,
-        );
-        body.set_initial_velocity(&self.initial_velocity(&body, &rest)?);
-        body.load(nodal_force, self.body_force, self.gravity_scale);
-        Ok(body)
-    }
-
-    fn check_numbers(&self) -> Result<(), BuildError> {
-        let finite = "give a finite number";
-        let positive = "give zero or a positive finite number";
-        let numbers = [
-            ("translation.x", self.translation.x),
-            ("translation.y", self.translation.y),
-            ("rotation", self.rotation),
-            ("linvel.x", self.linvel.x),
-            ("linvel.y", self.linvel.y),
-            ("angvel", self.angvel),
-            ("body_force.x", self.body_force.x),
-            ("body_force.y", self.body_force.y),
-            ("gravity_scale", self.gravity_scale),
-        ];
-        for (name, value) in numbers {
-            if !value.is_finite() {
-                return Err(BuildError::Number {
-                    name,
-                    value,
-                    cure: finite,
-                });
-            }
-        }
-        let contact = [
-            ("friction", self.contact.friction),
-            ("restitution", self.contact.restitution),
-        ];
-        for (name, value) in contact {
-            if !(value.is_finite() && value >= 0.0) {
-                return Err(BuildError::Number {
-                    name,
-                    value,
-                    cure: positive,
-                });
-            }
-        }
-        Ok(())
-    }
-
-    fn fixed_dofs(&self, n_nodes: usize) -> Result<Vec<bool>, BuildError> {
-        let mut is_fixed = vec![false; 2 * n_nodes];
-        for &(node, pin) in &self.pins {
-            if node >= n_nodes {
-                return Err(BuildError::Node {
-                    name: "pin",
-                    node,
-                    n_nodes,
-                });
-            }
-            is_fixed[2 * node] |= pin.x;
-            is_fixed[2 * node + 1] |= pin.y;
-        }
-        Ok(is_fixed)
-    }
-
-    fn massless_nodes(&self, mesh: &Mesh, is_fixed: &[bool]) -> Result<Vec<bool>, BuildError> {
-        let n_nodes = mesh.n_nodes();
-        let chosen = match (&self.contact_inertia, self.mass_kind) {
-            (ContactInertia::Kept, _) | (ContactInertia::Redistributed, MassKind::Consistent) => {
-                &[][..]
-            }
-            (ContactInertia::Redistributed, _) => mesh.boundary().nodes(),
-            (ContactInertia::RedistributedAt(nodes), _) => nodes,
-        };
-        let mut massless = vec![false; n_nodes];
-        for &node in chosen {
-            if node >= n_nodes {
-                return Err(BuildError::Node {
-                    name: "contact_inertia",
-                    node,
-                    n_nodes,
-                });
-            }
-            massless[node] = !(is_fixed[2 * node] && is_fixed[2 * node + 1]);
-        }
-        // Without a free node inside there is nothing to carry the mass: the boundary keeps it.
-        let is_idle =
-            |node: usize| massless[node] || (is_fixed[2 * node] && is_fixed[2 * node + 1]);
-        if (0..n_nodes).all(is_idle) {
-            massless.fill(false);
-        }
-        Ok(massless)
-    }
-
-    fn gather_nodal_forces(&self, n_nodes: usize) -> Result<Vec<f64>, BuildError> {
-        let mut force = vec![0.0; 2 * n_nodes];
-        for &(node, value) in &self.nodal_forces {
-            if node >= n_nodes {
-                return Err(BuildError::Node {
-                    name: "nodal_force",
-                    node,
-                    n_nodes,
-                });
-            }
-            for axis in 0..2 {
-                if !value[axis].is_finite() {
-                    return Err(BuildError::Number {
-                        name: "nodal_force",
-                        value: value[axis],
-                        cure: "give a finite force",
-                    });
-                }
-                force[2 * node + axis] += value[axis];
-            }
-        }
-        Ok(force)
-    }
-
-    fn initial_velocity(&self, body: &FlexBody, rest: &[f64]) -> Result<Vec<f64>, BuildError> {
-        let n_nodes = rest.len() / 2;
-        let centre: Vec2 = body.centre_of_mass().into();
-        let mut velocity = Vec::with_capacity(rest.len());
-        for point in rest.chunks_exact(2) {
-            let v = self.linvel + self.angvel * perp(Vec2::new(point[0], point[1]) - centre);
-            velocity.extend([v.x, v.y]);
-        }
-        if let Some(own) = &self.velocities {
-            if own.len() != n_nodes {
-                return Err(BuildError::Length {
-                    name: "velocities",
-                    found: own.len(),
-                    n_nodes,
-                });
-            }
-            for (v, own) in velocity.chunks_exact_mut(2).zip(own) {
-                for axis in 0..2 {
-                    if !own[axis].is_finite() {
-                        return Err(BuildError::Number {
-                            name: "velocities",
-                            value: own[axis],
-                            cure: "give finite velocities",
-                        });
-                    }
-                    v[axis] += own[axis];
-                }
-            }
-        }
-        Ok(velocity)
     }
 }

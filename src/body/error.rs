@@ -79,6 +79,16 @@ pub enum FlexBodyError {
         /// How many there are.
         n_nodes: usize,
     },
+    /// A list does not have two entries per node.
+    #[error("{name} have {found} entries for {n_nodes} nodes: give two per node, x and y")]
+    Length {
+        /// Which list.
+        name: &'static str,
+        /// Entries given.
+        found: usize,
+        /// Nodes of the body.
+        n_nodes: usize,
+    },
     /// A node is not pinned.
     #[error("node {0} is not pinned: pin it in the builder before prescribing its displacement")]
     NotPinned(usize),

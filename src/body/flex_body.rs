@@ -1,5 +1,6 @@
 //! A flexible body: its model, its committed motion, its loads, and what the last step told about it.
 
+use super::contact_settings::ContactSettings;
 use super::error::FlexBodyError;
 use super::frame::{Arms, Frame};
 use super::state::FlexState;
@@ -7,40 +8,8 @@ use crate::fe::mesh::Mesh;
 use crate::fe::model::{Model, ModelError};
 use crate::fe::recovery::Stress;
 use crate::math::{Vec2, cross, node_vec};
-use crate::rapier::prelude::{
-    ActiveEvents, CoefficientCombineRule, ColliderHandle, InteractionGroups, RigidBodyHandle,
-};
+use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
 use std::sync::Arc;
-
-/// How a body's surface meets others; the names and meanings are rapier's.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactSettings {
-    /// Coulomb's coefficient μ (-).
-    pub friction: f64,
-    /// How friction coefficients combine.
-    pub friction_combine_rule: CoefficientCombineRule,
-    /// Newton's coefficient of restitution (-).
-    pub restitution: f64,
-    /// How coefficients of restitution combine.
-    pub restitution_combine_rule: CoefficientCombineRule,
-    /// Which colliders the body meets.
-    pub collision_groups: InteractionGroups,
-    /// Which events rapier reports.
-    pub active_events: ActiveEvents,
-}
-
-impl Default for ContactSettings {
-    fn default() -> Self {
-        Self {
-            friction: 0.5,
-            friction_combine_rule: CoefficientCombineRule::default(),
-            restitution: 0.0,
-            restitution_combine_rule: CoefficientCombineRule::default(),
-            collision_groups: InteractionGroups::all(),
-            active_events: ActiveEvents::empty(),
-        }
-    }
-}
 
 /// Energy of a body (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -380,8 +349,9 @@ impl FlexBody {
     /// If the length is not two per node or a velocity is not finite.
     pub fn set_velocities(&mut self, velocities: &[f64]) -> Result<(), FlexBodyError> {
         if velocities.len() != self.state.velocity.len() {
-            return Err(FlexBodyError::Node {
-                node: velocities.len() / 2,
+            return Err(FlexBodyError::Length {
+                name: "the velocities",
+                found: velocities.len(),
                 n_nodes: self.n_nodes(),
             });
         }
@@ -424,7 +394,9 @@ impl FlexBody {
         &self.prescribed
     }
 
+    /// The motion, to commit a step to it; from then on the body is started.
     pub(crate) fn state_mut(&mut self) -> &mut FlexState {
+        self.is_started = true;
         &mut self.state
     }
 
@@ -433,9 +405,13 @@ impl FlexBody {
     }
 
     /// Lets the first step give the body its initial accelerations, from its nodal forces and prescribed displacements.
-    /// `give` returns whether it could.
+    /// `give` returns whether it could. They last if the step is committed: one that fails starts the body anew.
     pub(crate) fn start_with(&mut self, give: impl FnOnce(&mut FlexState, &[f64], &[f64]) -> bool) {
-        self.is_started = give(&mut self.state, &self.nodal_force, &self.prescribed);
+        if !give(&mut self.state, &self.nodal_force, &self.prescribed)
+            || !self.state.has_finite_accelerations()
+        {
+            self.state.clear_accelerations();
+        }
     }
 
     pub(crate) fn energy_reserve(&self) -> f64 {

@@ -149,18 +149,17 @@ pub fn frame_of_pins(rest: &[f64], is_fixed: &[bool]) -> Option<Frame> {
 /// Whether the pinned dofs leave no rigid rotation about any centre.
 fn holds_rotation(rest: &[f64], is_fixed: &[bool]) -> bool {
     // Rows [1, 0, -y] and [0, 1, x] act on (t_x, t_y, ω): the rotation is held when all x-rows do not share one y,
-    // or all y-rows do not share one x, up to round-off of the body's size.
-    let size = rest.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-    let spread = |axis: usize| {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for node in 0..rest.len() / 2 {
-            if is_fixed[2 * node + axis] {
-                let across = rest[2 * node + 1 - axis];
-                low = low.min(across);
-                high = high.max(across);
-            }
-        }
-        high - low
+    // or all y-rows do not share one x, up to a billionth of the body's size and the rounding of its coordinates.
+    let spread = |axis: usize, counts: &dyn Fn(usize) -> bool| {
+        let nodes = (0..rest.len() / 2).filter(|&node| counts(node));
+        let ends = nodes.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], node| {
+            let at = rest[2 * node + axis];
+            [low.min(at), high.max(at)]
+        });
+        ends[1] - ends[0]
     };
-    (0..2).any(|axis| spread(axis) > 1e-9 * size)
+    let size = spread(0, &|_| true).max(spread(1, &|_| true));
+    let far = rest.iter().fold(0.0f64, |far, x| far.max(x.abs()));
+    let least = 1e-9 * size + 4.0 * f64::EPSILON * far;
+    (0..2).any(|axis| spread(1 - axis, &|node| is_fixed[2 * node + axis]) > least)
 }

@@ -1,6 +1,8 @@
 //! Flexible bodies: how they are described, what they remember, and the set that holds them.
 
+mod build;
 mod builder;
+mod contact_settings;
 mod error;
 mod flex_body;
 mod frame;
@@ -10,8 +12,9 @@ mod set;
 mod state;
 
 pub use builder::{ContactInertia, FlexBodyBuilder};
+pub use contact_settings::ContactSettings;
 pub use error::{BuildError, FlexBodyError};
-pub use flex_body::{BodyEnergy, ContactSettings, FlexBody};
+pub use flex_body::{BodyEnergy, FlexBody};
 pub use frame::{Arms, Frame, frame_of_pins};
 pub use handle::FlexBodyHandle;
 pub use pin::Pin;

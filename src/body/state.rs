@@ -66,6 +66,26 @@ impl FlexState {
         }
     }
 
+    /// Whether all accelerations are numbers.
+    pub(super) fn has_finite_accelerations(&self) -> bool {
+        let FrameMotion {
+            acceleration,
+            spin_rate,
+            ..
+        } = self.frame;
+        let frame = [acceleration.x, acceleration.y, spin_rate, self.torque];
+        let all = self.acceleration.iter().chain(&frame);
+        all.into_iter().all(|x| x.is_finite())
+    }
+
+    /// Forgets all accelerations.
+    pub(super) fn clear_accelerations(&mut self) {
+        self.acceleration.fill(0.0);
+        self.frame.acceleration = Vec2::zeros();
+        self.frame.spin_rate = 0.0;
+        self.torque = 0.0;
+    }
+
     /// Splits world positions into the placement of the frame and displacements in it.
     ///
     /// Round-off would otherwise leave a rigid part in `u`, which a spinning frame would fling outwards.

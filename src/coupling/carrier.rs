@@ -65,13 +65,11 @@ impl FlexBodySet {
         handle: FlexBodyHandle,
         world: &mut PhysicsWorld,
     ) -> Result<FlexBody, FlexBodyError> {
-        let carrier = self.try_get(handle)?.rigid_body_handle();
-        let collider = self.try_get(handle)?.collider_handle();
-        if !world.bodies.contains(carrier) || !world.colliders.contains(collider) {
+        if !is_carried(self.try_get(handle)?, &world.bodies, &world.colliders) {
             return Err(FlexBodyError::NoCarrier(handle));
         }
         let body = self.take_body(handle)?;
-        world.remove_body(carrier);
+        world.remove_body(body.rigid_body_handle());
         Ok(body)
     }
 
@@ -82,6 +80,23 @@ impl FlexBodySet {
     pub fn forget(&mut self, handle: FlexBodyHandle) -> Result<FlexBody, FlexBodyError> {
         self.take_body(handle)
     }
+}
+
+/// Whether these sets hold the carrier of a body, with its surface where the body is: other worlds have equal handles.
+pub(crate) fn is_carried(body: &FlexBody, bodies: &RigidBodySet, colliders: &ColliderSet) -> bool {
+    let Some(collider) = colliders.get(body.collider_handle()) else {
+        return false;
+    };
+    let surface = collider.shape().as_polyline();
+    let nodes = body.mesh().boundary().nodes();
+    bodies.contains(body.rigid_body_handle())
+        && collider.parent() == Some(body.rigid_body_handle())
+        && surface.is_some_and(|polyline| {
+            let vertices = polyline.vertices();
+            let mut pairs = nodes.iter().zip(vertices);
+            vertices.len() == nodes.len()
+                && pairs.all(|(&node, old)| *old == to_rapier(node_vec(body.positions(), node)))
+        })
 }
 
 /// The surface of a body as a closed polyline, material on the left.

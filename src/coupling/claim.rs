@@ -31,6 +31,8 @@ pub(crate) struct ClaimedFlex {
     pub collider: ColliderHandle,
     /// Box of its surface over the step.
     pub swept: Aabb,
+    /// How far its fastest node goes in the step (m).
+    pub travel: Real,
     /// Size of a boundary segment (m).
     pub edge: f64,
 }
@@ -51,7 +53,6 @@ pub(crate) struct Claims {
     seen: HashSet<(ColliderHandle, ColliderHandle)>,
     swept_hits: Vec<(usize, ColliderHandle)>,
     neighbours: Vec<ColliderHandle>,
-    n_colliders: usize,
 }
 
 impl Claims {
@@ -66,68 +67,28 @@ impl Claims {
         Some(self.root(self.flex.len() + index))
     }
 
-    /// Looks ahead along the velocities with rapier's tree, before the detection step may rebuild it.
+    /// Looks ahead along the velocities of the flexible bodies, before the detection step.
     pub fn look_ahead(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
-        self.gather_flex(sets, flex_bodies);
-        self.swept_hits.clear();
-        let dt = sets.integration_parameters.dt;
-        let fastest = sets
-            .bodies
-            .iter()
-            .filter(|(_, body)| !body.is_fixed() && !body.is_sleeping())
-            .map(|(_, body)| body.linvel().length())
-            .fold(0.0, Real::max);
-        let tree_is_stale = self.n_colliders != sets.colliders.len();
-        self.n_colliders = sets.colliders.len();
-        for (index, flex) in self.flex.iter().enumerate() {
-            let near = flex.swept.loosened(fastest * dt);
-            let mut visit = |handle: ColliderHandle, collider: &Collider| {
-                if handle != flex.collider
-                    && swept_box(sets.bodies, collider, dt).intersects(&flex.swept)
-                {
-                    self.swept_hits.push((index, handle));
-                }
-            };
-            if tree_is_stale {
-                sets.colliders
-                    .iter()
-                    .for_each(|(handle, collider)| visit(handle, collider));
-                continue;
-            }
-            let dispatcher = sets.narrow_phase.query_dispatcher();
-            let filter = QueryFilter::new();
-            let query =
-                sets.broad_phase
-                    .as_query_pipeline(dispatcher, sets.bodies, sets.colliders, filter);
-            for (handle, collider) in query.intersect_aabb_conservative(near) {
-                visit(handle, collider);
-            }
-        }
-        // The order of the tree is not that of the handles.
-        self.swept_hits
-            .sort_unstable_by_key(|(index, handle)| (*index, handle.into_raw_parts()));
-    }
-
-    fn gather_flex(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
         let dt = f64::from(sets.integration_parameters.dt);
         self.flex.clear();
         self.flex_of_collider.clear();
         for (handle, body) in flex_bodies.iter() {
             let nodes = body.mesh().boundary().nodes();
             let mut swept = Aabb::new_invalid();
-            let mut length = 0.0;
+            let (mut length, mut travel) = (0.0, 0.0f64);
             let mut last = node_vec(body.positions(), nodes[nodes.len() - 1]);
             for &node in nodes {
                 let position = node_vec(body.positions(), node);
+                let shift = dt * node_vec(body.velocities(), node);
                 swept.take_point(to_rapier(position));
-                swept.take_point(to_rapier(position + dt * node_vec(body.velocities(), node)));
+                swept.take_point(to_rapier(position + shift));
+                travel = travel.max(shift.norm());
                 length += (position - last).norm();
                 last = position;
             }
             let edge = length / nodes.len() as f64;
             let fall = from_rapier(sets.gravity).norm() * body.gravity_scale().abs() * dt * dt;
-            let margin = 0.5 * edge + fall;
-            let swept = swept.loosened(margin as Real);
+            let swept = loosened(swept, (0.5 * edge + fall) as Real);
             self.flex_of_collider
                 .insert(body.collider_handle(), self.flex.len());
             let index = handle.into_raw_parts().0;
@@ -135,9 +96,59 @@ impl Claims {
                 index,
                 collider: body.collider_handle(),
                 swept,
+                travel: travel as Real,
                 edge,
             });
         }
+    }
+
+    /// Finds what the swept boxes meet, with rapier's tree, after the detection step has taken over the user's changes.
+    fn sweep(&mut self, sets: &RapierSets<'_>) {
+        self.swept_hits.clear();
+        let dt = sets.integration_parameters.dt;
+        let rigid = sets
+            .bodies
+            .iter()
+            .filter(|(_, body)| !body.is_fixed() && !body.is_sleeping())
+            .map(|(_, body)| body.linvel().length() * dt);
+        let farthest = rigid
+            .chain(self.flex.iter().map(|flex| flex.travel))
+            .fold(0.0, Real::max);
+        let dispatcher = sets.narrow_phase.query_dispatcher();
+        let query = sets.broad_phase.as_query_pipeline(
+            dispatcher,
+            sets.bodies,
+            sets.colliders,
+            QueryFilter::new(),
+        );
+        for (index, flex) in self.flex.iter().enumerate() {
+            let near = loosened(flex.swept, farthest);
+            let mut meets_itself = false;
+            let (flex_of_collider, all_flex) = (&self.flex_of_collider, &self.flex);
+            let hits = &mut self.swept_hits;
+            let mut visit = |handle: ColliderHandle, collider: &Collider| {
+                let other = match flex_of_collider.get(&handle) {
+                    Some(&other) => all_flex[other].swept,
+                    None => swept_box(sets.bodies, collider, dt),
+                };
+                if handle != flex.collider && other.intersects(&flex.swept) {
+                    hits.push((index, handle));
+                }
+            };
+            for (handle, collider) in query.intersect_aabb_conservative(near) {
+                meets_itself |= handle == flex.collider;
+                visit(handle, collider);
+            }
+            // A detection step may leave the tree empty: then all colliders are asked.
+            if !meets_itself {
+                sets.colliders
+                    .iter()
+                    .for_each(|(handle, collider)| visit(handle, collider));
+            }
+        }
+        // The order of the tree is not that of the handles.
+        self.swept_hits
+            .sort_unstable_by_key(|(index, handle)| (*index, handle.into_raw_parts()));
     }
 
     /// Walks the contact graph of the detection step.
@@ -148,6 +159,7 @@ impl Claims {
         self.seen.clear();
         self.parent.clear();
         self.parent.extend(0..self.flex.len());
+        self.sweep(sets);
         for flex in 0..self.flex.len() {
             self.collect_neighbours(sets, flex);
             for slot in 0..self.neighbours.len() {
@@ -184,36 +196,24 @@ impl Claims {
             if index != flex {
                 break;
             }
-            if self.passes_filters(sets, own.collider, handle) {
-                self.neighbours.push(handle);
-            }
+            self.neighbours.push(handle);
         }
         self.neighbours
             .sort_unstable_by_key(|handle| handle.into_raw_parts());
         self.neighbours.dedup();
-    }
-
-    /// What rapier's narrow phase would ask of a pair it does not list yet.
-    fn passes_filters(
-        &self,
-        sets: &RapierSets<'_>,
-        own: ColliderHandle,
-        other: ColliderHandle,
-    ) -> bool {
-        let (Some(own), Some(other)) = (sets.colliders.get(own), sets.colliders.get(other)) else {
-            return false;
-        };
-        other.is_enabled()
-            && !own.is_sensor()
-            && !other.is_sensor()
-            && own.collision_groups().test(other.collision_groups())
+        self.neighbours
+            .retain(|&other| may_touch(sets, own.collider, other));
     }
 
     fn add_flex_pair(&mut self, sets: &RapierSets<'_>, flex: usize, other: ColliderHandle) {
         if let Some(&target) = self.flex_of_collider.get(&other) {
-            if self.flex[flex].swept.intersects(&self.flex[target].swept) && flex < target {
-                self.unite(flex, target);
-                self.pairs.push(ClaimedPair::FlexFlex(flex, target));
+            // Met from both sides, or from one only: the pair counts once.
+            let (low, high) = (flex.min(target), flex.max(target));
+            let names = (self.flex[low].collider, self.flex[high].collider);
+            let is_near = self.flex[low].swept.intersects(&self.flex[high].swept);
+            if low < high && is_near && self.seen.insert(names) {
+                self.unite(low, high);
+                self.pairs.push(ClaimedPair::FlexFlex(low, high));
             }
             return;
         }
@@ -221,7 +221,7 @@ impl Claims {
             return;
         };
         let swept = swept_box(sets.bodies, collider, sets.integration_parameters.dt);
-        if collider.is_sensor() || !swept.intersects(&self.flex[flex].swept) {
+        if !swept.intersects(&self.flex[flex].swept) {
             return;
         }
         self.pairs.push(ClaimedPair::FlexRigid(flex, other));
@@ -276,7 +276,7 @@ impl Claims {
                 continue;
             };
             let solves = own_collider.solver_groups().test(collider.solver_groups());
-            if !solves || collider.is_sensor() || !self.seen.insert(ordered) {
+            if !solves || !self.seen.insert(ordered) || !may_touch(sets, ordered.0, ordered.1) {
                 continue;
             }
             self.pairs
@@ -329,6 +329,63 @@ pub(crate) fn claimable_parent(
     (is_free && !is_link).then_some(parent)
 }
 
+/// Whether two colliders may push each other: what rapier's narrow phase asks of a pair, the user's hook included.
+fn may_touch(sets: &RapierSets<'_>, one: ColliderHandle, other: ColliderHandle) -> bool {
+    let (collider1, collider2) = if one.into_raw_parts() < other.into_raw_parts() {
+        (one, other)
+    } else {
+        (other, one)
+    };
+    let (Some(first), Some(second)) =
+        (sets.colliders.get(collider1), sets.colliders.get(collider2))
+    else {
+        return false;
+    };
+    let is_solid = |collider: &Collider| collider.is_enabled() && !collider.is_sensor();
+    let type_of = |collider: &Collider| {
+        let body = collider.parent().and_then(|parent| sets.bodies.get(parent));
+        body.map_or(RigidBodyType::Fixed, RigidBody::body_type)
+    };
+    let types = (type_of(first), type_of(second));
+    let passes = is_solid(first)
+        && is_solid(second)
+        && first.collision_groups().test(second.collision_groups())
+        && [first, second]
+            .iter()
+            .any(|collider| collider.active_collision_types().test(types.0, types.1));
+    if !passes || joint_forbids(sets, first, second) {
+        return false;
+    }
+    let hooks = first.active_hooks() | second.active_hooks();
+    if !hooks.contains(ActiveHooks::FILTER_CONTACT_PAIRS) {
+        return true;
+    }
+    let context = PairFilterContext {
+        bodies: sets.bodies,
+        colliders: sets.colliders,
+        collider1,
+        collider2,
+        rigid_body1: first.parent(),
+        rigid_body2: second.parent(),
+    };
+    let flags = sets.hooks.filter_contact_pair(&context);
+    flags.is_some_and(|flags| flags.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
+}
+
+/// Whether a joint between the bodies of two colliders keeps them from touching.
+fn joint_forbids(sets: &RapierSets<'_>, one: &Collider, other: &Collider) -> bool {
+    let (Some(one), Some(other)) = (one.parent(), other.parent()) else {
+        return false;
+    };
+    let mut joints = sets.impulse_joints.joints_between(one, other);
+    joints.any(|(_, joint)| !joint.data.contacts_enabled())
+}
+
+/// A box grown by a margin; one that is no number counts as none.
+fn loosened(aabb: Aabb, margin: Real) -> Aabb {
+    aabb.loosened(margin.max(0.0))
+}
+
 /// Box of a collider from where it is to where its velocity takes it.
 pub(crate) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) -> Aabb {
     let aabb = collider.compute_aabb();
@@ -342,5 +399,5 @@ pub(crate) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) ->
     let turn = (body.angvel().abs() * dt).min(1.0) * extents.length();
     let shift: Vector = body.linvel() * dt;
     let moved = Aabb::new(aabb.mins + shift, aabb.maxs + shift);
-    aabb.merged(&moved).loosened(turn + 0.01 * extents.length())
+    loosened(aabb.merged(&moved), turn + 0.01 * extents.length())
 }

@@ -11,7 +11,7 @@ use crate::linalg::complementarity::{Problem, RowKind, Status};
 use crate::system::{Block, Grip};
 
 /// Turning below this angle (rad) changes no position by more than round-off.
-const ANGLE_TOLERANCE: f64 = 1e-12;
+const ANGLE_TOLERANCE: f64 = 1e-11;
 
 impl Island {
     pub(super) fn solve_positions(
@@ -52,7 +52,7 @@ impl Island {
             Block::Flex(block) => size.max(block.extent()),
             Block::Rigid(block) => size.max(block.start().centre.amax()),
         });
-        1e-12 * (1.0 + size)
+        1e-11 * (1.0 + size)
     }
 
     /// Opens the working set with what pressed in the last step.

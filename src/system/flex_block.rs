@@ -9,7 +9,7 @@ use crate::fe::model::Model;
 use crate::integrator::{Beta2, Weights};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
-use crate::math::{Vec2, cross, node_vec, perp, set_node_vec};
+use crate::math::{Mat2, Vec2, cross, node_vec, perp, set_node_vec};
 use std::sync::Arc;
 
 /// Everything about a step that is the same for all flexible bodies.
@@ -80,6 +80,8 @@ pub struct FlexBlock {
     /// Frame before the increment, and at the iterate.
     pub(super) frame_q: FrameMotion,
     pub(super) frame: FrameMotion,
+    /// Rotation matrix of the iterate's frame.
+    pub(super) turn: Mat2,
     /// `δ` of the iterate.
     pub(super) increment: Vec<f64>,
     pub(super) contact_force: Vec<f64>,
@@ -135,6 +137,7 @@ impl FlexBlock {
             rate_q: zeros(),
             frame_q: FrameMotion::default(),
             frame: FrameMotion::default(),
+            turn: Mat2::identity(),
             increment: zeros(),
             contact_force: zeros(),
             has_contact_force: false,

@@ -4,7 +4,7 @@
 use super::flex_block::{FlexBlock, Response};
 use crate::body::{Frame, FrameMotion};
 use crate::integrator::Weights;
-use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
+use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, set_node_vec};
 
 impl FlexBlock {
     /// `I(u) ω + Σ m u × u̇` (N m s).
@@ -82,7 +82,7 @@ impl FlexBlock {
             }
             return;
         }
-        let turn = rotation(self.frame.angle);
+        let turn = self.turn;
         for node in 0..self.model.n_nodes() {
             let response = turn * node_vec(&self.local, node);
             add_node_vec(&mut self.velocity, node, response);
@@ -103,7 +103,7 @@ impl FlexBlock {
                 )
             })
             .sum();
-        let turn = rotation(self.frame.angle);
+        let turn = self.turn;
         for node in 0..self.model.n_nodes() {
             let response = turn * node_vec(&self.local, node);
             set_node_vec(&mut self.scratch, node, response);

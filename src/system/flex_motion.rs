@@ -3,7 +3,7 @@
 use super::flex_block::FlexBlock;
 use crate::body::{FlexState, Frame};
 use crate::fe::model::{MassMatrix, Model};
-use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
+use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, set_node_vec};
 
 /// Energy of one motion of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,7 +53,7 @@ impl FlexBlock {
     /// Acceleration of a node at the end of the step, linear in the increments (m/s²).
     pub fn end_acceleration(&self, node: usize) -> Vec2 {
         let own = node_vec(&self.start_acceleration, node) + node_vec(&self.increment, node);
-        self.start_frame.acceleration + rotation(self.frame.angle) * own
+        self.start_frame.acceleration + self.turn * own
     }
 
     /// Writes the contact forces of the iterate, interleaved (N).
@@ -73,7 +73,7 @@ impl FlexBlock {
         if mass > 0.0 && !self.is_fixed[2 * node] && !self.is_fixed[2 * node + 1] {
             let arm = node_vec(&self.position, node) - self.frame.centre;
             self.torque -= cross(arm, force);
-            let local = rotation(-self.frame.angle) * force;
+            let local = self.turn.transpose() * force;
             add_node_vec(&mut self.increment, node, -local / mass);
             add_node_vec(
                 &mut self.velocity,
@@ -89,8 +89,8 @@ impl FlexBlock {
         let lever = cross(node_vec(&self.position, node) - centre, direction);
         match self.kind {
             Frame::Fixed => 0.0,
-            Frame::Hinged(_) => lever * lever / self.polar_inertia(centre),
-            Frame::Free => 1.0 / self.arms.mass + lever * lever / self.polar_inertia(centre),
+            Frame::Hinged(_) => lever * lever / self.arms.polar,
+            Frame::Free => 1.0 / self.arms.mass + lever * lever / self.arms.polar,
         }
     }
 
@@ -236,8 +236,7 @@ impl FlexBlock {
         }
         if self.kind == Frame::Free {
             // The increment may have changed since the frame was advanced: hard contacts, settled accelerations.
-            state.frame.acceleration =
-                self.start_frame.acceleration + rotation(self.frame.angle) * shift;
+            state.frame.acceleration = self.start_frame.acceleration + self.turn * shift;
         }
         for &dof in &self.fixed_dofs {
             state.acceleration[dof] = 0.0;
@@ -272,7 +271,7 @@ impl FlexBlock {
                 block[2] * u.x + block[3] * u.y,
             );
         }
-        let turn = rotation(self.frame.angle);
+        let turn = self.turn;
         let mut reaction =
             turn * force - node_vec(&self.force, node) - node_vec(&self.contact_force, node);
         if let MassMatrix::Lumped(mass) = self.model.mass() {

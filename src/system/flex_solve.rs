@@ -61,7 +61,7 @@ impl FlexBlock {
 
     /// Turns the forces into the frame and adds its accelerations, `h` included, to the scratch vector.
     pub(super) fn add_frame_inertia(&mut self, alpha: f64) {
-        let back = rotation(-self.frame.angle);
+        let back = self.turn.transpose();
         let frame = &self.frame;
         let shift = back * (self.frame_q.acceleration + alpha * self.frame_q.velocity);
         let turn = alpha * self.frame_q.spin;
@@ -160,7 +160,7 @@ impl FlexBlock {
         if self.kind == Frame::Fixed {
             self.local.copy_from_slice(&self.impulse);
         } else {
-            let back = rotation(-self.frame.angle);
+            let back = self.turn.transpose();
             for node in 0..self.model.n_nodes() {
                 set_node_vec(&mut self.local, node, back * node_vec(&self.impulse, node));
             }
@@ -204,8 +204,8 @@ impl FlexBlock {
             self.velocity.copy_from_slice(&self.rate);
             return;
         }
-        let frame = &self.frame;
-        let turn = rotation(frame.angle);
+        self.turn = rotation(self.frame.angle);
+        let (frame, turn) = (&self.frame, self.turn);
         for node in 0..self.model.n_nodes() {
             let arm = node_vec(&self.arms.reference, node) + node_vec(&self.displacement, node);
             let own = node_vec(&self.rate, node) + frame.spin * perp(arm);
@@ -235,7 +235,6 @@ impl FlexBlock {
         if self.kind == Frame::Fixed {
             return local;
         }
-        let turn = rotation(self.frame.angle);
-        turn * local * turn.transpose()
+        self.turn * local * self.turn.transpose()
     }
 }

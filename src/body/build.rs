@@ -1,0 +1,222 @@
+//! Building: a description is checked, assembled and given its initial motion.
+
+use super::builder::{ContactInertia, FlexBodyBuilder};
+use super::error::BuildError;
+use super::flex_body::FlexBody;
+use super::frame::{Frame, frame_of_pins};
+use crate::fe::mesh::Mesh;
+use crate::fe::model::{MassKind, Model, ModelDescription};
+use crate::math::{Vec2, perp, rotation, to_rapier};
+use std::sync::Arc;
+
+impl FlexBodyBuilder {
+    /// Checks everything and assembles the body, not yet in any world.
+    ///
+    /// # Errors
+    /// [`BuildError`], naming what is wrong and the cure.
+    pub fn build(self) -> Result<FlexBody, BuildError> {
+        self.check_numbers()?;
+        let mesh = self.mesh.clone()?;
+        let material = self.material.clone().ok_or(BuildError::NoMaterial)?;
+        material.validate()?;
+        let n_nodes = mesh.n_nodes();
+        let is_fixed = self.fixed_dofs(n_nodes)?;
+        let turn = rotation(self.rotation);
+        let rest: Vec<f64> = mesh
+            .nodes()
+            .iter()
+            .flat_map(|&node| {
+                let placed = turn * Vec2::from(node) + self.translation;
+                [placed.x, placed.y]
+            })
+            .collect();
+        let frame = frame_of_pins(&rest, &is_fixed).ok_or(BuildError::RotatingPins)?;
+        let massless = self.massless_nodes(&mesh, &is_fixed, frame)?;
+        let model = Model::assemble(ModelDescription {
+            rest_positions: rest.clone(),
+            mesh,
+            elements: self.elements.clone(),
+            material,
+            thickness: self.thickness,
+            mass_kind: self.mass_kind,
+            massless,
+            held: (0..n_nodes)
+                .map(|node| is_fixed[2 * node] && is_fixed[2 * node + 1])
+                .collect(),
+        })?;
+        let nodal_force = self.gather_nodal_forces(n_nodes)?;
+        let mut body = FlexBody::new(
+            Arc::new(model),
+            is_fixed,
+            frame,
+            self.contact,
+            self.user_data,
+        );
+        body.set_initial_velocity(&self.initial_velocity(&body, &rest)?);
+        body.load(nodal_force, self.body_force, self.gravity_scale);
+        Ok(body)
+    }
+
+    fn check_numbers(&self) -> Result<(), BuildError> {
+        let finite = "give a finite number";
+        let positive = "give zero or a positive finite number";
+        let numbers = [
+            ("translation.x", self.translation.x),
+            ("translation.y", self.translation.y),
+            ("rotation", self.rotation),
+            ("linvel.x", self.linvel.x),
+            ("linvel.y", self.linvel.y),
+            ("angvel", self.angvel),
+            ("body_force.x", self.body_force.x),
+            ("body_force.y", self.body_force.y),
+            ("gravity_scale", self.gravity_scale),
+        ];
+        for (name, value) in numbers {
+            if !value.is_finite() {
+                return Err(BuildError::Number {
+                    name,
+                    value,
+                    cure: finite,
+                });
+            }
+        }
+        let contact = [
+            ("friction", self.contact.friction),
+            ("restitution", self.contact.restitution),
+        ];
+        for (name, value) in contact {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(BuildError::Number {
+                    name,
+                    value,
+                    cure: positive,
+                });
+            }
+        }
+        // In rapier's precision a large number may be infinite.
+        let held = [
+            ("translation.x", self.translation.x),
+            ("translation.y", self.translation.y),
+            ("friction", self.contact.friction),
+            ("restitution", self.contact.restitution),
+        ];
+        for (name, value) in held {
+            if !to_rapier(Vec2::new(value, 0.0)).x.is_finite() {
+                return Err(BuildError::Number {
+                    name,
+                    value,
+                    cure: "give a number that rapier's precision can hold",
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn fixed_dofs(&self, n_nodes: usize) -> Result<Vec<bool>, BuildError> {
+        let mut is_fixed = vec![false; 2 * n_nodes];
+        for &(node, pin) in &self.pins {
+            if node >= n_nodes {
+                return Err(BuildError::Node {
+                    name: "pin",
+                    node,
+                    n_nodes,
+                });
+            }
+            is_fixed[2 * node] |= pin.x;
+            is_fixed[2 * node + 1] |= pin.y;
+        }
+        Ok(is_fixed)
+    }
+
+    fn massless_nodes(
+        &self,
+        mesh: &Mesh,
+        is_fixed: &[bool],
+        frame: Frame,
+    ) -> Result<Vec<bool>, BuildError> {
+        let n_nodes = mesh.n_nodes();
+        let chosen = match (&self.contact_inertia, self.mass_kind) {
+            (ContactInertia::Kept, _) | (ContactInertia::Redistributed, MassKind::Consistent) => {
+                &[][..]
+            }
+            (ContactInertia::Redistributed, _) => mesh.boundary().nodes(),
+            (ContactInertia::RedistributedAt(nodes), _) => nodes,
+        };
+        let mut massless = vec![false; n_nodes];
+        for &node in chosen {
+            if node >= n_nodes {
+                return Err(BuildError::Node {
+                    name: "contact_inertia",
+                    node,
+                    n_nodes,
+                });
+            }
+            massless[node] = !(is_fixed[2 * node] && is_fixed[2 * node + 1]);
+        }
+        // The mass needs a free node inside to carry it, and a body that may turn about its centre two of them, or its
+        // rotation would have no inertia. Without them the boundary keeps its mass.
+        let carries =
+            |node: &usize| !(massless[*node] || (is_fixed[2 * node] && is_fixed[2 * node + 1]));
+        let needed = if frame == Frame::Free { 2 } else { 1 };
+        if (0..n_nodes).filter(carries).count() < needed {
+            massless.fill(false);
+        }
+        Ok(massless)
+    }
+
+    fn gather_nodal_forces(&self, n_nodes: usize) -> Result<Vec<f64>, BuildError> {
+        let mut force = vec![0.0; 2 * n_nodes];
+        for &(node, value) in &self.nodal_forces {
+            if node >= n_nodes {
+                return Err(BuildError::Node {
+                    name: "nodal_force",
+                    node,
+                    n_nodes,
+                });
+            }
+            for axis in 0..2 {
+                if !value[axis].is_finite() {
+                    return Err(BuildError::Number {
+                        name: "nodal_force",
+                        value: value[axis],
+                        cure: "give a finite force",
+                    });
+                }
+                force[2 * node + axis] += value[axis];
+            }
+        }
+        Ok(force)
+    }
+
+    fn initial_velocity(&self, body: &FlexBody, rest: &[f64]) -> Result<Vec<f64>, BuildError> {
+        let n_nodes = rest.len() / 2;
+        let centre: Vec2 = body.centre_of_mass().into();
+        let mut velocity = Vec::with_capacity(rest.len());
+        for point in rest.chunks_exact(2) {
+            let v = self.linvel + self.angvel * perp(Vec2::new(point[0], point[1]) - centre);
+            velocity.extend([v.x, v.y]);
+        }
+        if let Some(own) = &self.velocities {
+            if own.len() != n_nodes {
+                return Err(BuildError::Length {
+                    name: "velocities",
+                    found: own.len(),
+                    n_nodes,
+                });
+            }
+            for (v, own) in velocity.chunks_exact_mut(2).zip(own) {
+                for axis in 0..2 {
+                    if !own[axis].is_finite() {
+                        return Err(BuildError::Number {
+                            name: "velocities",
+                            value: own[axis],
+                            cure: "give finite velocities",
+                        });
+                    }
+                    v[axis] += own[axis];
+                }
+            }
+        }
+        Ok(velocity)
+    }
+}
