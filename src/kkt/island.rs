@@ -94,6 +94,8 @@ pub struct IslandSummary {
     pub n_pivots: usize,
     /// Natural-map residual of the last complementarity solve.
     pub residual: f64,
+    /// Whether Newton's iterations failed and a linearised step was taken.
+    pub is_linearized: bool,
     /// Largest overlap left at a candidate (m).
     pub gap_violation: f64,
     /// Energy at the beginning: kinetic, elastic (J).
@@ -170,7 +172,29 @@ impl Island {
         if settings.impact == ImpactTreatment::Stabilized {
             self.limit_energy(settings, allowance, reserve, &mut summary);
         }
+        self.publish_forces(settings.dt);
         Ok(summary)
+    }
+
+    /// Leaves on every flexible block the contact forces that acted, those of impulses included.
+    fn publish_forces(&mut self, dt: f64) {
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.clear_contact_force();
+            }
+        }
+        for contact in &self.contacts {
+            let force = contact.force(dt);
+            Self::spread(
+                &mut self.blocks,
+                &contact.kinematics,
+                force,
+                None,
+                |block, node, force| {
+                    block.add_contact_force(node, force);
+                },
+            );
+        }
     }
 
     pub(super) fn scene<'a>(

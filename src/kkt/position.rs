@@ -13,6 +13,15 @@ use crate::system::{Block, Grip};
 /// Turning below this angle (rad) changes no position by more than round-off.
 const ANGLE_TOLERANCE: f64 = 1e-11;
 
+/// Growth of the error, from that of the first iteration, that will not come back.
+const DIVERGENCE: f64 = 1e2;
+
+/// Multiple of the tolerance that still counts when the iterations are used up.
+const ACCEPTABLE: f64 = 1e5;
+
+/// Solves for the working set of a linearised step.
+const LINEAR_ROUNDS: usize = 3;
+
 impl Island {
     pub(super) fn solve_positions(
         &mut self,
@@ -25,17 +34,8 @@ impl Island {
         self.is_working.clear();
         self.is_working.resize(self.candidates.len(), false);
         self.remember_contacts(memory);
-        for iteration in 0..settings.max_newton {
-            summary.n_newton = iteration + 1;
-            let turned = self.correct();
-            let error = self.refresh_kinematics();
-            let has_more = self.add_violated(tolerance, memory);
-            if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
-                break;
-            }
-            if iteration + 1 < settings.max_newton {
-                self.solve_multipliers(settings, summary)?;
-            }
+        if !self.iterate(settings, memory, tolerance, summary)? {
+            self.linear_step(settings, memory, tolerance, summary)?;
         }
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {
@@ -43,6 +43,67 @@ impl Island {
             }
         }
         summary.gap_violation = self.gap_violation();
+        Ok(())
+    }
+
+    /// Newton's iterations; returns whether they converged.
+    fn iterate(
+        &mut self,
+        settings: &SolveSettings,
+        memory: &ContactMemory,
+        tolerance: f64,
+        summary: &mut IslandSummary,
+    ) -> Result<bool, KktError> {
+        let mut first = f64::INFINITY;
+        for iteration in 0..settings.max_newton {
+            summary.n_newton = iteration + 1;
+            let turned = self.correct();
+            let error = self.refresh_kinematics();
+            let has_more = self.add_violated(tolerance, memory);
+            if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
+                return Ok(true);
+            }
+            if iteration == 0 {
+                first = turned.max(error);
+            }
+            let is_diverging = iteration > 4 && turned.max(error) > DIVERGENCE * first;
+            if is_diverging || !(turned + error).is_finite() {
+                return Ok(false);
+            }
+            if iteration + 1 < settings.max_newton {
+                self.solve_multipliers(settings, summary)?;
+            } else if turned.max(error) <= ACCEPTABLE * tolerance && !has_more {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The step that is taken when Newton's iterations fail: every block linearised, three rounds for the working set.
+    fn linear_step(
+        &mut self,
+        settings: &SolveSettings,
+        memory: &ContactMemory,
+        tolerance: f64,
+        summary: &mut IslandSummary,
+    ) -> Result<(), KktError> {
+        summary.is_linearized = true;
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.linearize();
+            }
+        }
+        self.contacts.clear();
+        self.is_working.fill(false);
+        self.remember_contacts(memory);
+        for _ in 0..LINEAR_ROUNDS {
+            self.correct();
+            self.refresh_kinematics();
+            self.add_violated(tolerance, memory);
+            self.solve_multipliers(settings, summary)?;
+        }
+        self.correct();
+        self.refresh_kinematics();
         Ok(())
     }
 

@@ -49,6 +49,7 @@ impl FlexPipeline {
         report.gap_violation = report.gap_violation.max(summary.gap_violation);
         report.solver_residual = report.solver_residual.max(summary.residual);
         report.n_newton = report.n_newton.max(summary.n_newton);
+        report.n_linearized += usize::from(summary.is_linearized);
         report.n_pivots += summary.n_pivots;
         report.energy_limited += summary.limited;
         report.energy.kinetic += summary.end_energy[0];

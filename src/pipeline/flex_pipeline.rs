@@ -89,7 +89,7 @@ impl Default for FlexPipeline {
 }
 
 impl FlexPipeline {
-    /// A pipeline with the trapezoidal rule and stabilized impacts.
+    /// A pipeline with `Beta2::damped(0.9)` and stabilized impacts.
     pub fn new() -> Self {
         Self {
             integrator: Beta2::default(),

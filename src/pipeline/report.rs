@@ -91,6 +91,7 @@ pub struct StepReport {
     pub(super) n_islands: usize,
     pub(super) n_claimed: usize,
     pub(super) n_newton: usize,
+    pub(super) n_linearized: usize,
     pub(super) n_pivots: usize,
     pub(super) n_factorizations: u64,
     pub(super) times: StageTimes,
@@ -155,6 +156,12 @@ impl StepReport {
     /// Most Newton iterations of an island.
     pub fn n_newton(&self) -> usize {
         self.n_newton
+    }
+
+    /// Islands whose Newton iterations did not converge, so that a linearised step was taken: a sign of strains far from
+    /// small.
+    pub fn n_linearized(&self) -> usize {
+        self.n_linearized
     }
 
     /// Pivots of the complementarity solver, summed over the islands.

@@ -95,6 +95,8 @@ pub struct FlexBlock {
     pub(super) position: Vec<f64>,
     pub(super) velocity: Vec<f64>,
     pub(super) torque: f64,
+    /// Whether the step is linearised; see [`FlexBlock::linearize`].
+    pub(super) is_linear: bool,
 }
 
 impl FlexBlock {
@@ -149,6 +151,7 @@ impl FlexBlock {
             position: zeros(),
             velocity: zeros(),
             torque: 0.0,
+            is_linear: false,
             model,
         }
     }
@@ -204,6 +207,7 @@ impl FlexBlock {
         // The iterate starts from where the body is: the operators of unresolved modes are large and cancel in the solve.
         self.displacement.copy_from_slice(&state.displacement);
         self.rate.copy_from_slice(&state.rate);
+        self.is_linear = false;
         self.predict_frame();
         self.clear_contact_force();
         if self.kind != Frame::Fixed {

@@ -70,17 +70,20 @@ impl FlexBlock {
     /// at velocity level instead.
     pub fn drop_hard_force(&mut self, node: usize, force: Vec2) {
         let mass = self.arms.node_mass[node];
-        if mass > 0.0 && !self.is_fixed[2 * node] && !self.is_fixed[2 * node + 1] {
-            let arm = node_vec(&self.position, node) - self.frame.centre;
-            self.torque -= cross(arm, force);
-            let local = self.turn.transpose() * force;
-            add_node_vec(&mut self.increment, node, -local / mass);
-            add_node_vec(
-                &mut self.velocity,
-                node,
-                -self.step.weights.b1 * force / mass,
-            );
+        if mass <= 0.0 {
+            return;
         }
+        let arm = node_vec(&self.position, node) - self.frame.centre;
+        self.torque -= cross(arm, force);
+        let mut local = self.turn.transpose() * force;
+        for axis in 0..2 {
+            if self.is_fixed[2 * node + axis] {
+                local[axis] = 0.0;
+            }
+        }
+        add_node_vec(&mut self.increment, node, -local / mass);
+        let change = self.turn * local * (self.step.weights.b1 / mass);
+        add_node_vec(&mut self.velocity, node, -change);
     }
 
     /// Mobility of the whole body moving rigidly, `n·M⁻¹·n` at a node (1/kg); zero when its pins hold it.

@@ -62,7 +62,11 @@ impl FlexBlock {
     /// Turns the forces into the frame and adds its accelerations, `h` included, to the scratch vector.
     pub(super) fn add_frame_inertia(&mut self, alpha: f64) {
         let back = self.turn.transpose();
-        let frame = &self.frame;
+        let frame = if self.is_linear {
+            &self.frame_q
+        } else {
+            &self.frame
+        };
         let shift = back * (self.frame_q.acceleration + alpha * self.frame_q.velocity);
         let turn = alpha * self.frame_q.spin;
         // α J u, with the mean turn of the iterate, beyond what δ_θ J X holds.
@@ -70,10 +74,12 @@ impl FlexBlock {
         let squared = frame.spin * frame.spin;
         for node in 0..self.model.n_nodes() {
             let reference = node_vec(&self.arms.reference, node);
-            let u = node_vec(&self.displacement, node);
-            let inertial = shift + turn * perp(reference) + swing * perp(u)
-                - squared * (reference + u)
-                + 2.0 * frame.spin * perp(node_vec(&self.rate, node));
+            let mut inertial = shift + turn * perp(reference) - squared * reference;
+            if !self.is_linear {
+                let u = node_vec(&self.displacement, node);
+                inertial += swing * perp(u) - squared * u
+                    + 2.0 * frame.spin * perp(node_vec(&self.rate, node));
+            }
             add_node_vec(&mut self.scratch, node, inertial);
             let force = node_vec(&self.force, node) + node_vec(&self.contact_force, node);
             set_node_vec(&mut self.local, node, back * force);
@@ -138,8 +144,7 @@ impl FlexBlock {
         let Weights { b0, b1 } = self.step.weights;
         if self.kind == Frame::Fixed {
             let rest = self.model.rest_positions();
-            for dof in 0..self.increment.len() {
-                let increment = self.increment[dof];
+            for (dof, &increment) in self.increment.iter().enumerate() {
                 self.displacement[dof] = self.displacement_q[dof] + b0 * increment;
                 self.rate[dof] = self.rate_q[dof] + b1 * increment;
                 self.position[dof] = rest[dof] + self.displacement[dof];
@@ -151,8 +156,35 @@ impl FlexBlock {
         let (shift, turn) = self.arms.split(self.kind, &mut self.local);
         let angle = self.frame.angle;
         self.advance(shift, turn);
+        if self.is_linear {
+            return 0.0;
+        }
         self.balance_angular_momentum();
         (self.frame.angle - angle).abs()
+    }
+
+    /// Goes back to the beginning and drops what makes the step non-linear: the inertial terms of the displacement in a
+    /// turning frame, and the balance of angular momentum in favour of the row; and with them the stored second rates,
+    /// which is where unresolved vibrations live.
+    ///
+    /// Such a step is first order and stable; it is taken where Newton's iterations do not converge.
+    pub fn linearize(&mut self) {
+        let dt = self.step.dt;
+        let half = 0.5 * dt * dt;
+        for dof in 0..self.start_acceleration.len() {
+            let acceleration = std::mem::take(&mut self.start_acceleration[dof]);
+            self.rate_q[dof] -= dt * acceleration;
+            self.displacement_q[dof] -= dt * self.rate_q[dof] + half * acceleration;
+        }
+        // `displacement_q` is `u` of the beginning now: the iterate starts there, the operator goes on from it.
+        self.displacement.copy_from_slice(&self.displacement_q);
+        self.rate.copy_from_slice(&self.rate_q);
+        for (u, rate) in self.displacement_q.iter_mut().zip(&self.rate_q) {
+            *u += dt * rate;
+        }
+        self.frame = self.frame_q;
+        self.is_linear = true;
+        self.place();
     }
 
     /// `A⁻¹ Rᵀ π` for the gathered impulses, written over `local`.

@@ -122,7 +122,8 @@ impl Candidate {
                 segments,
             } => {
                 let point = scene.blocks[rigid].position(Grip::Arm(arm));
-                let hit = surface_of(scene, flex, segments, point)?;
+                let start = scene.blocks[rigid].start_position(Grip::Arm(arm));
+                let hit = surface_of(scene, flex, segments, (point, start))?;
                 let position = point - (hit.distance) * hit.normal;
                 // The arm of the force ends where the force acts, on the flexible surface.
                 let grip = Grip::Arm(rigid_of(scene, rigid)?.current().arm(position));
@@ -141,7 +142,8 @@ impl Candidate {
                 segments,
             } => {
                 let point = scene.blocks[block].position(Grip::Node(node));
-                let hit = surface_of(scene, flex, segments, point)?;
+                let start = scene.blocks[block].start_position(Grip::Node(node));
+                let hit = surface_of(scene, flex, segments, (point, start))?;
                 Some(on_surface(
                     scene,
                     (block, Grip::Node(node)),
@@ -203,12 +205,13 @@ fn surface_of(
     scene: &Scene<'_>,
     flex: usize,
     segments: (usize, usize),
-    point: Vec2,
+    (point, start): (Vec2, Vec2),
 ) -> Option<SurfacePoint> {
     closest_surface_point(
         flex_of(scene, flex)?,
         &scene.segments[segments.0..segments.1],
         point,
+        start,
     )
 }
 

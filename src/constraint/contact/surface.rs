@@ -16,12 +16,60 @@ pub struct SurfacePoint {
     pub distance: f64,
 }
 
-/// The closest of the listed boundary segments to `point`; `None` if the list is empty.
+/// Where the listed boundary segments meet `point`, which began the step at `start`; `None` if the list is empty.
+///
+/// A point that came in through a segment during the step is measured behind that segment, however thin the body and
+/// wherever the nearest one is now; any other point to the nearest segment or node.
 pub fn closest_surface_point(
     block: &FlexBlock,
     segments: &[u32],
     point: Vec2,
+    start: Vec2,
 ) -> Option<SurfacePoint> {
+    entered_segment(block, segments, point, start)
+        .or_else(|| nearest_segment(block, segments, point))
+}
+
+/// The segment that a point crossed inwards during the step, the shallowest if there are several.
+fn entered_segment(
+    block: &FlexBlock,
+    segments: &[u32],
+    point: Vec2,
+    start: Vec2,
+) -> Option<SurfacePoint> {
+    let boundary = block.model().mesh().boundary();
+    let mut entered: Option<SurfacePoint> = None;
+    for &segment in segments {
+        let [a, b] = boundary.segments()[segment as usize];
+        let (from, to) = (block.position(a), block.position(b));
+        let along = to - from;
+        let normal = -perp(along).normalize();
+        let distance = normal.dot(&(point - from));
+        let xi = (point - from).dot(&along) / along.norm_squared();
+        if distance >= 0.0 || !(-ENTRY_SLOP..=1.0 + ENTRY_SLOP).contains(&xi) {
+            continue;
+        }
+        let (from, to) = (block.start_position(a), block.start_position(b));
+        let outward = -perp(to - from);
+        let was_outside = outward.dot(&(start - from)) >= -ENTRY_SLOP * outward.norm_squared();
+        if was_outside && entered.is_none_or(|best| distance > best.distance) {
+            let xi = xi.clamp(0.0, 1.0);
+            entered = Some(SurfacePoint {
+                segment: segment as usize,
+                xi,
+                normal,
+                distance,
+            });
+        }
+    }
+    entered
+}
+
+/// Part of a segment's length by which a point may miss it and still count as having come in through it.
+const ENTRY_SLOP: f64 = 1e-9;
+
+/// The closest of the listed boundary segments or of their nodes.
+fn nearest_segment(block: &FlexBlock, segments: &[u32], point: Vec2) -> Option<SurfacePoint> {
     let boundary = block.model().mesh().boundary();
     let ends = |segment: usize| {
         let [a, b] = boundary.segments()[segment];

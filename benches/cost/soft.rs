@@ -1,0 +1,173 @@
+//! Rapier's own soft body on the same triangles.
+
+use crate::measure::{Burst, Clock, Outcome, Side, median};
+use crate::scene::{DENSITY, POISSON, Phase, Scene};
+use foil2d::fe::mesh::{CellKind, Mesh, MeshError};
+use foil2d::rapier::math::Real;
+use foil2d::rapier::prelude::*;
+
+/// Collision radius of a particle (m).
+const RADIUS: f64 = 1e-3;
+
+/// How rapier solves for the elasticity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SoftModel {
+    /// Constraints, its default.
+    Constraints,
+    /// Finite elements, at most 20 conjugate-gradient iterations: its default.
+    Fem,
+    /// Finite elements with that cap lifted to 2000.
+    ConvergedFem,
+    /// The same with a tolerance of 1e-8 instead of 1e-5, which `f32` does not reach.
+    TightFem,
+}
+
+/// The models to compare with in a scene.
+pub fn models(scene: &Scene) -> Vec<SoftModel> {
+    let mut models = vec![
+        SoftModel::Constraints,
+        SoftModel::Fem,
+        SoftModel::ConvergedFem,
+    ];
+    if scene.phase == Phase::Clamped {
+        models.push(SoftModel::TightFem);
+    }
+    models
+}
+
+/// One scene with a soft body.
+pub struct SoftSide {
+    scene: Scene,
+    model: SoftModel,
+    world: PhysicsWorld,
+    body: SoftBodyHandle,
+}
+
+impl SoftSide {
+    pub fn new(scene: &Scene, model: SoftModel) -> Result<Self, MeshError> {
+        let mesh = scene.mesh(CellKind::Tri3)?;
+        let mut world = scene.world();
+        let fem = &mut world.integration_parameters.soft_bodies.fem;
+        if matches!(model, SoftModel::ConvergedFem | SoftModel::TightFem) {
+            fem.max_linear_iterations = 2000;
+        }
+        if model == SoftModel::TightFem {
+            fem.linear_tolerance = 1e-8;
+        }
+        let body = world.insert_soft_body(builder(scene, model, &mesh));
+        Ok(Self {
+            scene: *scene,
+            model,
+            world,
+            body,
+        })
+    }
+}
+
+impl SoftSide {
+    /// Whether the body touches the floor.
+    fn is_touching(&self) -> bool {
+        let heights = self.world.soft_bodies[self.body].particle_positions();
+        heights.map(|p| f64::from(p.y)).fold(f64::MAX, f64::min) < 1.5 * RADIUS
+    }
+}
+
+impl Side for SoftSide {
+    fn label(&self) -> String {
+        let model = match self.model {
+            SoftModel::Constraints => "Constraints",
+            SoftModel::Fem => "Fem",
+            SoftModel::ConvergedFem => "converged Fem",
+            SoftModel::TightFem => "Fem to 1e-8",
+        };
+        format!("rapier {model}")
+    }
+
+    fn n_warm_up(&self) -> usize {
+        let n_steps = self.scene.n_warm_up;
+        match (self.scene.phase, self.model) {
+            // It lies still soon after its 27 steps of fall, and its steps are long.
+            (Phase::Landed, SoftModel::ConvergedFem) => n_steps / 3,
+            _ => n_steps,
+        }
+    }
+
+    fn advance(&mut self, n_steps: usize) -> Outcome<()> {
+        for _ in 0..n_steps {
+            self.world.step();
+        }
+        Ok(())
+    }
+
+    fn burst(&mut self, n_steps: usize, clock: &Clock) -> Outcome<Option<Burst>> {
+        let mut whole = Vec::with_capacity(n_steps);
+        for _ in 0..n_steps {
+            let (time, ()) = clock.time(|| self.world.step());
+            if self.scene.phase != Phase::Landed || self.is_touching() {
+                whole.push(time);
+            }
+        }
+        Ok(median(&mut whole).map(|whole| Burst {
+            whole,
+            rapier: None,
+        }))
+    }
+
+    fn tip_deflection(&self) -> f64 {
+        let tip = self.world.soft_bodies[self.body].particle_position(self.scene.tip());
+        0.5 * self.scene.size[1] - f64::from(tip.y)
+    }
+}
+
+fn builder(scene: &Scene, model: SoftModel, mesh: &Mesh) -> SoftBodyBuilder {
+    let [x0, y0] = scene.origin();
+    let place = |&[x, y]: &[f64; 2]| Vector::new((x0 + x) as Real, (y0 + y) as Real);
+    let cells = mesh
+        .cells()
+        .map(|cell| [0, 1, 2].map(|corner| cell.nodes[corner] as u32));
+    let builder = SoftBodyBuilder::new(mesh.nodes().iter().map(place).collect())
+        .cells(cells.collect())
+        .masses(masses(mesh))
+        .cell_model(SoftBodyCellModel::Corotational)
+        .material(material(scene))
+        .solver(if model == SoftModel::Constraints {
+            SoftBodySolver::Constraints
+        } else {
+            SoftBodySolver::Fem
+        })
+        .particle_radius(RADIUS as Real)
+        .can_sleep(false);
+    if scene.phase != Phase::Clamped {
+        return builder;
+    }
+    let is_clamped = |&node: &u32| mesh.nodes()[node as usize][0] == 0.0;
+    // Nothing is near: without a surface it is cheaper.
+    builder
+        .pinned_particles((0..mesh.n_nodes() as u32).filter(is_clamped))
+        .no_surface_collider()
+}
+
+/// Rapier's law is that of plane strain: these moduli make it plane stress.
+fn material(scene: &Scene) -> SoftBodyMaterial {
+    let young = scene.young * (1.0 + 2.0 * POISSON) / (1.0 + POISSON).powi(2);
+    let is_damped = scene.phase != Phase::Clamped;
+    SoftBodyMaterial {
+        young_modulus: young as Real,
+        poisson_ratio: (POISSON / (1.0 + POISSON)) as Real,
+        elastic_damping_ratio: if is_damped { 1.0 } else { 0.0 },
+        ..SoftBodyMaterial::default()
+    }
+}
+
+/// A third of every triangle's mass at each corner (kg).
+fn masses(mesh: &Mesh) -> Vec<Real> {
+    let mut masses = vec![0.0; mesh.n_nodes()];
+    for cell in mesh.cells() {
+        let [a, b, c] = [0, 1, 2].map(|corner| mesh.nodes()[cell.nodes[corner]]);
+        let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+        for &node in cell.nodes {
+            masses[node] += DENSITY * area / 3.0;
+        }
+    }
+    masses.iter().map(|&mass| mass as Real).collect()
+}

@@ -1,0 +1,500 @@
+//! The layers of the crate, read off its own sources: imports point downward, rapier stays at the border, and data never
+//! makes the library panic.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Layers from the top; members of one layer do not import each other.
+const LAYERS: [&[&str]; 9] = [
+    &["pipeline"],
+    &["coupling"],
+    &["kkt"],
+    &["constraint"],
+    &["system"],
+    &["body"],
+    &["fe", "integrator"],
+    &["linalg"],
+    &["math"],
+];
+
+/// Modules that may hold rapier's sets; everything below sees copies of what is in them.
+const BORDER: [&str; 2] = ["coupling", "pipeline"];
+
+/// Rapier's containers and pipelines.
+const SETS: [&str; 13] = [
+    "BroadPhaseBvh",
+    "CCDSolver",
+    "ColliderSet",
+    "CollisionPipeline",
+    "ImpulseJointSet",
+    "IslandManager",
+    "MultibodyJointSet",
+    "NarrowPhase",
+    "PhysicsPipeline",
+    "PhysicsWorld",
+    "QueryPipeline",
+    "RigidBodySet",
+    "SoftBodySet",
+];
+
+/// What `body` may name of rapier: handles, and settings it only passes on.
+const HANDLES_AND_SETTINGS: [&str; 7] = [
+    "ActiveEvents",
+    "CoefficientCombineRule",
+    "ColliderHandle",
+    "Group",
+    "InteractionGroups",
+    "InteractionTestMode",
+    "RigidBodyHandle",
+];
+
+const MOST_LINES: usize = 450;
+
+/// One source file: code with comments, literals and test modules blanked out, line by line as in the file.
+struct Source {
+    /// Path below `src`, with forward slashes.
+    name: String,
+    /// Module path, such as `["fe", "mesh", "cell"]`.
+    module: Vec<String>,
+    code: String,
+    n_lines: usize,
+}
+
+impl Source {
+    fn layer(&self) -> &str {
+        self.module.first().map_or("", String::as_str)
+    }
+
+    fn line_of(&self, offset: usize) -> usize {
+        1 + self.code[..offset].matches('\n').count()
+    }
+}
+
+fn sources() -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut paths = Vec::new();
+    collect(&root, &mut paths);
+    paths.sort();
+    assert!(paths.len() > 20, "found {} files below src", paths.len());
+    paths.iter().map(|path| read(&root, path)).collect()
+}
+
+fn collect(folder: &Path, paths: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("src can be listed") {
+        let path = entry.expect("src can be listed").path();
+        if path.is_dir() {
+            collect(&path, paths);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            paths.push(path);
+        }
+    }
+}
+
+fn read(root: &Path, path: &Path) -> Source {
+    let text = fs::read_to_string(path).expect("a source file is UTF-8");
+    let below = path.strip_prefix(root).expect("the file lies below src");
+    let mut module: Vec<String> = below
+        .with_extension("")
+        .iter()
+        .map(|part| part.to_string_lossy().into_owned())
+        .collect();
+    if module
+        .last()
+        .is_some_and(|last| last == "mod" || last == "lib")
+    {
+        module.pop();
+    }
+    Source {
+        name: below.to_string_lossy().replace('\\', "/"),
+        module,
+        n_lines: text.lines().count(),
+        code: without_test_modules(&without_comments(&text)),
+    }
+}
+
+/// Blanks comments, doc comments and the insides of string and character literals, keeping every line break.
+fn without_comments(text: &str) -> String {
+    let bytes = text.as_bytes();
+    let mut code = text.as_bytes().to_vec();
+    let mut blank = |from: usize, to: usize| {
+        for byte in &mut code[from..to] {
+            if *byte != b'\n' {
+                *byte = b' ';
+            }
+        }
+    };
+    let mut at = 0;
+    while at < bytes.len() {
+        let rest = &text.as_bytes()[at..];
+        let end = if rest.starts_with(b"//") {
+            at + rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len())
+        } else if rest.starts_with(b"/*") {
+            at + end_of_block_comment(rest)
+        } else if let Some(length) = raw_string(rest) {
+            at + length
+        } else if rest[0] == b'"' {
+            at + end_of_quoted(rest, b'"')
+        } else if rest[0] == b'\'' && is_character(rest) {
+            at + end_of_quoted(rest, b'\'')
+        } else {
+            at += 1;
+            continue;
+        };
+        blank(at, end);
+        at = end;
+    }
+    String::from_utf8(code).expect("whole tokens were blanked")
+}
+
+fn end_of_block_comment(rest: &[u8]) -> usize {
+    let (mut depth, mut at) = (0, 0);
+    while at < rest.len() {
+        if rest[at..].starts_with(b"/*") {
+            depth += 1;
+            at += 2;
+        } else if rest[at..].starts_with(b"*/") {
+            depth -= 1;
+            at += 2;
+            if depth == 0 {
+                return at;
+            }
+        } else {
+            at += 1;
+        }
+    }
+    at
+}
+
+/// Length of a raw string literal at the beginning of `rest`.
+fn raw_string(rest: &[u8]) -> Option<usize> {
+    let hashes = rest
+        .strip_prefix(b"r")?
+        .iter()
+        .take_while(|&&b| b == b'#')
+        .count();
+    if rest.get(1 + hashes) != Some(&b'"') {
+        return None;
+    }
+    let close: Vec<u8> = std::iter::once(b'"')
+        .chain(std::iter::repeat_n(b'#', hashes))
+        .collect();
+    let body = &rest[2 + hashes..];
+    let found = body
+        .windows(close.len())
+        .position(|window| window == close)?;
+    Some(2 + hashes + found + close.len())
+}
+
+fn end_of_quoted(rest: &[u8], quote: u8) -> usize {
+    let mut at = 1;
+    while at < rest.len() && rest[at] != quote {
+        at += if rest[at] == b'\\' { 2 } else { 1 };
+    }
+    (at + 1).min(rest.len())
+}
+
+/// Whether a `'` opens a character literal and not a lifetime.
+fn is_character(rest: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(&rest[1..rest.len().min(12)]);
+    let mut characters = text.chars();
+    match characters.next() {
+        Some('\\') => true,
+        Some(_) => characters.next() == Some('\''),
+        None => false,
+    }
+}
+
+/// Blanks items that follow `#[cfg(test)]`, up to the brace that closes them or to their semicolon.
+fn without_test_modules(code: &str) -> String {
+    let mut kept = code.to_owned();
+    while let Some(start) = kept.find("#[cfg(test)]") {
+        let mut depth = 0usize;
+        let mut end = kept.len();
+        for (offset, c) in kept[start..].char_indices() {
+            match c {
+                '{' => depth += 1,
+                '}' if depth == 1 => {
+                    end = start + offset + 1;
+                    break;
+                }
+                '}' => depth -= 1,
+                ';' if depth == 0 => {
+                    end = start + offset + 1;
+                    break;
+                }
+                _ => {}
+            }
+        }
+        let blank: String = kept[start..end]
+            .chars()
+            .map(|c| if c == '\n' { '\n' } else { ' ' })
+            .collect();
+        kept.replace_range(start..end, &blank);
+    }
+    kept
+}
+
+fn is_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// Identifiers of some code with their offsets.
+fn words(code: &str) -> Vec<(usize, &str)> {
+    let mut found = Vec::new();
+    let mut start = None;
+    for (at, c) in code.char_indices().chain([(code.len(), ' ')]) {
+        match (is_word(c), start) {
+            (true, None) => start = Some(at),
+            (false, Some(from)) => {
+                found.push((from, &code[from..at]));
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// First identifiers after a path prefix: one, or all of a brace group.
+fn heads(after: &str) -> Vec<String> {
+    let after = after.trim_start();
+    let Some(group) = after.strip_prefix('{') else {
+        return after
+            .split(|c| !is_word(c))
+            .next()
+            .filter(|word| !word.is_empty())
+            .map(|word| vec![word.to_owned()])
+            .unwrap_or_default();
+    };
+    let (mut depth, mut found, mut item) = (0, Vec::new(), String::new());
+    for c in group.chars() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            ',' if depth == 0 => found.push(std::mem::take(&mut item)),
+            _ => {}
+        }
+        if depth == 0 && c != ',' {
+            item.push(c);
+        }
+    }
+    found.push(item);
+    found
+        .iter()
+        .filter_map(|item| item.trim().split(|c| !is_word(c)).next())
+        .filter(|word| !word.is_empty())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Crate-level modules that a source names, with the offsets: through `crate::`, or by climbing out with `super::`.
+fn named_modules(source: &Source) -> Vec<(usize, String)> {
+    let mut found = Vec::new();
+    let code = &source.code;
+    for (at, word) in words(code) {
+        let mut after = &code[at + word.len()..];
+        match word {
+            "crate" => {}
+            "super" if !code[..at].ends_with("super::") => {
+                let mut climbed = 1;
+                while let Some(rest) = after.strip_prefix("::super") {
+                    climbed += 1;
+                    after = rest;
+                }
+                if climbed < source.module.len() {
+                    continue;
+                }
+            }
+            _ => continue,
+        }
+        if let Some(path) = after.strip_prefix("::") {
+            found.extend(heads(path).into_iter().map(|head| (at, head)));
+        }
+    }
+    found
+}
+
+fn rank(layer: &str) -> Option<usize> {
+    LAYERS.iter().position(|members| members.contains(&layer))
+}
+
+/// Fails with one line per violation: file, line, rule.
+#[track_caller]
+fn assert_none(violations: &[String]) {
+    let mut list = String::new();
+    for violation in violations {
+        let _ = writeln!(list, "  {violation}");
+    }
+    assert!(
+        violations.is_empty(),
+        "{} violations:\n{list}",
+        violations.len()
+    );
+}
+
+#[test]
+fn every_import_points_to_a_lower_layer() {
+    let mut violations = Vec::new();
+    for source in sources() {
+        let Some(own) = rank(source.layer()) else {
+            assert_eq!(source.name, "lib.rs", "{} lies in no layer", source.name);
+            continue;
+        };
+        for (at, named) in named_modules(&source) {
+            let Some(other) = rank(&named) else {
+                continue;
+            };
+            if named != source.layer() && other <= own {
+                violations.push(format!(
+                    "src/{}:{}: `{}` may not import `{named}`: only layers below it",
+                    source.name,
+                    source.line_of(at),
+                    source.layer(),
+                ));
+            }
+        }
+    }
+    assert_none(&violations);
+}
+
+#[test]
+fn rapier_is_named_only_at_the_border() {
+    let mut violations = Vec::new();
+    for source in sources() {
+        let layer = source.layer();
+        if source.name == "lib.rs" || source.name == "math/real.rs" || BORDER.contains(&layer) {
+            continue;
+        }
+        let mut refuse = |at: usize, rule: String| {
+            violations.push(format!(
+                "src/{}:{}: {rule}",
+                source.name,
+                source.line_of(at)
+            ));
+        };
+        for (at, word) in words(&source.code) {
+            let is_rapier = word.starts_with("rapier2d")
+                || word == "parry2d"
+                || (word == "rapier" && source.code[..at].ends_with("crate::"));
+            if !is_rapier {
+                continue;
+            }
+            let path = &source.code[at + word.len()..];
+            let names = path
+                .strip_prefix("::prelude::")
+                .map(heads)
+                .unwrap_or_default();
+            if layer != "body" {
+                refuse(
+                    at,
+                    format!("`{layer}` may not use rapier: pass it numbers instead"),
+                );
+            } else if names.is_empty() {
+                refuse(
+                    at,
+                    "`body` names rapier's handles and settings one by one, from its prelude"
+                        .into(),
+                );
+            }
+            for name in &names {
+                if layer == "body" && !HANDLES_AND_SETTINGS.contains(&name.as_str()) {
+                    refuse(
+                        at,
+                        format!("`body` may not use rapier's `{name}`: handles and settings only"),
+                    );
+                }
+            }
+        }
+    }
+    assert_none(&violations);
+}
+
+#[test]
+fn only_coupling_and_pipeline_touch_rapier_sets() {
+    let mut violations = Vec::new();
+    for source in sources() {
+        if BORDER.contains(&source.layer()) {
+            continue;
+        }
+        for (at, word) in words(&source.code) {
+            if SETS.contains(&word) {
+                violations.push(format!(
+                    "src/{}:{}: `{word}` is rapier's: only `coupling` and `pipeline` may use it",
+                    source.name,
+                    source.line_of(at),
+                ));
+            }
+        }
+    }
+    assert_none(&violations);
+}
+
+#[test]
+fn library_code_has_no_unwrap_no_expect_no_todo_and_nothing_unsafe() {
+    let mut violations = Vec::new();
+    for source in sources() {
+        let code = &source.code;
+        for (at, word) in words(code) {
+            let is_method = code[..at].trim_end().ends_with('.');
+            let next = code[at + word.len()..].chars().next();
+            let rule = match word {
+                "unwrap" | "expect" | "unwrap_unchecked" if is_method => {
+                    "return an error, or state the invariant with `let else`"
+                }
+                "todo" | "unimplemented" | "dbg" if next == Some('!') => "finish it",
+                "unsafe" => "the crate forbids unsafe code",
+                _ => continue,
+            };
+            violations.push(format!(
+                "src/{}:{}: `{word}`: {rule}",
+                source.name,
+                source.line_of(at)
+            ));
+        }
+    }
+    assert_none(&violations);
+}
+
+#[test]
+fn no_source_file_outgrows_a_reader() {
+    let violations: Vec<String> = sources()
+        .iter()
+        .filter(|source| source.n_lines >= MOST_LINES)
+        .map(|source| {
+            format!(
+                "src/{}:{}: a file has fewer than {MOST_LINES} lines: split it by noun",
+                source.name, source.n_lines
+            )
+        })
+        .collect();
+    assert_none(&violations);
+}
+
+#[test]
+fn the_reader_of_this_test_sees_code_and_nothing_else() {
+    let text = "use crate::{fe::mesh, math::{Vec2, Mat2}}; // use crate::kkt;\n\
+                /* crate::body */ let s = \"crate::system\"; let r = r#\"crate::\"coupling\"#;\n\
+                fn f<'a>(c: char) -> bool { c == '\"' } use super::super::linalg;\n\
+                #[cfg(test)]\nmod tests { use crate::pipeline; fn g() { x.unwrap(); } }\n\
+                fn last() { y.unwrap() }\n";
+    let source = Source {
+        name: "sample".into(),
+        module: vec!["system".into(), "block".into()],
+        code: without_test_modules(&without_comments(text)),
+        n_lines: 6,
+    };
+    let named: Vec<(usize, String)> = named_modules(&source)
+        .into_iter()
+        .map(|(at, name)| (source.line_of(at), name))
+        .collect();
+    let expected = [(1, "fe"), (1, "math"), (3, "linalg")];
+    assert_eq!(named, expected.map(|(line, name)| (line, name.to_owned())));
+    let unwraps: Vec<usize> = words(&source.code)
+        .into_iter()
+        .filter(|(_, word)| *word == "unwrap")
+        .map(|(at, _)| source.line_of(at))
+        .collect();
+    assert_eq!(unwraps, [6]);
+}

@@ -1,0 +1,159 @@
+//! The examples hold their headline numbers, and run shortened.
+
+#![allow(
+    clippy::duplicate_mod,
+    reason = "every example brings its own copy of the shared arguments"
+)]
+
+#[path = "../examples/box_on_beam.rs"]
+mod box_on_beam;
+#[path = "../examples/cantilever.rs"]
+mod cantilever;
+#[path = "../examples/custom_element.rs"]
+mod custom_element;
+#[path = "../examples/falling_block.rs"]
+mod falling_block;
+#[path = "../examples/two_blocks.rs"]
+mod two_blocks;
+
+use std::error::Error;
+
+type Outcome = Result<(), Box<dyn Error>>;
+
+fn assert_within(what: &str, value: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (value - expected).abs() <= tolerance,
+        "{what} is {value:e}, not {expected:e} within {tolerance:e}"
+    );
+}
+
+/// Converged plane elasticity: 15.1218 mm and 0.507408 Hz. One per cent is what 63 nodes can give; T3 locks.
+#[test]
+fn a_cantilever_bends_and_vibrates_as_plane_elasticity_says() -> Outcome {
+    let outcome = cantilever::run(&cantilever::cli::Options::default())?;
+    for errors in [outcome.errors, outcome.elements.qm6, outcome.elements.tri6] {
+        assert_within("tip error", errors.tip_error, 0.0, 0.01);
+        assert_within("frequency error", errors.frequency_error, 0.0, 0.01);
+    }
+    // An independent program's T3 on this mesh gives 0.62 of the tip.
+    assert_within(
+        "T3's tip error",
+        outcome.elements.tri3.tip_error,
+        -0.38,
+        0.01,
+    );
+    Ok(())
+}
+
+/// In small strain a beam of any stiffness is the same beam in its own units of time, so its errors are the same up to
+/// round-off: displacements of 76 nm on positions of 1 m are known to 1e-9, and the step to rapier's precision.
+#[test]
+fn a_cantilever_has_the_same_relative_errors_at_any_stiffness() -> Outcome {
+    let outcome = cantilever::run(&cantilever::cli::Options::default())?;
+    for at in &outcome.stiffness {
+        let what = format!("E = {:e}", at.young);
+        assert_within(&what, at.errors.tip_error, outcome.errors.tip_error, 1e-7);
+        let frequency_error = outcome.errors.frequency_error;
+        assert_within(&what, at.errors.frequency_error, frequency_error, 1e-7);
+    }
+    Ok(())
+}
+
+/// The trapezoidal rule conserves the energy of linear vibration exactly; 10,000 steps leave round-off.
+#[test]
+fn a_vibrating_cantilever_keeps_its_energy_for_ten_thousand_steps() -> Outcome {
+    let outcome = cantilever::run(&cantilever::cli::Options::default())?;
+    assert!(outcome.energy_drift <= 1e-9, "{:e}", outcome.energy_drift);
+    Ok(())
+}
+
+/// One wave up and down: contact for 2 L / c, and away at the speed of approach. What rebound lacks is vibration the mesh
+/// keeps; it falls with the step.
+#[test]
+fn a_falling_block_rebounds_by_its_elasticity() -> Outcome {
+    let outcomes = falling_block::run(&falling_block::cli::Options::default())?;
+    let bars = [(0.95, 0.03), (0.975, 0.015), (0.985, 0.01)];
+    for (outcome, (rebound, contact_time)) in outcomes.iter().zip(bars) {
+        let (dt, block) = (outcome.dt, &outcome.block);
+        assert!(block.penetration_m <= 1e-9, "{dt}: {}", block.penetration_m);
+        assert!(block.energy_error <= 1e-3, "{dt}: {}", block.energy_error);
+        assert!(block.rebound >= rebound, "{dt}: {}", block.rebound);
+        assert_within("contact time", block.contact_time_error, 0.0, contact_time);
+    }
+    Ok(())
+}
+
+/// At rest the contact force is the weight whatever the ratio of the masses, and the beam sags as its own stiffness matrix
+/// says. The box's velocity is read in rapier's precision.
+#[test]
+fn a_box_a_thousand_times_heavier_rests_on_a_beam() -> Outcome {
+    let jitter = if cfg!(feature = "f64") { 1e-9 } else { 1e-4 };
+    for outcome in box_on_beam::run(&box_on_beam::cli::Options::default())? {
+        let ratio = outcome.ratio;
+        assert_within("force / weight", outcome.force_over_weight, 1.0, 1e-4);
+        assert_within("sag error", outcome.sag_error, 0.0, 0.02);
+        assert!(
+            outcome.jitter_m_per_s <= jitter,
+            "ratio {ratio}: the box still moves at {:e} m/s",
+            outcome.jitter_m_per_s
+        );
+    }
+    Ok(())
+}
+
+/// Equilibrium of each block and Coulomb's law. Blocks are not rigid: at E = 1 MPa friction falls 5.9e-3 short of mu m g,
+/// at 10 MPa, here, 6.9e-4. The tolerances leave room for that remainder and no more than three times as much.
+#[test]
+fn a_flexible_block_on_another_sticks_below_the_friction_limit_and_slides_above() -> Outcome {
+    let stack = two_blocks::run(&two_blocks::cli::Options::default())?.stack;
+    assert_within(
+        "on the upper block",
+        stack.upper_force_over_weight,
+        1.0,
+        1e-4,
+    );
+    assert_within("on the floor", stack.lower_force_over_weight, 1.0, 1e-4);
+    assert_within("friction / pull", stack.stick_force_over_pull, 1.0, 1e-4);
+    assert!(stack.stick_speed_m_per_s <= 1e-6, "{stack:?}");
+    assert_within("friction / limit", stack.slip_force_over_limit, 1.0, 2e-3);
+    assert_within("acceleration", stack.slip_acceleration_ratio, 1.0, 4e-3);
+    Ok(())
+}
+
+/// B3 with 20 cells a bar: the front of a wave is a few cells wide, so part of the motion stays as vibration. The force
+/// and the times of contact are those of the wave equation to within a cell's travel time, 2.5 us.
+#[test]
+fn two_equal_bars_exchange_their_velocities() -> Outcome {
+    let collision = two_blocks::run(&two_blocks::cli::Options::default())?.collision;
+    let [left, right] = collision.velocity_ratios;
+    assert_within("the left bar's velocity", left, -1.0, 0.04);
+    assert_within("the right bar's velocity", right, 1.0, 0.04);
+    assert_within("first contact", collision.touch_s, 49.46e-6, 2.5e-6);
+    assert_within("last contact", collision.part_s, 148.39e-6, 2.5e-6);
+    assert_within("plateau", collision.plateau_n, 133.45e3, 0.02 * 133.45e3);
+    assert!(collision.momentum_error <= 1e-11, "{collision:?}");
+    assert!(collision.energy_error <= 4e-3, "{collision:?}");
+    Ok(())
+}
+
+/// Locking of the fully integrated quadrilateral, predicted by hand to first order in the beam's slenderness.
+#[test]
+fn a_users_own_element_conforms_and_locks_as_its_theory_says() -> Outcome {
+    let outcome = custom_element::run(&custom_element::cli::Options::default())?;
+    let predicted = outcome.predicted_stiffening;
+    assert_within("stiffening", outcome.stiffening, predicted, 5e-3);
+    assert_within("default element", outcome.default_tip_error, 0.0, 0.01);
+    Ok(())
+}
+
+/// `--steps 3` is for smoke tests: it must not trip over motion that has not happened yet.
+#[test]
+fn every_example_runs_shortened() -> Outcome {
+    let steps = Some(3);
+    cantilever::run(&cantilever::cli::Options { json: true, steps })?;
+    falling_block::run(&falling_block::cli::Options { json: true, steps })?;
+    box_on_beam::run(&box_on_beam::cli::Options { json: true, steps })?;
+    two_blocks::run(&two_blocks::cli::Options { json: true, steps })?;
+    custom_element::run(&custom_element::cli::Options { json: true, steps })?;
+    Ok(())
+}

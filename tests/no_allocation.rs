@@ -1,0 +1,266 @@
+//! Once warm, the flexible stage allocates nothing: a counting allocator tells its allocations from rapier's by their
+//! call stack.
+
+use foil2d::body::BuildError;
+use foil2d::prelude::*;
+use foil2d::rapier::prelude::*;
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::backtrace::Backtrace;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+
+/// Most call stacks kept; they are slow to resolve.
+const MOST_STACKS: usize = 2000;
+
+thread_local! {
+    static IS_COUNTING: Cell<bool> = const { Cell::new(false) };
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+    static STACKS: RefCell<Vec<Backtrace>> = const { RefCell::new(Vec::new()) };
+}
+
+struct Counting;
+
+/// Counts this thread's allocations while it is asked to; what it allocates itself is not counted.
+fn count() {
+    let is_counting = IS_COUNTING
+        .try_with(|on| on.replace(false))
+        .unwrap_or(false);
+    if !is_counting {
+        return;
+    }
+    COUNT.with(|count| count.set(count.get() + 1));
+    STACKS.with(|stacks| {
+        let mut stacks = stacks.borrow_mut();
+        if stacks.len() < MOST_STACKS {
+            stacks.push(Backtrace::force_capture());
+        }
+    });
+    IS_COUNTING.with(|on| on.set(true));
+}
+
+// SAFETY: every call is passed on to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, block: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(block, layout, size) }
+    }
+
+    unsafe fn dealloc(&self, block: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(block, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations of some work: all of them, and the call stacks of the first.
+fn allocations(work: impl FnOnce()) -> (usize, Vec<String>) {
+    COUNT.set(0);
+    IS_COUNTING.set(true);
+    work();
+    IS_COUNTING.set(false);
+    let stacks = STACKS.take();
+    (
+        COUNT.get(),
+        stacks.iter().map(ToString::to_string).collect(),
+    )
+}
+
+/// Who allocates in a call stack.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Who {
+    /// Rapier, within one of its two steps.
+    RapiersStep,
+    /// Rapier's list of changed bodies and colliders, as it hands one out to be written: it drops the list every step.
+    RapiersChangeList,
+    /// The flexible stage.
+    Ours,
+}
+
+fn who(stack: &str) -> Who {
+    // A frame is two lines, "12: function" and "at file:line", innermost first; some have no second line.
+    let is_own_file = |line: &str| line.trim_start().starts_with("at ./src/");
+    let inner: String = stack
+        .lines()
+        .take_while(|line| !is_own_file(line))
+        .collect();
+    if stack.contains("physics_pipeline") {
+        Who::RapiersStep
+    } else if inner.contains("rapier2d") && inner.contains("get_mut") {
+        Who::RapiersChangeList
+    } else {
+        Who::Ours
+    }
+}
+
+/// The innermost line of this crate's sources in a call stack, and the function there.
+fn place(stack: &str) -> String {
+    let lines: Vec<&str> = stack.lines().collect();
+    let own = lines
+        .iter()
+        .position(|line| line.trim_start().starts_with("at ./src/"));
+    own.map_or_else(
+        || stack.to_owned(),
+        |at| format!("{} ({})", lines[at].trim(), lines[at - 1].trim()),
+    )
+}
+
+/// A world that has been stepped until its contacts are steady.
+struct Warm {
+    world: PhysicsWorld,
+    flex_bodies: FlexBodySet,
+    flex: FlexPipeline,
+}
+
+impl Warm {
+    fn new() -> Self {
+        let mut world = PhysicsWorld::new();
+        let floor = ColliderBuilder::cuboid(20.0, 0.5).translation(Vector::new(0.0, -0.5));
+        world.insert_collider(floor, None);
+        Self {
+            world,
+            flex_bodies: FlexBodySet::new(),
+            flex: FlexPipeline::new(),
+        }
+    }
+
+    fn with(mut self, builder: FlexBodyBuilder) -> Result<Self, BuildError> {
+        self.flex_bodies.insert(builder, &mut self.world)?;
+        Ok(self)
+    }
+
+    fn with_box(mut self, half: [f64; 2], at: [f64; 2]) -> Self {
+        let real = |x: f64| x as foil2d::rapier::math::Real;
+        let body = RigidBodyBuilder::dynamic().translation(Vector::new(real(at[0]), real(at[1])));
+        let shape = ColliderBuilder::cuboid(real(half[0]), real(half[1])).density(300.0);
+        self.world.insert(body, shape);
+        self
+    }
+
+    fn step(&mut self) {
+        self.flex
+            .step(&mut self.world, &mut self.flex_bodies)
+            .expect("a steady scene");
+    }
+
+    /// Holds that ten steps allocate nothing outside rapier; `n_contacts` is what the scene must show.
+    #[track_caller]
+    fn assert_quiet(mut self, name: &str, warm_up: usize, n_contacts: usize) {
+        (0..warm_up).for_each(|_| self.step());
+        let found = self.flex.report().contacts().len();
+        assert!(found >= n_contacts, "{name}: {found} contacts");
+        let (total, stacks) = allocations(|| (0..10).for_each(|_| self.step()));
+        let (mut counts, mut own) = (BTreeMap::new(), BTreeMap::new());
+        for stack in &stacks {
+            let who = who(stack);
+            *counts.entry(who).or_insert(0) += 1;
+            if who == Who::Ours {
+                *own.entry(place(stack)).or_insert(0) += 1;
+            }
+        }
+        println!("{name}: {total} allocations in 10 steps, {counts:?}");
+        assert_eq!(total, stacks.len(), "{name}: more than can be told apart");
+        assert!(own.is_empty(), "{name}: {own:#?}");
+    }
+}
+
+fn rubber() -> LinearElastic {
+    LinearElastic::plane_stress(1e7, 0.3)
+        .density(1000.0)
+        .rayleigh(5e-3)
+}
+
+fn beam() -> FlexBodyBuilder {
+    FlexBodyBuilder::rectangle([4.0, 0.3], [24, 3])
+        .material(rubber())
+        .pin_where(|[x, y]| y == 0.0 && (x == 0.0 || x == 4.0), Pin::both())
+        .translation([-2.0, 1.0])
+}
+
+fn block() -> FlexBodyBuilder {
+    FlexBodyBuilder::rectangle([1.0, 1.0], [6, 6])
+        .material(rubber())
+        .friction(0.6)
+        .translation([0.0, 0.001])
+}
+
+#[test]
+fn the_counter_counts() {
+    let (total, stacks) = allocations(|| drop(std::hint::black_box(vec![1u8; 100])));
+    assert_eq!((total, stacks.len()), (1, 1));
+    assert_eq!(who(&stacks[0]), Who::Ours);
+    // A first step makes rapier's buffers: its allocations are told apart.
+    let mut world = PhysicsWorld::new();
+    let (body, _) = world.insert(RigidBodyBuilder::dynamic(), ColliderBuilder::ball(0.5));
+    let (total, stacks) = allocations(|| world.step());
+    assert!(total > 0);
+    for stack in &stacks {
+        assert_eq!(who(stack), Who::RapiersStep, "{stack}");
+    }
+    let (total, stacks) = allocations(|| {
+        world.bodies[body].set_linvel(Vector::ZERO, true);
+    });
+    assert!(total <= 1 && stacks.iter().all(|stack| who(stack) != Who::RapiersStep));
+}
+
+#[test]
+fn a_block_that_rests_on_the_floor_with_friction_allocates_nothing() -> Result<(), BuildError> {
+    Warm::new()
+        .with(block())?
+        .assert_quiet("block on floor", 300, 5);
+    Ok(())
+}
+
+#[test]
+fn a_rigid_box_on_a_flexible_beam_allocates_nothing() -> Result<(), BuildError> {
+    Warm::new()
+        .with(beam())?
+        .with_box([0.2, 0.2], [0.0, 1.501])
+        .assert_quiet("box on beam", 300, 2);
+    Ok(())
+}
+
+#[test]
+fn a_stack_of_rigid_boxes_on_a_flexible_beam_allocates_nothing() -> Result<(), BuildError> {
+    Warm::new()
+        .with(beam())?
+        .with_box([0.2, 0.2], [0.0, 1.501])
+        .with_box([0.2, 0.2], [0.0, 1.902])
+        .with_box([0.2, 0.2], [0.0, 2.303])
+        .assert_quiet("stack on beam", 300, 6);
+    Ok(())
+}
+
+#[test]
+fn a_flexible_block_on_a_flexible_beam_allocates_nothing() -> Result<(), BuildError> {
+    let small = FlexBodyBuilder::rectangle([0.5, 0.5], [4, 4])
+        .material(rubber())
+        .translation([-0.23, 1.301]);
+    Warm::new()
+        .with(beam())?
+        .with(small)?
+        .assert_quiet("block on beam", 300, 2);
+    Ok(())
+}
+
+#[test]
+fn a_free_spinning_body_allocates_nothing() -> Result<(), BuildError> {
+    let spinner = block()
+        .translation([0.0, 50.0])
+        .gravity_scale(0.0)
+        .angvel(3.0);
+    Warm::new()
+        .with(spinner)?
+        .assert_quiet("free spinning body", 60, 0);
+    Ok(())
+}

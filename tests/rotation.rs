@@ -1,0 +1,158 @@
+//! Invariances: the answer does not depend on where the axes point, on units, on numbering, or on who is contactor.
+
+mod common;
+
+use common::*;
+use foil2d::fe::mesh::CellKind;
+
+/// How a scene is described: lengths, times and masses in other units, seen from other axes, mirrored or renumbered.
+#[derive(Clone, Copy, Debug)]
+struct View {
+    angle: f64,
+    shift: [f64; 2],
+    mirrored: bool,
+    renumbered: bool,
+    /// Units of length, time and mass.
+    units: [f64; 3],
+}
+
+const PLAIN: View = View {
+    angle: 0.0,
+    shift: [0.0, 0.0],
+    mirrored: false,
+    renumbered: false,
+    units: [1.0, 1.0, 1.0],
+};
+
+impl View {
+    fn sign(&self) -> f64 {
+        if self.mirrored { -1.0 } else { 1.0 }
+    }
+
+    /// A direction as seen in this view.
+    fn direction(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = self.angle.sin_cos();
+        let x = self.sign() * x;
+        [cos * x - sin * y, sin * x + cos * y]
+    }
+
+    fn point(&self, at: [f64; 2]) -> [f64; 2] {
+        let [x, y] = self.direction(at);
+        let length = self.units[0];
+        [length * (x + self.shift[0]), length * (y + self.shift[1])]
+    }
+
+    fn velocity(&self, v: [f64; 2]) -> [f64; 2] {
+        let [length, time, _] = self.units;
+        self.direction(v).map(|v| v * length / time)
+    }
+
+    fn spin(&self, spin: f64) -> f64 {
+        self.sign() * spin / self.units[1]
+    }
+
+    fn turn(&self, angle: f64) -> f64 {
+        self.angle + self.sign() * angle
+    }
+
+    /// Undoes the view on a point.
+    fn undo(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let length = self.units[0];
+        let (x, y) = (x / length - self.shift[0], y / length - self.shift[1]);
+        let (sin, cos) = self.angle.sin_cos();
+        [self.sign() * (cos * x + sin * y), cos * y - sin * x]
+    }
+}
+
+/// A block that lands on a rigid box and on the ground, with friction, as seen in `view`: end positions of the block's
+/// four corners and of the box.
+fn fall(view: View, seconds: f64) -> Vec<[f64; 2]> {
+    let [length, time, mass] = view.units;
+    let [gx, gy] = view.direction([0.0, -G]).map(|g| g * length / time / time);
+    let dt = time / 256.0;
+    let mut scene = Scene::new(dt).with_gravity(gx, gy);
+    scene.world.integration_parameters.length_unit = real(length);
+    let [x, y] = view.point([0.0, -0.5]);
+    scene.fixed(
+        ColliderBuilder::cuboid(real(8.0 * length), real(0.5 * length))
+            .translation(vec2(x, y))
+            .rotation(real(view.angle)),
+    );
+    let density = 1000.0 * mass / length.powi(3);
+    let [x, y] = view.point([0.25, 0.25]);
+    let (rigid, _) = scene.rigid(
+        RigidBodyBuilder::dynamic().translation(vec2(x, y)).rotation(real(view.angle)),
+        ColliderBuilder::cuboid(real(0.5 * length), real(0.25 * length)).density(real(density * length)),
+    );
+    let mesh = foil2d::fe::mesh::generate::rectangle([1.0, 1.0], [8, 8], CellKind::Quad4).expect("a mesh");
+    let n = mesh.n_nodes();
+    let number = |node: usize| if view.renumbered { (node * 37 + 11) % n } else { node };
+    let mut nodes = vec![[0.0; 2]; n];
+    let (sin, cos) = 0.3f64.sin_cos();
+    for (node, &[x, y]) in mesh.nodes().iter().enumerate() {
+        nodes[number(node)] = view.point([cos * x - sin * y + 0.5, sin * x + cos * y + 0.55]);
+    }
+    let cells: Vec<Vec<usize>> = mesh.cells().map(|cell| {
+        let mut cell: Vec<usize> = cell.nodes.iter().map(|&node| number(node)).collect();
+        if view.mirrored { cell.reverse(); }
+        if view.renumbered { cell.rotate_left(1); }
+        cell
+    }).collect();
+    let block = scene.flexible(
+        FlexBodyBuilder::cells(nodes, CellKind::Quad4, &cells)
+            .material(LinearElastic::plane_stress(1e6 * mass / length / time / time, 0.3).density(density).rayleigh(1e-3 * time))
+            .thickness(length)
+            .linvel(view.velocity([0.5, -1.0]))
+            .angvel(view.spin(-0.5)),
+    );
+    scene.steps((256.0 * seconds) as usize);
+    let at = scene.world.bodies[rigid].translation();
+    let mut ends = vec![view.undo([f64::from(at.x), f64::from(at.y)])];
+    for node in [0, 8, n - 9, n - 1] {
+        ends.push(view.undo(scene.body(block).position(number(node))));
+    }
+    let _ = view.turn(0.0);
+    ends
+}
+
+fn distance(one: &[[f64; 2]], other: &[[f64; 2]]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max)
+}
+
+#[test]
+fn probe() {
+    let views = [
+        ("translated", View { shift: [4.0, -2.0], ..PLAIN }),
+        ("turned by 90", View { angle: std::f64::consts::FRAC_PI_2, ..PLAIN }),
+        ("turned", View { angle: 0.7, ..PLAIN }),
+        ("mirrored", View { mirrored: true, ..PLAIN }),
+        ("renumbered", View { renumbered: true, ..PLAIN }),
+        ("units 2", View { units: [4.0, 2.0, 8.0], ..PLAIN }),
+        ("units", View { units: [1000.0, 3.0, 0.01], ..PLAIN }),
+        ("small", View { units: [0.01, 3.0, 0.01], ..PLAIN }),
+    ];
+    for seconds in [0.25, 0.5, 1.0, 2.0] {
+        let plain = fall(PLAIN, seconds);
+        println!("{seconds}: {plain:?}");
+        for (name, view) in views { println!("   {name}: {:.1e}", distance(&plain, &fall(view, seconds))); }
+    }
+}
+
+#[test]
+fn swapped() {
+    for young in [1e6, 1e8] {
+    let run = |swap: bool| {
+        let mut scene = Scene::in_free_space(1.0 / 240.0);
+        let block = |left: bool| {
+            let builder = FlexBodyBuilder::rectangle([1.0, 1.0], [8, 8]).friction(0.5).material(LinearElastic::plane_stress(young, 0.3).density(1000.0).rayleigh(1e-4));
+            if left { builder.linvel([1.0, 0.0]) } else { builder.translation([1.1, 0.33]).linvel([-1.0, 0.0]) }
+        };
+        let first = scene.flexible(block(!swap));
+        let second = scene.flexible(block(swap));
+        scene.steps(240);
+        let (left, right) = if swap { (second, first) } else { (first, second) };
+        [left, right].map(|b| { let v = scene.body(b).linvel(); [v[0], v[1], scene.body(b).state().frame.spin] })
+    };
+    println!("{young:e} {:?}\n {:?}", run(false), run(true));
+    }
+}
