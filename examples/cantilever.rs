@@ -180,7 +180,7 @@ impl Scene {
             flex_bodies,
             beam,
             tip_node,
-            pipeline: FlexPipeline::new(),
+            pipeline: FlexPipeline::new().with_integrator(Beta2::trapezoidal()),
         })
     }
 

@@ -127,7 +127,7 @@ fn tip(element: impl Element + 'static, options: &Options) -> Result<f64, Box<dy
         .contact_inertia(ContactInertia::Kept)
         .pin_where(|[x, _]| x == 0.0, Pin::both());
     let beam = flex_bodies.insert(builder, &mut world)?;
-    let mut pipeline = FlexPipeline::new();
+    let mut pipeline = FlexPipeline::new().with_integrator(Beta2::trapezoidal());
     for _ in 0..options.n_steps(720) {
         pipeline.step(&mut world, &mut flex_bodies)?;
     }

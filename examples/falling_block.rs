@@ -116,7 +116,7 @@ pub fn impact(
     let mut flex_bodies = FlexBodySet::new();
     let gap = SPEED * (TOUCH + phase * dt);
     let body = flex_bodies.insert(builder.translation([0.0, gap]), &mut world)?;
-    let mut pipeline = FlexPipeline::new();
+    let mut pipeline = FlexPipeline::new().with_integrator(Beta2::trapezoidal());
 
     let at_start = flex_bodies[body].energy().kinetic;
     let momentum = flex_bodies[body].momentum()[1];

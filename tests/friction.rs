@@ -21,134 +21,191 @@ fn block(young: f64, mu: f64) -> FlexBodyBuilder {
         .friction(mu)
 }
 
+/// Steps `n` times; returns the largest excess over the friction cone and the largest overlap.
+fn watch(scene: &mut Scene, n: usize) -> [f64; 2] {
+    let mut worst = [0.0f64; 2];
+    for _ in 0..n {
+        let report = scene.step();
+        worst[0] = worst[0].max(report.cone_residual());
+        worst[1] = worst[1].max(report.gap_violation());
+    }
+    worst
+}
+
+fn assert_lawful([cone, gap]: [f64; 2]) {
+    assert!(cone <= 1e-9, "friction exceeds its cone by {cone:e}");
+    let tolerance = by_precision(1e-6, 1e-9);
+    assert!(gap <= tolerance, "the bodies overlap by {gap:e} m");
+}
+
 #[test]
-fn a_block_slides_down_a_steep_incline() {
-    for (young, dt) in [(1e6, 1.0/60.0), (1e8, 1.0 / 60.0), (1e8, 1.0 / 240.0), (2e11, 1.0/60.0), (2e11, 1.0/1000.0)] {
-        for (angle, mu) in [(0.5, 0.3), (0.3, 0.0), (0.6, 0.65)] {
-            let mut scene = incline(angle, dt, mu);
+fn a_block_slides_down_a_steep_incline_as_a_point_mass_does() {
+    // B17: s = ½ g (sin α - μ cos α) t².
+    let cases = [
+        (1e6, 60.0),
+        (1e8, 60.0),
+        (1e8, 240.0),
+        (2e11, 60.0),
+        (2e11, 1000.0),
+    ];
+    for (young, rate) in cases {
+        for (angle, mu) in [(0.5f64, 0.3), (0.3, 0.0)] {
+            let mut scene = incline(angle, 1.0 / rate, mu);
             let body = scene.flexible(block(young, mu).translation([-45.0, 0.0]));
             let start = scene.body(body).centre_of_mass()[0];
-            let (mut cone, mut gap, mut lift) = (0.0f64, 0.0f64, 0.0f64);
-            let n = (2.0 / dt).round() as usize;
-            for _ in 0..n {
-                let r = scene.step();
-                cone = cone.max(r.cone_residual());
-                gap = gap.max(r.gap_violation());
-                let v = scene.body(body).linvel()[1];
-                lift = lift.max(v);
-            }
-            let t = n as f64 * dt;
+            let lawful = watch(&mut scene, (2.0 * rate) as usize);
+            assert_lawful(lawful);
+            let t = 2.0;
             let exact = 0.5 * G * (angle.sin() - mu * angle.cos()) * t * t;
-            let s = scene.body(body).centre_of_mass()[0] - start;
-            println!("E {young:.0e} dt {dt:.4} a {angle} mu {mu}: s {s:.5} exact {exact:.5} error {:.1e} cone {cone:.1e} gap {gap:.1e} lift {lift:.1e} angle {:.1e}", s / exact - 1.0, scene.body(body).angle());
+            let way = scene.body(body).centre_of_mass()[0] - start;
+            // The unstrained start presses with twice the weight in its first step: one step of friction too much. The
+            // softest block sways by its squeeze of 5 mm besides.
+            let allowed = mu * G * scene.dt() * t + if young < 1e7 { 1e-2 } else { 1e-4 };
+            assert!(
+                (way - exact).abs() < allowed,
+                "E {young:e}, dt 1/{rate}, μ {mu}: slides {way} m, not {exact} m"
+            );
         }
     }
 }
 
 #[test]
-fn a_block_sticks_on_a_gentle_incline() {
-    for (young, dt, n) in [(1e6, 1.0/60.0, 10_000), (1e8, 1.0 / 60.0, 10_000), (2e11, 1.0/60.0, 10_000), (2e11, 1.0/1000.0, 10_000)] {
-        let (angle, mu) = (0.4f64, 0.5);
-        let mut scene = incline(angle, dt, mu);
+fn a_block_on_a_gentle_incline_sticks_without_creep() {
+    let (angle, mu) = (0.4f64, 0.5);
+    for (young, rate) in [(1e6, 60.0), (1e8, 60.0), (2e11, 60.0), (2e11, 1000.0)] {
+        let mut scene = incline(angle, 1.0 / rate, mu);
         let body = scene.flexible(block(young, mu));
-        scene.steps(600);
+        scene.steps(1000);
         let start = scene.body(body).centre_of_mass();
-        let mut cone = 0.0f64;
-        for _ in 0..n { cone = cone.max(scene.step().cone_residual()); }
+        assert_lawful(watch(&mut scene, 10_000));
         let end = scene.body(body).centre_of_mass();
-        let ratio = -scene.force_on_flexible(body)[0] / scene.force_on_flexible(body)[1];
-        println!("E {young:.0e} dt {dt:.4}: creep {:.2e} {:.2e} cone {cone:.1e} drag ratio {ratio:.6} tan {:.6}", end[0] - start[0], end[1] - start[1], angle.tan());
+        // What is left of the soft block's settling, and round-off of 10,000 steps.
+        let creep = (end[0] - start[0]).hypot(end[1] - start[1]);
+        assert!(
+            creep < 1e-8,
+            "E {young:e}, dt 1/{rate}: creeps by {creep:e} m"
+        );
+        let [fx, fy] = scene.force_on_flexible(body);
+        let slope = -fx / fy / angle.tan();
+        assert!(
+            (slope - 1.0).abs() < 1e-3,
+            "E {young:e}, dt 1/{rate}: the force is off by {slope}"
+        );
     }
 }
 
 #[test]
-fn a_sliding_block_stops_after_the_right_way() {
-    for (young, dt) in [(1e6, 1.0/60.0), (1e8, 1.0 / 60.0), (1e8, 1.0 / 240.0), (2e11, 1.0/60.0), (2e11, 1.0/1000.0)] {
-        let (mu, speed) = (0.4, 3.0);
-        let mut scene = Scene::new(dt);
+fn a_sliding_block_stops_after_v_squared_over_2_mu_g() {
+    let (mu, speed) = (0.4, 3.0);
+    for (young, rate) in [
+        (1e6, 60.0),
+        (1e8, 60.0),
+        (1e8, 240.0),
+        (2e11, 60.0),
+        (2e11, 1000.0),
+    ] {
+        let mut scene = Scene::new(1.0 / rate);
         scene.ground(mu);
         let body = scene.flexible(block(young, mu).linvel([speed, 0.0]));
         let start = scene.body(body).centre_of_mass()[0];
-        let mut stopped = 0.0;
-        let mut cone = 0.0f64;
-        for k in 0..(1.5 / dt) as usize {
-            cone = cone.max(scene.step().cone_residual());
-            if scene.body(body).linvel()[0] > 1e-3 { stopped = (k + 1) as f64 * dt; }
-        }
+        assert_lawful(watch(&mut scene, (1.5 * rate) as usize));
         let way = scene.body(body).centre_of_mass()[0] - start;
-        println!("E {young:.0e} dt {dt:.4}: way {way:.5} exact {:.5} error {:.1e}; time {stopped:.4} exact {:.4}; v {:?} cone {cone:.1e}", speed * speed / 2.0 / mu / G, way * 2.0 * mu * G / speed / speed - 1.0, speed / mu / G, scene.body(body).linvel());
+        let exact = speed * speed / 2.0 / mu / G;
+        // One step more or less at full speed.
+        let allowed = speed * scene.dt() + 1e-3;
+        assert!(
+            (way - exact).abs() < allowed,
+            "E {young:e}, dt 1/{rate}: {way} m, not {exact} m"
+        );
+        // The time v0 / μ g is over, and what is left is the soft block's sway.
+        let [vx, vy] = scene.body(body).linvel();
+        let rest = if young < 1e7 { 2e-2 } else { 1e-3 };
+        assert!(
+            vx.hypot(vy) < rest,
+            "E {young:e}, dt 1/{rate}: still moves at {vx}, {vy} m/s"
+        );
     }
 }
 
 #[test]
 fn a_rigid_box_slides_and_stops_on_a_flexible_beam() {
-    for dt in [1.0 / 60.0, 1.0 / 240.0] {
+    for rate in [60.0, 240.0] {
         let (mu, speed) = (0.4, 2.0);
-        let mut scene = Scene::new(dt);
+        let mut scene = Scene::new(1.0 / rate);
         scene.flexible(
             FlexBodyBuilder::rectangle([4.0, 0.2], [40, 4])
-                .material(LinearElastic::plane_stress(1e10, 0.3).density(1000.0).rayleigh(1e-3))
+                .material(
+                    LinearElastic::plane_stress(1e10, 0.3)
+                        .density(1000.0)
+                        .rayleigh(1e-3),
+                )
                 .friction(mu)
                 .pin_where(|[_, y]| y == 0.0, Pin::both()),
         );
         let (body, _) = scene.rigid(
-            RigidBodyBuilder::dynamic().translation(vec2(1.0, 0.3)).linvel(vec2(speed, 0.0)),
-            ColliderBuilder::cuboid(0.2, 0.1).density(500.0).friction(real(mu)),
+            RigidBodyBuilder::dynamic()
+                .translation(vec2(1.0, 0.3))
+                .linvel(vec2(speed, 0.0)),
+            ColliderBuilder::cuboid(0.2, 0.1)
+                .density(500.0)
+                .friction(real(mu)),
         );
-        let mut cone = 0.0f64;
-        for _ in 0..(1.5 / dt) as usize { cone = cone.max(scene.step().cone_residual()); }
-        let way = f64::from(scene.world.bodies[body].translation().x) - 1.0;
-        println!("dt {dt:.4}: way {way:.5} exact {:.5} error {:.1e} v {:?} cone {cone:.1e}", speed * speed / 2.0 / mu / G, way * 2.0 * mu * G / speed / speed - 1.0, scene.world.bodies[body].linvel());
+        assert_lawful(watch(&mut scene, (1.5 * rate) as usize));
+        let body = &scene.world.bodies[body];
+        let way = f64::from(body.translation().x) - 1.0;
+        let exact = speed * speed / 2.0 / mu / G;
+        assert!(
+            (way - exact).abs() < speed / rate,
+            "dt 1/{rate}: {way} m, not {exact} m"
+        );
+        assert!(
+            body.linvel().length() < 1e-4,
+            "dt 1/{rate}: still moves at {:?}",
+            body.linvel()
+        );
     }
 }
 
 #[test]
 fn a_disc_rolls_down_a_flexible_slab() {
-    // B18: a = 2/3 g sin α while μ >= tan α / 3, else g (sin α - μ cos α).
-    for dt in [1.0 / 60.0, 1.0 / 240.0, 1.0/1000.0] {
+    // B18: a = 2/3 g sin α while μ >= tan α / 3, else it slips at g (sin α - μ cos α). The error is first order: the start.
+    for rate in [60.0, 240.0, 1000.0] {
         for (angle, mu) in [(0.3f64, 0.5), (0.3, 0.05)] {
-            let mut scene = Scene::new(dt).with_gravity(G * angle.sin(), -G * angle.cos());
+            let mut scene = Scene::new(1.0 / rate).with_gravity(G * angle.sin(), -G * angle.cos());
             scene.flexible(
                 FlexBodyBuilder::rectangle([10.0, 0.5], [100, 3])
-                    .material(LinearElastic::plane_stress(2e11, 0.3).density(7800.0).rayleigh(1e-3))
+                    .material(
+                        LinearElastic::plane_stress(2e11, 0.3)
+                            .density(7800.0)
+                            .rayleigh(1e-3),
+                    )
                     .friction(mu)
                     .pin_where(|[_, y]| y == 0.0, Pin::both()),
             );
             let (ball, _) = scene.rigid(
                 RigidBodyBuilder::dynamic().translation(vec2(1.0, 0.8)),
-                ColliderBuilder::ball(0.3).density(1000.0).friction(real(mu)),
+                ColliderBuilder::ball(0.3)
+                    .density(1000.0)
+                    .friction(real(mu)),
             );
-            let n = (1.5 / dt).round() as usize;
-            let mut cone = 0.0f64;
-            for _ in 0..n { cone = cone.max(scene.step().cone_residual()); }
-            let t = n as f64 * dt;
-            let a = if mu >= angle.tan() / 3.0 { 2.0 / 3.0 * G * angle.sin() } else { G * (angle.sin() - mu * angle.cos()) };
-            let s = f64::from(scene.world.bodies[ball].translation().x) - 1.0;
-            let v = scene.world.bodies[ball].linvel();
-            println!("dt {dt:.4} mu {mu}: s {s:.5} exact {:.5} error {:.1e} v/(wR) {:.5} y {:.6} cone {cone:.1e}", 0.5*a*t*t, s / (0.5 * a * t * t) - 1.0, -v.x / (0.3 * scene.world.bodies[ball].angvel()), scene.world.bodies[ball].translation().y);
-        }
-    }
-}
-#[test]
-fn trace() {
-    for (young, mu, angle, beta) in [(2e11, 0.5, 0.0, 1e-3), (2e11, 0.0, 0.0, 1e-3), (2e11, 1000.0, 0.4, 1e-3), (2e11, 0.5, 0.4, 0.0), (2e11, 1000.0, 0.4, 0.0), (2e11, 0.5, 0.4, 1e-3)] {
-        let dt = 1.0 / 60.0;
-        let mut scene = incline(angle, dt, mu);
-        let body = scene.flexible(FlexBodyBuilder::rectangle([1.0, 0.5], [8, 8])
-        .material(
-            LinearElastic::plane_stress(young, 0.3)
-                .density(1000.0)
-                .rayleigh(beta),
-        )
-        .friction(mu));
-        println!("E {young:e} mu {mu} angle {angle} beta {beta}");
-        for k in 0..1000 {
-            scene.step();
-            let r = scene.report();
-            if k < 3 || k % 25 == 0 && k < 300 || k % 200 == 0 {
-            let f = scene.force_on_flexible(body);
-            let n: Vec<String> = r.contacts().iter().map(|c| format!("{:.0}/{:.0}{}", c.normal_force, c.tangential_force, if c.sticks {""} else {"*"})).collect();
-            println!("{k}: f {:.3} {:.3} v {:.1e} {:.1e} kin {:.2e} el {:.2e} spin {:.1e} newton {} {}", f[0]/4905.0, f[1]/4905.0, scene.body(body).linvel()[0], scene.body(body).linvel()[1], r.energy().kinetic, r.energy().elastic, scene.body(body).state().frame.spin, r.n_newton(), n.join(" "));
+            assert_lawful(watch(&mut scene, (1.5 * rate) as usize));
+            let rolls = mu >= angle.tan() / 3.0;
+            let acceleration = if rolls {
+                2.0 / 3.0 * G * angle.sin()
+            } else {
+                G * (angle.sin() - mu * angle.cos())
+            };
+            let exact = 0.5 * acceleration * 1.5 * 1.5;
+            let ball = &scene.world.bodies[ball];
+            let way = f64::from(ball.translation().x) - 1.0;
+            let error = (way / exact - 1.0).abs();
+            assert!(
+                error < 0.2 / rate,
+                "dt 1/{rate}, μ {mu}: rolls {way} m, not {exact} m"
+            );
+            if rolls {
+                let slip = f64::from(ball.linvel().x + real(0.3) * ball.angvel());
+                assert!(slip.abs() < 1e-4, "dt 1/{rate}: slips at {slip} m/s");
             }
         }
     }

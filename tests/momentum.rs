@@ -14,7 +14,11 @@ fn momentum(scene: &Scene) -> [f64; 3] {
         sum[2] += body.angular_momentum([0.0, 0.0]);
     }
     for (handle, body) in scene.world.bodies.iter() {
-        if scene.bodies.iter().any(|(_, flex)| flex.rigid_body_handle() == handle) {
+        if scene
+            .bodies
+            .iter()
+            .any(|(_, flex)| flex.rigid_body_handle() == handle)
+        {
             continue;
         }
         let mass = f64::from(body.mass());
@@ -23,27 +27,28 @@ fn momentum(scene: &Scene) -> [f64; 3] {
         let (vx, vy) = (f64::from(v.x), f64::from(v.y));
         sum[0] += mass * vx;
         sum[1] += mass * vy;
-        sum[2] += mass * (f64::from(x.x) * vy - f64::from(x.y) * vx) + inertia * f64::from(body.angvel());
+        sum[2] +=
+            mass * (f64::from(x.x) * vy - f64::from(x.y) * vx) + inertia * f64::from(body.angvel());
     }
     sum
 }
 
+/// Who meets whom.
 #[derive(Clone, Copy, Debug)]
 enum Partners {
     FlexFlex,
     FlexBox,
     FlexBall,
+    /// A flexible block pushes a rigid box into another, so that rigid contacts are solved in a claimed island.
     Chain,
 }
 
 /// Two or three bodies on oblique courses, with friction and spin.
-fn collide(partners: Partners, dt: f64, young: f64, mu: f64, kept: bool) -> Scene {
+fn collide(partners: Partners, dt: f64, young: f64, mu: f64) -> Scene {
     let mut scene = Scene::in_free_space(dt);
-    let inertia = if kept { ContactInertia::Kept } else { ContactInertia::Redistributed };
     let block = || {
         FlexBodyBuilder::rectangle([1.0, 1.0], [8, 8])
             .material(LinearElastic::plane_stress(young, 0.3).density(1000.0))
-            .contact_inertia(inertia.clone())
             .friction(mu)
     };
     scene.flexible(block().rotation(0.3).linvel([1.0, 0.2]).angvel(0.5));
@@ -54,16 +59,29 @@ fn collide(partners: Partners, dt: f64, young: f64, mu: f64, kept: bool) -> Scen
             .linvel(vec2(v[0], v[1]))
             .angvel(real(spin))
     };
-    let cuboid = || ColliderBuilder::cuboid(0.5, 0.4).density(1500.0).friction(real(mu));
+    let cuboid = || {
+        ColliderBuilder::cuboid(0.5, 0.4)
+            .density(1500.0)
+            .friction(real(mu))
+    };
     match partners {
         Partners::FlexFlex => {
-            scene.flexible(block().rotation(-0.2).translation([1.5, 0.5]).linvel([-1.0, 0.1]).angvel(-0.3));
+            scene.flexible(
+                block()
+                    .rotation(-0.2)
+                    .translation([1.5, 0.5])
+                    .linvel([-1.0, 0.1])
+                    .angvel(-0.3),
+            );
         }
         Partners::FlexBox => {
             scene.rigid(rigid([2.0, 1.0], [-1.0, 0.0], 0.4, -0.7), cuboid());
         }
         Partners::FlexBall => {
-            scene.rigid(rigid([1.8, 1.1], [-1.0, 0.0], 0.0, 3.0), ColliderBuilder::ball(0.5).density(800.0).friction(real(mu)));
+            scene.rigid(
+                rigid([1.8, 1.1], [-1.0, 0.0], 0.0, 3.0),
+                ColliderBuilder::ball(0.5).density(800.0).friction(real(mu)),
+            );
         }
         Partners::Chain => {
             scene.rigid(rigid([1.7, 0.8], [0.0, 0.0], 0.1, 0.0), cuboid());
@@ -73,70 +91,91 @@ fn collide(partners: Partners, dt: f64, young: f64, mu: f64, kept: bool) -> Scen
     scene
 }
 
-/// Largest errors of momentum, relative, and of angular momentum, relative to the sum of the bodies' own.
-fn errors(partners: Partners, dt: f64, young: f64, mu: f64, kept: bool) -> ([f64; 2], usize, f64) {
-    let mut scene = collide(partners, dt, young, mu, kept);
+/// Largest errors of momentum and, with a lever of one metre, of angular momentum over a collision, relative to the sum of
+/// the bodies' momenta.
+fn errors(partners: Partners, dt: f64, young: f64, mu: f64) -> [f64; 2] {
+    let mut scene = collide(partners, dt, young, mu);
     let start = momentum(&scene);
-    let scale: f64 = 1000.0;
-    let (mut linear, mut angular) = (0.0f64, 0.0f64);
-    let mut touched = 0;
-    let mut worst = 0.0f64;
+    let scale = 1600.0;
+    let mut worst = [0.0f64; 2];
+    let mut touched = false;
     for _ in 0..(1.5 / dt) as usize {
         scene.step();
         let now = momentum(&scene);
-        touched += usize::from(!scene.report().contacts().is_empty());
-        linear = linear.max((now[0] - start[0]).hypot(now[1] - start[1]) / scale);
-        angular = angular.max((now[2] - start[2]).abs() / scale);
-        worst = worst.max(scene.report().cone_residual());
+        touched |= !scene.report().contacts().is_empty();
+        worst[0] = worst[0].max((now[0] - start[0]).hypot(now[1] - start[1]) / scale);
+        worst[1] = worst[1].max((now[2] - start[2]).abs() / scale);
     }
-    ([linear, angular], touched, worst)
+    assert!(touched, "{partners:?} miss each other");
+    worst
 }
 
+const ALL: [Partners; 4] = [
+    Partners::FlexFlex,
+    Partners::FlexBox,
+    Partners::FlexBall,
+    Partners::Chain,
+];
+
+/// Soft, where the impact takes many steps, and stiff, where it takes less than one.
+const MODULI: [f64; 2] = [1e6, 1e9];
+
 #[test]
-fn probe() {
-    for kept in [false, true] {
-        for partners in [Partners::FlexFlex, Partners::FlexBox, Partners::FlexBall, Partners::Chain] {
-            for young in [1e6, 1e9] {
-                for mu in [0.0, 0.5] {
-                    for n in [60.0, 120.0, 240.0, 480.0, 960.0] {
-                        let (e, touched, cone) = errors(partners, 1.0 / n, young, mu, kept);
-                        println!("kept {kept} {partners:?} E {young:.0e} mu {mu} 1/{n}: linear {:.1e} angular {:.1e} touched {touched} cone {cone:.1e}", e[0], e[1]);
-                    }
+fn collisions_keep_linear_momentum() {
+    let mut findings = Findings::default();
+    // In `f32` a rigid body's own velocity is rounded to 6e-8 of it when it is handed back.
+    let tolerance = by_precision(1e-6, 1e-12);
+    for partners in ALL {
+        for young in MODULI {
+            for mu in [0.0, 0.5] {
+                for rate in [60.0, 240.0] {
+                    let [linear, _] = errors(partners, 1.0 / rate, young, mu);
+                    findings.check(linear <= tolerance, || format!("{partners:?}, E {young:e}, μ {mu}, dt 1/{rate}: momentum changes by {linear:e}"));
                 }
             }
         }
     }
+    findings.report();
 }
+
 #[test]
-fn trace() {
-    for (p, young, mu, n) in [(Partners::FlexBall, 1e6, 0.5, 240.0), (Partners::FlexBox, 1e6, 0.0, 240.0), (Partners::FlexFlex, 1e9, 0.5, 240.0),  (Partners::FlexFlex, 1e6, 0.0, 240.0)] {
-        println!("{p:?}");
-        let mut scene = collide(p, 1.0 / n, young, mu, false);
-        let mut last = momentum(&scene);
-        for k in 0..(1.5 * n) as usize {
-            scene.step();
-            let now = momentum(&scene);
-            let jump = (now[0] - last[0]).hypot(now[1] - last[1]) / 1000.0;
-            let ang = (now[2] - last[2]).abs() / 1000.0;
-            if jump > 3e-7 || ang > 1e-4 {
-                let r = scene.report();
-                println!("{k}: jump {jump:.1e} ang {ang:.1e} newton {} limited {:.1e} res {:.1e} gap {:.1e}", r.n_newton(), r.energy_limited(), r.solver_residual(), r.gap_violation());
-                for c in r.contacts() { println!("     {:?} {:?} gap {:.1e} f {:.1} {:.1} sticks {} {:?}", c.position, c.normal, c.gap, c.normal_force, c.tangential_force, c.sticks, matches!(c.contactor, foil2d::pipeline::Participant::Flex(_))); }
+fn collisions_keep_angular_momentum_within_a_thousandth() {
+    let mut findings = Findings::default();
+    for partners in ALL {
+        for young in MODULI {
+            for mu in [0.0, 0.5] {
+                let [_, angular] = errors(partners, 1.0 / 240.0, young, mu);
+                findings.check(angular <= 1e-3, || {
+                    format!(
+                        "{partners:?}, E {young:e}, μ {mu}: angular momentum changes by {angular:e}"
+                    )
+                });
             }
-            last = now;
         }
     }
+    findings.report();
 }
+
 #[test]
-fn trace2() {
-        let n = 240.0;
-        let mut scene = collide(Partners::FlexFlex, 1.0 / n, 1e9, 0.5, false);
-        for k in 0..70 {
-            scene.step();
-            if k < 63 { continue; }
-            for (_, b) in scene.bodies.iter() {
-                print!("{k}: p {:?} acc {:?} spin {:.6} torque {:.3e}; ", b.momentum(), b.state().frame.acceleration, b.state().frame.spin, b.state().torque);
-            }
-            println!("contacts {}", scene.report().contacts().len());
+fn the_error_of_angular_momentum_falls_as_the_square_of_the_step() {
+    let mut findings = Findings::default();
+    // Where in the step an impact falls scatters a single error; the mean over four starts does not.
+    for partners in ALL {
+        for young in MODULI {
+            let dts = [60.0, 120.0, 240.0, 480.0, 960.0].map(|rate| 1.0 / rate);
+            let means = dts.map(|dt| {
+                let starts = [1.0, 0.97, 0.94, 0.91];
+                starts
+                    .iter()
+                    .map(|shift| errors(partners, dt * shift, young, 0.5)[1])
+                    .sum::<f64>()
+                    / 4.0
+            });
+            let order = order(&dts, &means);
+            findings.check(order >= 1.7, || {
+                format!("{partners:?}, E {young:e}: order {order} from {means:?}")
+            });
         }
+    }
+    findings.report();
 }

@@ -73,6 +73,8 @@ pub struct Model {
     mass: MassMatrix,
     /// For every massless node the massive nodes that stand for its velocity.
     support: Vec<(usize, Vec<usize>)>,
+    /// Place of a massless node in `support`, `u32::MAX` for the others.
+    support_index: Vec<u32>,
     largest_frequency: f64,
 }
 
@@ -142,12 +144,17 @@ impl Model {
             description.massless = vec![false; n_nodes];
         }
         let support = massive_support(&description.massless, &stiffness);
+        let mut support_index = vec![u32::MAX; n_nodes];
+        for (index, (node, _)) in support.iter().enumerate() {
+            support_index[*node] = index as u32;
+        }
         let largest_frequency = frequency_bound(&stiffness, &mass, has_massless);
         Ok(Self {
             description,
             stiffness,
             mass,
             support,
+            support_index,
             largest_frequency,
         })
     }
@@ -190,6 +197,12 @@ impl Model {
     /// Massless nodes with the massive nodes around them.
     pub fn massless_support(&self) -> &[(usize, Vec<usize>)] {
         &self.support
+    }
+
+    /// The nodes that carry the mass of a massless node; none for a node with mass.
+    pub fn support_of(&self, node: usize) -> &[usize] {
+        let index = self.support_index[node] as usize;
+        self.support.get(index).map_or(&[], |(_, support)| support)
     }
 
     /// Damping coefficients of the material.

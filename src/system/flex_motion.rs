@@ -20,9 +20,9 @@ impl FlexBlock {
         node_vec(&self.start_position, node)
     }
 
-    /// Velocity of a node at the beginning of the step (m/s).
+    /// Velocity at a node at the beginning of the step (m/s): that of the mass around a massless one.
     pub fn start_velocity(&self, node: usize) -> Vec2 {
-        node_vec(&self.start_velocity, node)
+        self.carried(node, |node| node_vec(&self.start_velocity, node))
     }
 
     /// Position of a node at the current iterate (m).
@@ -30,9 +30,21 @@ impl FlexBlock {
         node_vec(&self.position, node)
     }
 
-    /// Velocity of a node at the current iterate (m/s).
+    /// Velocity at a node at the current iterate (m/s): that of the mass around a massless one, whose own is a remainder
+    /// without inertia.
     pub fn velocity(&self, node: usize) -> Vec2 {
-        node_vec(&self.velocity, node)
+        self.carried(node, |node| node_vec(&self.velocity, node))
+    }
+
+    /// A value at a node with mass, or its mean over the nodes that carry a massless node's mass.
+    fn carried(&self, node: usize, value: impl Fn(usize) -> Vec2) -> Vec2 {
+        match self.model.support_of(node) {
+            [] => value(node),
+            support => {
+                let sum: Vec2 = support.iter().map(|&massive| value(massive)).sum();
+                sum / support.len() as f64
+            }
+        }
     }
 
     /// All positions of the current iterate, interleaved (m).
@@ -52,7 +64,9 @@ impl FlexBlock {
 
     /// Acceleration of a node at the end of the step, linear in the increments (m/s²).
     pub fn end_acceleration(&self, node: usize) -> Vec2 {
-        let own = node_vec(&self.start_acceleration, node) + node_vec(&self.increment, node);
+        let own = self.carried(node, |node| {
+            node_vec(&self.start_acceleration, node) + node_vec(&self.increment, node)
+        });
         self.start_frame.acceleration + self.turn * own
     }
 
@@ -248,9 +262,24 @@ impl FlexBlock {
                     (self.position[dof] - self.start_position[dof]) / self.step.dt;
             }
         }
+        self.settle_surface(state);
         state.split_position(&self.arms, self.kind);
         state.split_velocity(&self.arms, self.kind);
         spread_accelerations(&self.model, &self.is_fixed, &mut state.acceleration);
+    }
+
+    /// Gives massless nodes in contact the velocity they moved with: the trapezoidal rule would let it alternate for ever
+    /// where a contact holds the position, and damping would pass that on to the contact force.
+    fn settle_surface(&self, state: &mut FlexState) {
+        if !self.has_contact_force {
+            return;
+        }
+        for (node, _) in self.model.massless_support() {
+            if node_vec(&self.contact_force, *node) != Vec2::zeros() {
+                let moved = node_vec(&self.position, *node) - node_vec(&self.start_position, *node);
+                set_node_vec(&mut state.velocity, *node, moved / self.step.dt);
+            }
+        }
     }
 
     /// Reaction at a pinned node, the force the pin exerts on the body (N).

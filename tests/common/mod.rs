@@ -5,7 +5,7 @@
     reason = "every test binary uses its own part of this module"
 )]
 
-use foil2d::pipeline::Participant;
+use foil2d::pipeline::{Participant, StepError};
 pub use foil2d::prelude::*;
 use foil2d::rapier::math::Real;
 pub use foil2d::rapier::prelude::*;
@@ -48,7 +48,7 @@ impl Scene {
         Self {
             world,
             bodies: FlexBodySet::new(),
-            flex: FlexPipeline::new(),
+            flex: FlexPipeline::new().with_integrator(Beta2::trapezoidal()),
         }
     }
 
@@ -95,6 +95,10 @@ impl Scene {
         self.bodies
             .insert(builder, &mut self.world)
             .expect("the description is right")
+    }
+
+    pub fn try_step(&mut self) -> Result<&StepReport, StepError> {
+        self.flex.step(&mut self.world, &mut self.bodies)
     }
 
     pub fn step(&mut self) -> &StepReport {
@@ -171,5 +175,28 @@ impl Dice {
 
     pub fn pick<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[(self.roll() * choices.len() as f64) as usize]
+    }
+}
+
+/// Gathers every case of a sweep that is wrong, so that one run tells them all.
+#[derive(Default)]
+pub struct Findings(Vec<String>);
+
+impl Findings {
+    /// Notes what is wrong unless `holds`.
+    pub fn check(&mut self, holds: bool, what: impl FnOnce() -> String) {
+        if !holds {
+            self.0.push(what());
+        }
+    }
+
+    /// Fails with the list.
+    pub fn report(self) {
+        assert!(
+            self.0.is_empty(),
+            "{} wrong:\n{}",
+            self.0.len(),
+            self.0.join("\n")
+        );
     }
 }
