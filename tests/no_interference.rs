@@ -165,11 +165,19 @@ fn a_world_whose_last_flexible_body_was_removed_steps_bit_for_bit_again() -> Res
             flex.step(&mut world, &mut flex_bodies)
                 .expect("no body yet");
         }
-        let body = flex_bodies.insert(block_at(-20.0, 11.0), &mut world)?;
+        // It falls beside the columns, onto a box that is claimed with it.
+        let beside = RigidBodyBuilder::dynamic().translation(Vector::new(-44.5, 0.3));
+        let (crate_body, _) = world.insert(beside, ColliderBuilder::cuboid(0.3, 0.3));
+        let body = flex_bodies.insert(block_at(-45.0, 0.7), &mut world)?;
+        let mut n_claimed = 0;
         for _ in 0..120 {
-            flex.step(&mut world, &mut flex_bodies)
-                .expect("a block that falls on the columns");
+            let report = flex
+                .step(&mut world, &mut flex_bodies)
+                .expect("a block that falls on a box");
+            n_claimed = n_claimed.max(report.n_claimed());
         }
+        assert_eq!(n_claimed, 1);
+        world.remove_body(crate_body);
         flex_bodies
             .remove(body, &mut world)
             .expect("the body is there");

@@ -56,6 +56,8 @@ pub struct ActiveContact {
     pub status: [Status; 2],
     /// Whether all grips carry inertia.
     pub is_hard: bool,
+    /// Gap and relative position `Σ w x` at which the geometry was frozen, once it is.
+    pub(super) frozen: Option<(f64, crate::math::Vec2)>,
     /// Tangential motion since the beginning of the step (m).
     pub slip: f64,
     /// Share of the contact that is shorter than the step, 0 to 1 (-).

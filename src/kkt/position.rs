@@ -13,7 +13,13 @@ use crate::system::{Block, Grip};
 /// Turning below this angle (rad) changes no position by more than round-off.
 const ANGLE_TOLERANCE: f64 = 1e-11;
 
-/// Growth of the error, from that of the first iteration, that will not come back.
+/// Iteration from which the geometry of contacts is kept.
+const FROZEN_FROM: usize = 6;
+
+/// Iterations in which the working set still forms.
+const SETTLING: usize = 6;
+
+/// Growth of the error, from the largest while the working set forms, that will not come back.
 const DIVERGENCE: f64 = 1e2;
 
 /// Multiple of the tolerance that still counts when the iterations are used up.
@@ -54,19 +60,19 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) -> Result<bool, KktError> {
-        let mut first = f64::INFINITY;
+        let mut peak = 0.0f64;
         for iteration in 0..settings.max_newton {
             summary.n_newton = iteration + 1;
             let turned = self.correct();
-            let error = self.refresh_kinematics();
+            let error = self.refresh_kinematics(iteration >= FROZEN_FROM);
             let has_more = self.add_violated(tolerance, memory);
             if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
                 return Ok(true);
             }
-            if iteration == 0 {
-                first = turned.max(error);
+            if iteration < SETTLING {
+                peak = peak.max(turned).max(error);
             }
-            let is_diverging = iteration > 4 && turned.max(error) > DIVERGENCE * first;
+            let is_diverging = turned.max(error) > DIVERGENCE * peak;
             if is_diverging || !(turned + error).is_finite() {
                 return Ok(false);
             }
@@ -98,12 +104,12 @@ impl Island {
         self.remember_contacts(memory);
         for _ in 0..LINEAR_ROUNDS {
             self.correct();
-            self.refresh_kinematics();
+            self.refresh_kinematics(true);
             self.add_violated(tolerance, memory);
             self.solve_multipliers(settings, summary)?;
         }
         self.correct();
-        self.refresh_kinematics();
+        self.refresh_kinematics(true);
         Ok(())
     }
 
@@ -167,15 +173,25 @@ impl Island {
 
     /// Measures the working set where the blocks are now; returns how far the laws are from holding (m): overlaps, gaps
     /// of pressing contacts, slip of sticking ones, and slip that friction drives instead of opposing.
-    fn refresh_kinematics(&mut self) -> f64 {
+    ///
+    /// With `freezes` the rows of `G` stay what they are from now on and only gaps follow: (C.2) with known restrictions.
+    /// A sharp corner turns the segment it dents, and normals that follow every iterate need not converge.
+    fn refresh_kinematics(&mut self, freezes: bool) -> f64 {
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         let mut error = 0.0f64;
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
-            let Some(kinematics) = candidate.evaluate(&scene, &contact.remembered) else {
-                continue;
-            };
-            contact.kinematics = kinematics;
+            let relative = contact
+                .kinematics
+                .relative(&self.blocks, |block, grip| block.position(grip));
+            if let (true, Some((gap, from))) = (freezes, contact.frozen) {
+                contact.kinematics.gap = gap + contact.kinematics.normal.dot(&(relative - from));
+            } else if let Some(kinematics) = candidate.evaluate(&scene, &contact.remembered) {
+                contact.kinematics = kinematics;
+                let at = kinematics.relative(&self.blocks, |block, grip| block.position(grip));
+                contact.frozen = Some((kinematics.gap, at));
+            }
+            let kinematics = contact.kinematics;
             error = error.max(-kinematics.gap);
             if contact.multiplier[0] <= 0.0 {
                 continue;
@@ -354,6 +370,7 @@ impl ActiveContact {
             multiplier: [remembered.normal, remembered.tangent],
             impulse: [0.0; 2],
             status: [normal, tangential],
+            frozen: None,
             slip: 0.0,
             unresolved: 0.0,
             approach,

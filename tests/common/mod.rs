@@ -10,8 +10,8 @@ pub use foil2d::prelude::*;
 use foil2d::rapier::math::Real;
 pub use foil2d::rapier::prelude::*;
 
-/// Gravity of all scenes that have one (m/s²).
-pub const G: f64 = 9.81 as Real as f64;
+/// Gravity of all scenes that have one (m/s²): near 9.81, and exact in both of rapier's precisions.
+pub const G: f64 = 9.8125;
 
 /// Rapier's vector of two numbers.
 pub fn vec2(x: f64, y: f64) -> Vector {
@@ -40,15 +40,15 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// An empty world with gravity `[0, -9.81]` m/s², stepped by `dt` (s).
+    /// An empty world with gravity `[0, -G]`, stepped by `dt` (s).
     pub fn new(dt: f64) -> Self {
         let mut world = PhysicsWorld::new();
         world.integration_parameters.dt = real(dt);
-        world.gravity = vec2(0.0, -9.81);
+        world.gravity = vec2(0.0, -G);
         Self {
             world,
             bodies: FlexBodySet::new(),
-            flex: FlexPipeline::new().with_integrator(Beta2::trapezoidal()),
+            flex: FlexPipeline::new(),
         }
     }
 

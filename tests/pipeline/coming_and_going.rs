@@ -1,0 +1,127 @@
+//! Bodies and shapes that come, change and go between steps.
+
+use crate::support::*;
+use foil2d::body::FlexBodyError;
+
+#[test]
+fn bodies_come_and_go_at_run_time_and_their_handles_go_stale() -> Outcome {
+    let mut scene = Scene::with_floor();
+    let first = scene.insert(square().translation([0.0, 0.001]))?;
+    scene.steps(60)?;
+    let second = scene.insert(square().translation([0.0, 1.05]))?;
+    assert_eq!(scene.flex_bodies.len(), 2);
+    scene.steps(120)?;
+    let [low, high] = [first, second].map(|body| scene.flex_bodies[body].centre_of_mass()[1]);
+    assert!(high - low > 0.9, "the second rests on the first");
+    let (n_bodies, n_colliders) = (scene.world.bodies.len(), scene.world.colliders.len());
+    let carrier = scene.flex_bodies[first].rigid_body_handle();
+    let surface = scene.flex_bodies[first].collider_handle();
+    let body = scene.flex_bodies.remove(first, &mut scene.world)?;
+    assert!((body.mass() - 1000.0).abs() < 1e-9, "it is handed out");
+    assert!(!scene.world.bodies.contains(carrier));
+    assert!(!scene.world.colliders.contains(surface));
+    assert_eq!(scene.world.bodies.len(), n_bodies - 1);
+    assert_eq!(scene.world.colliders.len(), n_colliders - 1);
+    assert_eq!(
+        scene.flex_bodies.try_get(first).err(),
+        Some(FlexBodyError::Stale(first))
+    );
+    assert_eq!(scene.flex_bodies.len(), 1);
+    // The second falls onto the floor and carries nothing but itself.
+    scene.steps(240)?;
+    let body = &scene.flex_bodies[second];
+    assert!((body.centre_of_mass()[1] - 0.5).abs() < 0.02);
+    let force = body.total_contact_force()[1];
+    assert!((force / (GRAVITY * 1000.0) - 1.0).abs() < 1e-3, "{force} N");
+    // A new body takes the vacant slot, with another handle and none of the old contacts.
+    let third = scene.insert(square().translation([5.0, 3.0]))?;
+    assert_eq!(third.into_raw_parts().0, first.into_raw_parts().0);
+    assert_ne!(third, first);
+    scene.step()?;
+    assert_eq!(scene.flex_bodies[third].total_contact_force(), [0.0; 2]);
+    Ok(())
+}
+
+#[test]
+fn removing_a_rigid_body_in_contact_frees_the_beam_under_it() -> Outcome {
+    let mut scene = Scene::default();
+    let beam = scene.insert(beam())?;
+    scene.steps(240)?;
+    let own = scene.flex_bodies[beam].position(12)[1];
+    let crate_body = scene.insert_box(0.25, [0.0, 1.55], 1000.0);
+    scene.steps(360)?;
+    assert_eq!(scene.flex.report().n_claimed(), 1);
+    let loaded = scene.flex_bodies[beam].position(12)[1];
+    assert!(
+        loaded < own - 1e-4,
+        "{loaded} m under load, {own} m without"
+    );
+    scene.world.remove_body(crate_body);
+    scene.step()?;
+    assert_eq!(scene.flex.report().n_claimed(), 0);
+    assert!(scene.flex.report().contacts().is_empty());
+    scene.steps(480)?;
+    let freed = scene.flex_bodies[beam].position(12)[1];
+    assert!((freed - own).abs() < 1e-6, "{freed} m, was {own} m");
+    Ok(())
+}
+
+#[test]
+fn a_box_in_contact_may_change_its_shape_or_lose_its_collider() -> Outcome {
+    let mut scene = Scene::default();
+    scene.insert(beam())?;
+    let crate_body = scene.insert_box(0.25, [0.0, 1.551], 300.0);
+    // Mass of its own, so that it falls without a collider too.
+    scene.world.bodies[crate_body].set_additional_mass(50.0, true);
+    scene.steps(60)?;
+    let collider = scene.world.bodies[crate_body].colliders()[0];
+    let twelve: Vec<Vector> = (0..12)
+        .map(|corner| {
+            let (sin, cos) = (0.3 + f64::from(corner) * 0.5236).sin_cos();
+            vector(0.25 * cos, 0.25 * sin)
+        })
+        .collect();
+    let shapes = [
+        SharedShape::convex_hull(&twelve).ok_or("a dodecagon")?,
+        SharedShape::triangle(vector(-0.25, -0.25), vector(0.25, -0.25), vector(0.0, 0.2)),
+        SharedShape::ball(0.25),
+        SharedShape::capsule_x(0.1, 0.2),
+        SharedShape::round_cuboid(0.2, 0.2, 0.05),
+    ];
+    for shape in shapes {
+        scene.world.colliders[collider].set_shape(shape);
+        for _ in 0..30 {
+            scene.step()?;
+            assert!(scene.height(crate_body).is_finite());
+        }
+        assert!(scene.height(crate_body) > 1.2, "the beam still carries it");
+    }
+    scene.world.remove_collider(collider);
+    scene.steps(120)?;
+    assert!(scene.height(crate_body) < 1.0, "nothing holds it any more");
+    Ok(())
+}
+
+#[test]
+fn sleeping_boxes_wake_when_a_flexible_body_touches_them_and_not_before() -> Outcome {
+    let mut scene = Scene::with_floor();
+    let crates = [0.5, 3.0].map(|x| scene.insert_box(0.25, [x, 0.25], 500.0));
+    scene.steps(300)?;
+    let sleeps = |scene: &Scene| crates.map(|handle| scene.world.bodies[handle].is_sleeping());
+    assert_eq!(sleeps(&scene), [true, true]);
+    // One metre of fall takes 0.45 s.
+    let block = scene.insert(square().translation([0.05, 1.5]))?;
+    scene.steps(12)?;
+    assert_eq!(sleeps(&scene), [true, true], "nothing touches them yet");
+    scene.steps(48)?;
+    assert_eq!(sleeps(&scene), [false, true]);
+    scene.steps(240)?;
+    // The block rests on the box and on nothing else, or fell beside it: the box bears what it bears.
+    let bottom = scene.flex_bodies[block]
+        .positions()
+        .chunks_exact(2)
+        .map(|at| at[1])
+        .fold(f64::INFINITY, f64::min);
+    assert!(bottom > -1e-6, "{bottom} m");
+    Ok(())
+}
