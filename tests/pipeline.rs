@@ -2,14 +2,10 @@
 
 #[path = "pipeline/coming_and_going.rs"]
 mod coming_and_going;
-#[path = "pipeline/fuzz.rs"]
-mod fuzz;
 #[path = "pipeline/loads.rs"]
 mod loads;
 #[path = "pipeline/rapier_features.rs"]
 mod rapier_features;
-#[path = "pipeline/stability.rs"]
-mod stability;
 #[path = "pipeline/support.rs"]
 mod support;
 #[path = "pipeline/time.rs"]

@@ -1,4 +1,4 @@
-//! The energy stage: contact may store energy and give it back, but never adds any.
+//! The energy stage: contact may store energy and give it back; what it would add is taken from the velocities.
 //!
 //! With `E` the kinetic and elastic energy and `W` the work of applied forces and of prescribed motion, the step may end
 //! with `E' <= E + W + reserve`; the reserve is what contact has taken since it began. Beyond that the end velocity is

@@ -4,7 +4,7 @@
 //!    of the step, Newton iterations for rotations and curved surfaces;
 //! 2. velocity stage: contacts between masses get an impulse, so that no force of an impact lingers in the stored
 //!    acceleration; contacts through massless surfaces need it only where the impact is shorter than the step;
-//! 3. energy stage: an impact never adds energy.
+//! 3. energy stage: velocities give back the energy that contact would add.
 
 mod delassus;
 mod energy;
