@@ -134,45 +134,6 @@ fn a_flexible_plate_on_two_balls_shares_its_weight() {
     }
 }
 
-/// Bodies that stand by themselves with their lowest points at height `-foot`, with their names.
-fn bodies() -> Vec<(&'static str, ColliderBuilder, f64)> {
-    let p = vec2;
-    let pentagon = [p(-0.22, 0.0), p(0.22, 0.0), p(0.4, 0.3), p(-0.4, 0.3)];
-    let parts = vec![
-        (
-            Pose::from_translation(p(-0.3, 0.1)),
-            SharedShape::cuboid(0.12, 0.1),
-        ),
-        (Pose::from_translation(p(0.3, 0.1)), SharedShape::ball(0.1)),
-        (
-            Pose::from_translation(p(0.0, 0.25)),
-            SharedShape::cuboid(0.4, 0.05),
-        ),
-    ];
-    let [a, b, c] = [p(-0.33, 0.0), p(0.33, 0.0), p(0.0, 0.4)];
-    let hull = ColliderBuilder::convex_hull(&pentagon);
-    let round_hull = ColliderBuilder::round_convex_hull(&pentagon, 0.05);
-    vec![
-        ("ball", ColliderBuilder::ball(0.2), 0.2),
-        ("cuboid", ColliderBuilder::cuboid(0.27, 0.2), 0.2),
-        (
-            "round cuboid",
-            ColliderBuilder::round_cuboid(0.22, 0.15, 0.05),
-            0.2,
-        ),
-        ("capsule", ColliderBuilder::capsule_x(0.27, 0.1), 0.1),
-        ("triangle", ColliderBuilder::triangle(a, b, c), 0.0),
-        (
-            "round triangle",
-            ColliderBuilder::round_triangle(a, b, c, 0.05),
-            0.05,
-        ),
-        ("convex polygon", hull.expect("a hull"), 0.0),
-        ("round convex polygon", round_hull.expect("a hull"), 0.05),
-        ("compound", ColliderBuilder::compound(parts), 0.0),
-    ]
-}
-
 #[test]
 fn a_moving_platform_carries_a_flexible_block() {
     for young in [1e6, 1e9] {

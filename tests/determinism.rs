@@ -130,12 +130,6 @@ impl Scene {
     }
 }
 
-fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
-    assert_eq!(one.len(), other.len());
-    let differences = one.iter().zip(other).map(|(a, b)| (a - b).abs());
-    differences.fold(0.0, f64::max)
-}
-
 #[test]
 fn the_same_scene_gives_the_same_bits_at_every_step() -> Result<(), BuildError> {
     let order = [0, 1, 2, 3];

@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use foil2d::pipeline::{ContactReport, Participant};
+use foil2d::pipeline::ContactReport;
 
 /// A rigid box of half extents `half` (m), density 0 but for its `mass` (kg).
 fn boxed(
@@ -19,68 +19,6 @@ fn boxed(
             .mass(real(mass))
             .friction(0.5),
     )
-}
-
-/// Upward force of one participant on another (N).
-fn upward(contacts: &[ContactReport], below: Participant, above: Participant) -> f64 {
-    contacts
-        .iter()
-        .map(|contact| {
-            let [nx, ny] = contact.normal;
-            let force = contact.normal_force * ny + contact.tangential_force * nx;
-            if (contact.contactor, contact.target) == (above, below) {
-                force
-            } else if (contact.contactor, contact.target) == (below, above) {
-                -force
-            } else {
-                0.0
-            }
-        })
-        .sum()
-}
-
-/// Three boxes on a beam of 4 m × 0.2 m with its lower corners pinned; largest errors of the three interfaces' forces in
-/// the last ten seconds of a minute, relative to the weight above.
-fn three_boxes(masses: [f64; 3], x: f64, dt: f64) -> f64 {
-    let mut scene = Scene::new(dt);
-    let beam = scene.flexible(
-        FlexBodyBuilder::rectangle([4.0, 0.2], [40, 4])
-            .material(
-                LinearElastic::plane_stress(1e10, 0.3)
-                    .density(1000.0)
-                    .rayleigh(0.02),
-            )
-            .pin_where(|[x, y]| y == 0.0 && (x == 0.0 || x == 4.0), Pin::both()),
-    );
-    let boxes: Vec<_> = (0..3)
-        .map(|k| boxed(&mut scene, [x, 0.4 + 0.4 * k as f64], [0.2, 0.2], masses[k]))
-        .collect();
-    let mut worst = 0.0f64;
-    let steps = (60.0 / dt) as usize;
-    for step in 0..steps {
-        scene.step();
-        if step < steps - (10.0 / dt) as usize {
-            continue;
-        }
-        let mut below = Participant::Flex(beam);
-        for k in 0..3 {
-            let own = Participant::Rigid(boxes[k].1);
-            let force = upward(scene.report().contacts(), below, own);
-            worst = worst.max((force / (masses[k..].iter().sum::<f64>() * G) - 1.0).abs());
-            below = own;
-        }
-    }
-    for (k, (body, _)) in boxes.iter().enumerate() {
-        let body = &scene.world.bodies[*body];
-        let off = f64::from(body.translation().x) - x;
-        assert!(off.abs() < 0.01, "box {k} is {off} m beside its place");
-        assert!(
-            body.linvel().length() < 1e-4,
-            "box {k} moves at {:?}",
-            body.linvel()
-        );
-    }
-    worst
 }
 
 #[test]
