@@ -24,7 +24,7 @@ pub enum ContactInertia {
     Kept,
 }
 
-/// Builds a [`FlexBody`].
+/// Builds a [`FlexBody`](super::FlexBody).
 ///
 /// Lengths are in m, and mesh coordinates are placed by `rotation` and then `translation`.
 ///
@@ -180,7 +180,7 @@ impl FlexBodyBuilder {
         self
     }
 
-    /// Pins a node: its displacement is zero, or what [`FlexBody::set_pin_displacement`] says.
+    /// Pins a node: its displacement is zero, or what [`set_pin_displacement`](super::FlexBody::set_pin_displacement) says.
     pub fn pin(mut self, node: usize, pin: Pin) -> Self {
         self.pins.push((node, pin));
         self
