@@ -6,6 +6,8 @@ mod coming_and_going;
 mod loads;
 #[path = "pipeline/rapier_features.rs"]
 mod rapier_features;
+#[path = "pipeline/stability.rs"]
+mod stability;
 #[path = "pipeline/support.rs"]
 mod support;
 #[path = "pipeline/time.rs"]

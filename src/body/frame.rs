@@ -62,11 +62,20 @@ impl Arms {
     }
 
     /// Centre of the frame for nodal positions (or velocities) `dofs`.
-    pub fn centre(&self, frame: Frame, dofs: &[f64]) -> Vec2 {
+    ///
+    /// - `near`: the centre as far as it is known; a mean of differences from it is exact where a mean of large
+    ///   coordinates would drift by a rounding at every step.
+    pub fn centre(&self, frame: Frame, dofs: &[f64], near: Vec2) -> Vec2 {
         match frame {
             Frame::Fixed => Vec2::zeros(),
             Frame::Hinged(node) => node_vec(dofs, node),
-            Frame::Free => weighted_mean(&self.node_mass, self.mass, dofs),
+            Frame::Free => {
+                let mut sum = Vec2::zeros();
+                for (mass, p) in self.node_mass.iter().zip(dofs.chunks_exact(2)) {
+                    sum += *mass * (Vec2::new(p[0], p[1]) - near);
+                }
+                near + sum / self.mass
+            }
         }
     }
 

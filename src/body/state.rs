@@ -93,7 +93,7 @@ impl FlexState {
         if kind == Frame::Fixed {
             return;
         }
-        let centre = arms.centre(kind, &self.position);
+        let centre = arms.centre(kind, &self.position, self.frame.centre);
         let angle = arms.angle(&self.position, centre, self.frame.angle);
         (self.frame.centre, self.frame.angle) = (centre, angle);
         let back = rotation(-angle);
@@ -131,7 +131,7 @@ fn split_velocity(
         rate.copy_from_slice(velocity);
         return (Vec2::zeros(), 0.0);
     }
-    let centre = arms.centre(kind, velocity);
+    let centre = arms.centre(kind, velocity, frame.velocity);
     let back = rotation(-frame.angle);
     let (mut momentum, mut inertia) = (0.0, 0.0);
     for (node, moment) in arms.mass_moment.chunks_exact(2).enumerate() {

@@ -8,13 +8,16 @@ use super::delassus::{RowDirection, assemble};
 use super::island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
 use crate::constraint::contact::{ContactMemory, Kinematics, Remembered};
 use crate::linalg::complementarity::{Problem, RowKind, Status};
-use crate::system::{Block, Grip};
+use crate::system::{Block, Point};
 
 /// Turning below this angle (rad) changes no position by more than round-off.
 const ANGLE_TOLERANCE: f64 = 1e-11;
 
-/// Iteration from which the geometry of contacts is kept.
-const FROZEN_FROM: usize = 6;
+/// Iteration from which the rows, directions and levers of the forces, stay what they are.
+const ROWS_KEPT_FROM: usize = 3;
+
+/// Iteration from which gaps are extrapolated along the rows.
+const GAPS_KEPT_FROM: usize = 12;
 
 /// Iterations in which the working set still forms.
 const SETTLING: usize = 6;
@@ -64,7 +67,7 @@ impl Island {
         for iteration in 0..settings.max_newton {
             summary.n_newton = iteration + 1;
             let turned = self.correct();
-            let error = self.refresh_kinematics(iteration >= FROZEN_FROM);
+            let error = self.measure(iteration >= GAPS_KEPT_FROM);
             let has_more = self.add_violated(tolerance, memory);
             if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
                 return Ok(true);
@@ -77,6 +80,9 @@ impl Island {
                 return Ok(false);
             }
             if iteration + 1 < settings.max_newton {
+                if iteration < ROWS_KEPT_FROM {
+                    self.refresh_rows();
+                }
                 self.solve_multipliers(settings, summary)?;
             } else if turned.max(error) <= ACCEPTABLE * tolerance && !has_more {
                 return Ok(true);
@@ -102,14 +108,17 @@ impl Island {
         self.contacts.clear();
         self.is_working.fill(false);
         self.remember_contacts(memory);
-        for _ in 0..LINEAR_ROUNDS {
+        for round in 0..LINEAR_ROUNDS {
             self.correct();
-            self.refresh_kinematics(true);
+            self.measure(round > 0);
             self.add_violated(tolerance, memory);
+            if round == 0 {
+                self.refresh_rows();
+            }
             self.solve_multipliers(settings, summary)?;
         }
         self.correct();
-        self.refresh_kinematics(true);
+        self.measure(true);
         Ok(())
     }
 
@@ -155,7 +164,7 @@ impl Island {
                 &contact.kinematics,
                 contact.multiplier,
                 Some(&mut self.wrenches),
-                |block, node, force| block.add_contact_force(node, force),
+                |block, node, force, lever| block.add_contact_force(node, force, lever),
             );
         }
         let mut turned = 0.0f64;
@@ -174,23 +183,30 @@ impl Island {
     /// Measures the working set where the blocks are now; returns how far the laws are from holding (m): overlaps, gaps
     /// of pressing contacts, slip of sticking ones, and slip that friction drives instead of opposing.
     ///
-    /// With `freezes` the rows of `G` stay what they are from now on and only gaps follow: (C.2) with known restrictions.
-    /// A sharp corner turns the segment it dents, and normals that follow every iterate need not converge.
-    fn refresh_kinematics(&mut self, freezes: bool) -> f64 {
+    /// The forces keep acting along the rows they have: gaps are true, and Newton's matrix is that of the rows. With
+    /// `extrapolates` gaps follow the rows too, which always converges.
+    fn measure(&mut self, extrapolates: bool) -> f64 {
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         let mut error = 0.0f64;
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
-            let relative = contact
+            let at = contact
                 .kinematics
-                .relative(&self.blocks, |block, grip| block.position(grip));
-            if let (true, Some((gap, from))) = (freezes, contact.frozen) {
-                contact.kinematics.gap = gap + contact.kinematics.normal.dot(&(relative - from));
-            } else if let Some(kinematics) = candidate.evaluate(&scene, &contact.remembered) {
-                contact.kinematics = kinematics;
-                let at = kinematics.relative(&self.blocks, |block, grip| block.position(grip));
-                contact.frozen = Some((kinematics.gap, at));
-            }
+                .relative(&self.blocks, |block, grip| block.position(grip.point));
+            let found = match contact.known {
+                Some(_) if extrapolates => None,
+                _ => candidate.evaluate(&scene, &contact.remembered),
+            };
+            let along = contact.kinematics.normal;
+            contact.kinematics.gap = match (found, contact.known) {
+                (Some(found), _) => {
+                    contact.measured = found;
+                    found.gap
+                }
+                (None, Some((gap, from))) => gap + along.dot(&(at - from)),
+                (None, None) => contact.kinematics.gap,
+            };
+            contact.known = Some((contact.kinematics.gap, at));
             let kinematics = contact.kinematics;
             error = error.max(-kinematics.gap);
             if contact.multiplier[0] <= 0.0 {
@@ -207,6 +223,16 @@ impl Island {
             }
         }
         error
+    }
+
+    /// Makes the measured geometry the rows that forces act along.
+    fn refresh_rows(&mut self) {
+        for contact in &mut self.contacts {
+            let gap = contact.kinematics.gap;
+            contact.kinematics = contact.measured;
+            contact.kinematics.gap = gap;
+            contact.known = None;
+        }
     }
 
     /// Adds candidates that overlap now; returns whether there were any.
@@ -321,7 +347,7 @@ impl Island {
 /// Tangential motion of the point against the target's material since the beginning of the step (m).
 fn slip(kinematics: &Kinematics, blocks: &[Block]) -> f64 {
     let moved = kinematics.relative(blocks, |block, grip| {
-        block.position(grip) - block.start_position(grip)
+        block.position(grip.point) - block.start_position(grip.point)
     });
     moved.dot(&kinematics.tangent())
 }
@@ -329,8 +355,8 @@ fn slip(kinematics: &Kinematics, blocks: &[Block]) -> f64 {
 /// Makes the compliances of a contact's nodes known.
 fn prepare(blocks: &mut [Block], kinematics: &Kinematics) {
     for attachment in kinematics.attachments() {
-        if let (Block::Flex(block), Grip::Node(node)) =
-            (&mut blocks[attachment.block], attachment.grip)
+        if let (Block::Flex(block), Point::Node(node)) =
+            (&mut blocks[attachment.block], attachment.grip.point)
         {
             block.prepare_compliance(node);
         }
@@ -367,10 +393,11 @@ impl ActiveContact {
             candidate,
             is_hard: !kinematics.is_soft(blocks),
             kinematics,
+            measured: kinematics,
             multiplier: [remembered.normal, remembered.tangent],
             impulse: [0.0; 2],
             status: [normal, tangential],
-            frozen: None,
+            known: None,
             slip: 0.0,
             unresolved: 0.0,
             approach,

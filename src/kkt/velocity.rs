@@ -10,7 +10,7 @@ use super::delassus::{RowDirection, assemble};
 use super::island::{Island, KktError, SolveSettings};
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
-use crate::system::{Block, Grip, Response};
+use crate::system::{Block, Response};
 
 /// Share of rigid mobility below which an impact counts as resolved, and above which as unresolved.
 const RESOLVED: f64 = 0.3;
@@ -45,28 +45,38 @@ impl Island {
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         for contact in &self.contacts {
             let (blocks, kinematics) = (&mut self.blocks, &contact.kinematics);
-            if contact.is_hard {
-                Self::spread(
-                    blocks,
-                    kinematics,
-                    contact.multiplier,
-                    None,
-                    |block, node, force| {
-                        block.drop_hard_force(node, force);
-                    },
-                );
-            } else {
+            let force = contact.multiplier;
+            if !contact.is_hard {
                 let wrenches = Some(&mut self.wrenches[..]);
-                Self::spread(
-                    blocks,
-                    kinematics,
-                    contact.multiplier,
-                    wrenches,
-                    |_, _, _| {},
-                );
+                Self::spread(blocks, kinematics, force, wrenches, |_, _, _, _| {});
             }
         }
         self.set_soft_forces();
+        self.withdraw_hard_forces();
+    }
+
+    fn withdraw_hard_forces(&mut self) {
+        let is_pressed = |block: &Block| matches!(block, Block::Flex(block) if block.has_impulse());
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.clear_impulse();
+            }
+        }
+        for contact in self.contacts.iter().filter(|contact| contact.is_hard) {
+            let (kinematics, force) = (&contact.kinematics, contact.multiplier);
+            Self::spread(
+                &mut self.blocks,
+                kinematics,
+                force,
+                None,
+                |block, node, force, lever| block.gather_impulse(node, force, lever),
+            );
+        }
+        for block in self.blocks.iter_mut().filter(|block| is_pressed(block)) {
+            if let Block::Flex(block) = block {
+                block.withdraw_forces();
+            }
+        }
     }
 
     /// (C.5) as printed: every multiplier acts on velocity and acceleration.
@@ -80,7 +90,7 @@ impl Island {
                 &contact.kinematics,
                 contact.multiplier,
                 Some(&mut self.wrenches),
-                |_, _, _| {},
+                |_, _, _, _| {},
             );
         }
         self.set_soft_forces();
@@ -101,7 +111,7 @@ impl Island {
         let normal = kinematics.normal;
         let (mut rigid, mut actual) = (0.0, 0.0);
         for a in kinematics.attachments() {
-            rigid += a.weight * a.weight * self.blocks[a.block].rigid_mobility(a.grip, normal);
+            rigid += a.weight.abs() * self.blocks[a.block].rigid_mobility(a.grip, normal);
             for b in kinematics.attachments() {
                 if a.block == b.block {
                     let compliance = self.blocks[a.block].compliance(a.grip, b.grip);
@@ -220,7 +230,7 @@ impl Island {
                 kinematics,
                 force,
                 Some(&mut self.wrenches),
-                |block, node, impulse| block.gather_impulse(node, impulse),
+                |block, node, impulse, lever| block.gather_impulse(node, impulse, lever),
             );
         }
         if !touched {
@@ -251,8 +261,8 @@ impl Island {
             let mut acceleration =
                 kinematics.relative(&self.blocks, |block, grip| block.smooth_acceleration(grip));
             for a in kinematics.attachments() {
-                if let (Block::Rigid(block), Grip::Arm(arm)) = (&self.blocks[a.block], a.grip) {
-                    acceleration += a.weight * block.respond(arm, self.wrenches[a.block]);
+                if let Block::Rigid(block) = &self.blocks[a.block] {
+                    acceleration += a.weight * block.respond(a.grip.lever, self.wrenches[a.block]);
                 }
             }
             let sticks = contact.status[1] == Status::Stick;
@@ -296,7 +306,7 @@ impl Island {
                 &contact.kinematics,
                 force,
                 Some(&mut self.wrenches),
-                |_, _, _| {},
+                |_, _, _, _| {},
             );
         }
     }

@@ -74,6 +74,8 @@ pub struct FlexBlock {
     /// Applied nodal forces, gravity included (N).
     pub(super) force: Vec<f64>,
     pub(super) prescribed: Vec<f64>,
+    /// Gravity and other forces per mass; `None` if forces act on single nodes (m/s²).
+    pub(super) uniform: Option<Vec2>,
     /// `u_q`, `u̇_q`.
     pub(super) displacement_q: Vec<f64>,
     pub(super) rate_q: Vec<f64>,
@@ -82,11 +84,18 @@ pub struct FlexBlock {
     pub(super) frame: FrameMotion,
     /// Rotation matrix of the iterate's frame.
     pub(super) turn: Mat2,
+    /// Rotation matrix that turned the increments of the last solve.
+    pub(super) solve_turn: Mat2,
     /// `δ` of the iterate.
     pub(super) increment: Vec<f64>,
     pub(super) contact_force: Vec<f64>,
     pub(super) has_contact_force: bool,
+    /// Moment of the contact forces about the centre, by the levers they were given with (N m).
+    pub(super) contact_moment: f64,
     pub(super) impulse: Vec<f64>,
+    pub(super) has_impulse: bool,
+    /// Moment of the impulses about the centre (N m s).
+    pub(super) impulse_moment: f64,
     pub(super) local: Vec<f64>,
     pub(super) scratch: Vec<f64>,
     /// `u`, `u̇` of the iterate.
@@ -135,15 +144,20 @@ impl FlexBlock {
             start_acceleration: zeros(),
             force: zeros(),
             prescribed: zeros(),
+            uniform: None,
             displacement_q: zeros(),
             rate_q: zeros(),
             frame_q: FrameMotion::default(),
             frame: FrameMotion::default(),
             turn: Mat2::identity(),
+            solve_turn: Mat2::identity(),
             increment: zeros(),
             contact_force: zeros(),
             has_contact_force: false,
+            contact_moment: 0.0,
             impulse: zeros(),
+            has_impulse: false,
+            impulse_moment: 0.0,
             local: zeros(),
             scratch: zeros(),
             displacement: zeros(),
@@ -159,6 +173,11 @@ impl FlexBlock {
     /// Size of the coordinates that round-off is relative to (m).
     pub fn extent(&self) -> f64 {
         self.extent.max(self.frame.centre.amax())
+    }
+
+    /// What the frame turns about, at the iterate (m).
+    pub fn centre(&self) -> Vec2 {
+        self.frame.centre
     }
 
     /// The model the block was built for.
@@ -196,6 +215,8 @@ impl FlexBlock {
         self.start_torque = state.torque;
         self.start_energy = [state.kinetic_energy, state.elastic_energy];
         self.prescribed.copy_from_slice(load.prescribed);
+        let is_uniform = load.force.iter().all(|force| *force == 0.0);
+        self.uniform = is_uniform.then_some(load.gravity);
         for (node, mass) in self.arms.node_mass.iter().enumerate() {
             for axis in 0..2 {
                 let dof = 2 * node + axis;

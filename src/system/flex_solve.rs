@@ -13,7 +13,7 @@
 use super::flex_block::FlexBlock;
 use crate::body::Frame;
 use crate::integrator::Weights;
-use crate::math::{Mat2, Vec2, add_node_vec, node_vec, perp, rotation, set_node_vec};
+use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
 
 impl FlexBlock {
     /// Solves for the end of the step under the contact forces given, in the frame and with the inertial terms of the
@@ -131,12 +131,14 @@ impl FlexBlock {
             self.contact_force.fill(0.0);
             self.has_contact_force = false;
         }
+        self.contact_moment = 0.0;
     }
 
-    /// Adds a contact force at a node (N).
-    pub fn add_contact_force(&mut self, node: usize, force: Vec2) {
+    /// Adds a contact force at a node (N) that acts at a lever from the centre (m).
+    pub fn add_contact_force(&mut self, node: usize, force: Vec2, lever: Vec2) {
         add_node_vec(&mut self.contact_force, node, force);
         self.has_contact_force = true;
+        self.contact_moment += cross(lever, force);
     }
 
     /// Applies the increments of the iterate; returns how far the frame's angle moved (rad).
@@ -211,7 +213,8 @@ impl FlexBlock {
             self.displacement[dof] = self.displacement_q[dof] + b0 * self.local[dof];
             self.rate[dof] = self.rate_q[dof] + b1 * self.local[dof];
         }
-        let shift = rotation(self.frame.angle) * shift;
+        self.solve_turn = self.turn;
+        let shift = self.turn * shift;
         let before = &self.frame_q;
         self.frame.centre = before.centre + b0 * shift;
         self.frame.velocity = before.velocity + b1 * shift;
