@@ -79,6 +79,18 @@ impl Arms {
         }
     }
 
+    /// Takes the mean that the mass sees out of a local vector of a free body.
+    pub fn remove_mean(&self, frame: Frame, local: &mut [f64]) {
+        if frame != Frame::Free {
+            return;
+        }
+        let mean = weighted_mean(&self.node_mass, self.mass, local);
+        for value in local.chunks_exact_mut(2) {
+            value[0] -= mean.x;
+            value[1] -= mean.y;
+        }
+    }
+
     /// The angle of the mass about `centre`, within half a turn of `near` (rad):
     /// `atan2(Σ m X × (x - c), Σ m X · (x - c))`.
     pub fn angle(&self, position: &[f64], centre: Vec2, near: f64) -> f64 {

@@ -81,7 +81,7 @@ fn part_bounds(rigid: &RigidBlock, part: &PlacedPart) -> Bounds {
         let [low, high] = part.part.aabb(&world_pose(motion, part));
         Bounds { low, high }
     };
-    bounds(rigid.start()).merged(bounds(rigid.free_motion()))
+    bounds(rigid.start()).merged(bounds(&rigid.drift()))
 }
 
 /// Adds the parts of a collider to the island; `offset` is the collider's pose about its body's centre of mass.
@@ -356,5 +356,5 @@ pub(super) fn rigid_rigid(
 
 /// How far a point of a block may move in the step (m).
 fn approach(block: &RigidBlock) -> f64 {
-    (block.free_motion().centre - block.start().centre).norm()
+    (block.drift().centre - block.start().centre).norm()
 }

@@ -59,9 +59,11 @@ pub struct ActiveContact {
     pub impulse: [f64; 2],
     /// Status of the normal and of the friction row.
     pub status: [Status; 2],
-    /// Whether all grips carry inertia.
+    /// Whether it is one of rigid bodies only.
     pub is_hard: bool,
-    /// Gap, normal and relative position `Σ w x` at the last measurement, from which gaps are extrapolated where the
+    /// Whether some grip carries no inertia.
+    pub is_massless: bool,
+    /// Gap and relative motion `Σ w u` at the last measurement, from which gaps are extrapolated where the
     /// geometry has no answer or keeps changing.
     pub(super) known: Option<(f64, Vec2)>,
     /// Tangential motion since the beginning of the step (m).
@@ -75,7 +77,7 @@ pub struct ActiveContact {
 }
 
 impl ActiveContact {
-    /// Force over the step: the multiplier, or for contacts between masses the impulse over the step length (N).
+    /// Force over the step: the multiplier, or for contacts of rigid bodies the impulse over the step length (N).
     pub fn force(&self, dt: f64) -> [f64; 2] {
         if self.is_hard {
             self.impulse.map(|impulse| impulse / dt)
@@ -84,6 +86,16 @@ impl ActiveContact {
                 self.multiplier[0] + self.impulse[0] / dt,
                 self.multiplier[1] + self.impulse[1] / dt,
             ]
+        }
+    }
+
+    /// How far the velocity stage holds the contact's relative velocity, 0 to 1 (-): masses that meet would ring at every
+    /// mesh's highest frequency; a massless surface only where the step is longer than the impact.
+    pub(super) fn holds_velocity(&self) -> f64 {
+        if self.is_massless {
+            self.unresolved
+        } else {
+            1.0
         }
     }
 

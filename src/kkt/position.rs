@@ -8,6 +8,7 @@ use super::delassus::{RowDirection, assemble};
 use super::island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
 use crate::constraint::contact::{ContactMemory, Kinematics, Remembered};
 use crate::linalg::complementarity::{Problem, RowKind, Status};
+use crate::math::Vec2;
 use crate::system::{Block, Point};
 
 /// Turning below this angle (rad) changes no position by more than round-off.
@@ -18,6 +19,9 @@ const ROWS_KEPT_FROM: usize = 3;
 
 /// Iteration from which gaps are extrapolated along the rows.
 const GAPS_KEPT_FROM: usize = 12;
+
+/// Angle (rad), and distance relative to a lever, beyond which forces throw a body about within a step.
+const WILD: f64 = 0.05;
 
 /// Iterations in which the working set still forms.
 const SETTLING: usize = 6;
@@ -67,9 +71,10 @@ impl Island {
         for iteration in 0..settings.max_newton {
             summary.n_newton = iteration + 1;
             let turned = self.correct();
-            let error = self.measure(iteration >= GAPS_KEPT_FROM);
-            let has_more = self.add_violated(tolerance, memory);
-            if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
+            let is_wild = iteration < ROWS_KEPT_FROM && self.is_wild(settings.dt);
+            let error = self.measure(is_wild || iteration >= GAPS_KEPT_FROM);
+            let has_more = !is_wild && self.add_violated(tolerance, memory);
+            if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more && !is_wild {
                 return Ok(true);
             }
             if iteration < SETTLING {
@@ -80,7 +85,7 @@ impl Island {
                 return Ok(false);
             }
             if iteration + 1 < settings.max_newton {
-                if iteration < ROWS_KEPT_FROM {
+                if iteration < ROWS_KEPT_FROM && !is_wild {
                     self.refresh_rows();
                 }
                 self.solve_multipliers(settings, summary)?;
@@ -171,10 +176,7 @@ impl Island {
         for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
             match block {
                 Block::Flex(block) => turned = turned.max(block.solve()),
-                Block::Rigid(block) if !block.is_prescribed() => {
-                    block.set_position_increment(*wrench);
-                }
-                Block::Rigid(_) => {}
+                Block::Rigid(block) => block.set_position_increment(*wrench),
             }
         }
         turned
@@ -190,9 +192,7 @@ impl Island {
         let mut error = 0.0f64;
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
-            let at = contact
-                .kinematics
-                .relative(&self.blocks, |block, grip| block.position(grip.point));
+            let at = moved(&contact.kinematics, &self.blocks);
             let found = match contact.known {
                 Some(_) if extrapolates => None,
                 _ => candidate.evaluate(&scene, &contact.remembered),
@@ -223,6 +223,20 @@ impl Island {
             }
         }
         error
+    }
+
+    /// Whether the multipliers of the last step throw a rigid body about: the forces of a heavy neighbour need not balance
+    /// yet, and geometry measured there would mislead.
+    fn is_wild(&self, dt: f64) -> bool {
+        self.contacts.iter().any(|contact| {
+            contact.kinematics.attachments().iter().any(|a| {
+                let Block::Rigid(block) = &self.blocks[a.block] else {
+                    return false;
+                };
+                let (moved, turned) = block.deviation(dt);
+                turned > WILD || moved > WILD * a.grip.lever.norm()
+            })
+        })
     }
 
     /// Makes the measured geometry the rows that forces act along.
@@ -346,10 +360,12 @@ impl Island {
 
 /// Tangential motion of the point against the target's material since the beginning of the step (m).
 fn slip(kinematics: &Kinematics, blocks: &[Block]) -> f64 {
-    let moved = kinematics.relative(blocks, |block, grip| {
-        block.position(grip.point) - block.start_position(grip.point)
-    });
-    moved.dot(&kinematics.tangent())
+    moved(kinematics, blocks).dot(&kinematics.tangent())
+}
+
+/// Motion of the point against the target since the beginning of the step, linear in the dofs of rigid blocks (m).
+fn moved(kinematics: &Kinematics, blocks: &[Block]) -> Vec2 {
+    kinematics.relative(blocks, |block, grip| block.displacement(grip))
 }
 
 /// Makes the compliances of a contact's nodes known.
@@ -391,13 +407,14 @@ impl ActiveContact {
         };
         Self {
             candidate,
-            is_hard: !kinematics.is_soft(blocks),
+            is_hard: kinematics.is_rigid(blocks),
+            is_massless: kinematics.is_massless(blocks),
             kinematics,
             measured: kinematics,
             multiplier: [remembered.normal, remembered.tangent],
             impulse: [0.0; 2],
             status: [normal, tangential],
-            known: None,
+            known: Some((kinematics.gap, moved(&kinematics, blocks))),
             slip: 0.0,
             unresolved: 0.0,
             approach,

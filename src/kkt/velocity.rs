@@ -52,31 +52,6 @@ impl Island {
             }
         }
         self.set_soft_forces();
-        self.withdraw_hard_forces();
-    }
-
-    fn withdraw_hard_forces(&mut self) {
-        let is_pressed = |block: &Block| matches!(block, Block::Flex(block) if block.has_impulse());
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.clear_impulse();
-            }
-        }
-        for contact in self.contacts.iter().filter(|contact| contact.is_hard) {
-            let (kinematics, force) = (&contact.kinematics, contact.multiplier);
-            Self::spread(
-                &mut self.blocks,
-                kinematics,
-                force,
-                None,
-                |block, node, force, lever| block.gather_impulse(node, force, lever),
-            );
-        }
-        for block in self.blocks.iter_mut().filter(|block| is_pressed(block)) {
-            if let Block::Flex(block) = block {
-                block.withdraw_forces();
-            }
-        }
     }
 
     /// (C.5) as printed: every multiplier acts on velocity and acceleration.
@@ -129,13 +104,20 @@ impl Island {
         self.kinds.clear();
         self.free.clear();
         for (index, contact) in self.contacts.iter().enumerate() {
-            if !contact.is_closed() || !(contact.is_hard || contact.unresolved > 0.0) {
+            if !contact.is_closed() || contact.holds_velocity() == 0.0 {
                 continue;
             }
             let law = self.candidates[contact.candidate].law;
             let kinematics = &contact.kinematics;
             let velocity = kinematics.relative(&self.blocks, |block, grip| block.velocity(grip));
             let rebound = law.rebound(contact.approach, settings.restitution_threshold);
+            // A resolved impact rebounds by its elasticity.
+            let is_elastic = !contact.is_hard && !contact.is_massless;
+            let rebound = if is_elastic {
+                contact.unresolved * rebound
+            } else {
+                rebound
+            };
             let normal_row = self.rows.len();
             self.rows.push(RowDirection {
                 contact: index,
@@ -184,7 +166,7 @@ impl Island {
         for row in 0..n {
             let contact = &self.contacts[self.rows[row].contact];
             if !contact.is_hard {
-                let share = contact.unresolved.max(1e-12);
+                let share = contact.holds_velocity().max(1e-12);
                 self.delassus[row * n + row] *= 1.0 + (1.0 - share) / share;
             }
         }
@@ -254,7 +236,7 @@ impl Island {
         self.kinds.clear();
         self.free.clear();
         for (index, contact) in self.contacts.iter().enumerate() {
-            if contact.is_hard || !contact.is_closed() || contact.unresolved == 0.0 {
+            if contact.is_hard || !contact.is_closed() || contact.holds_velocity() == 0.0 {
                 continue;
             }
             let kinematics = &contact.kinematics;

@@ -73,6 +73,10 @@ pub struct FlexBlock {
     pub(super) start_acceleration: Vec<f64>,
     /// Applied nodal forces, gravity included (N).
     pub(super) force: Vec<f64>,
+    /// Their resultant (N).
+    pub(super) force_total: Vec2,
+    /// Increment of the centre's acceleration, world axes (m/s²).
+    pub(super) shift: Vec2,
     pub(super) prescribed: Vec<f64>,
     /// Gravity and other forces per mass; `None` if forces act on single nodes (m/s²).
     pub(super) uniform: Option<Vec2>,
@@ -84,16 +88,18 @@ pub struct FlexBlock {
     pub(super) frame: FrameMotion,
     /// Rotation matrix of the iterate's frame.
     pub(super) turn: Mat2,
-    /// Rotation matrix that turned the increments of the last solve.
-    pub(super) solve_turn: Mat2,
     /// `δ` of the iterate.
     pub(super) increment: Vec<f64>,
     pub(super) contact_force: Vec<f64>,
     pub(super) has_contact_force: bool,
+    /// Resultant of the contact forces (N).
+    pub(super) contact_total: Vec2,
     /// Moment of the contact forces about the centre, by the levers they were given with (N m).
     pub(super) contact_moment: f64,
     pub(super) impulse: Vec<f64>,
     pub(super) has_impulse: bool,
+    /// Resultant of the impulses (N s).
+    pub(super) impulse_total: Vec2,
     /// Moment of the impulses about the centre (N m s).
     pub(super) impulse_moment: f64,
     pub(super) local: Vec<f64>,
@@ -143,6 +149,8 @@ impl FlexBlock {
             end_elastic: 0.0,
             start_acceleration: zeros(),
             force: zeros(),
+            force_total: Vec2::zeros(),
+            shift: Vec2::zeros(),
             prescribed: zeros(),
             uniform: None,
             displacement_q: zeros(),
@@ -150,13 +158,14 @@ impl FlexBlock {
             frame_q: FrameMotion::default(),
             frame: FrameMotion::default(),
             turn: Mat2::identity(),
-            solve_turn: Mat2::identity(),
             increment: zeros(),
             contact_force: zeros(),
             has_contact_force: false,
+            contact_total: Vec2::zeros(),
             contact_moment: 0.0,
             impulse: zeros(),
             has_impulse: false,
+            impulse_total: Vec2::zeros(),
             impulse_moment: 0.0,
             local: zeros(),
             scratch: zeros(),
@@ -223,6 +232,7 @@ impl FlexBlock {
                 self.force[dof] = load.force[dof] + mass * load.gravity[axis];
             }
         }
+        self.force_total = sum_of(load.force) + self.arms.mass * load.gravity;
         let start = [&state.displacement[..], &state.rate, &state.acceleration];
         Beta2::predict(step.dt, start, &mut self.displacement_q, &mut self.rate_q);
         // The iterate starts from where the body is: the operators of unresolved modes are large and cancel in the solve.
@@ -338,4 +348,9 @@ impl FlexBlock {
         self.factored_for = Some(weights);
         Ok(())
     }
+}
+
+/// Sum of nodal vectors.
+fn sum_of(dofs: &[f64]) -> Vec2 {
+    dofs.chunks_exact(2).map(|v| Vec2::new(v[0], v[1])).sum()
 }

@@ -68,6 +68,7 @@ impl FlexBlock {
             self.impulse.fill(0.0);
             self.has_impulse = false;
         }
+        self.impulse_total = Vec2::zeros();
         self.impulse_moment = 0.0;
     }
 
@@ -80,6 +81,7 @@ impl FlexBlock {
     pub fn gather_impulse(&mut self, node: usize, impulse: Vec2, lever: Vec2) {
         add_node_vec(&mut self.impulse, node, impulse);
         self.has_impulse = true;
+        self.impulse_total += impulse;
         self.impulse_moment += cross(lever, impulse);
     }
 
@@ -95,16 +97,9 @@ impl FlexBlock {
         }
     }
 
-    /// Takes the gathered forces (N) out of the end velocity and acceleration, which (C.5) has given their response: the
-    /// impulses of their contacts are found at velocity level.
-    pub fn withdraw_forces(&mut self) {
-        self.respond_to_impulse();
-        self.add_to_acceleration(-1.0);
-        self.add_to_velocity(-self.step.weights.b1);
-    }
-
     fn add_to_acceleration(&mut self, scale: f64) {
         self.torque += scale * self.impulse_moment;
+        self.shift += scale * self.mean_response();
         for (sum, response) in self.increment.iter_mut().zip(&self.local) {
             *sum += scale * response;
         }
@@ -121,7 +116,13 @@ impl FlexBlock {
         }
     }
 
-    /// Turns the velocities so that the impulses' moment about the centre is what angular momentum gained.
+    /// Change of the centre's velocity that the gathered impulses make (m/s).
+    fn mean_response(&self) -> Vec2 {
+        let damped = 1.0 + self.model.rayleigh().mass * self.step.weights.b1;
+        self.impulse_total / (self.arms.mass * damped)
+    }
+
+    /// Moves and turns the velocities so that momentum and angular momentum gain exactly what the impulses give.
     fn balance_impulse(&mut self, scale: f64) {
         let centre = self.frame.centre;
         let wanted = scale * self.impulse_moment;
@@ -135,9 +136,19 @@ impl FlexBlock {
             .mass()
             .moment(centre, &self.position, &self.scratch);
         let spin = (wanted - gained) / self.inertia_of(&self.displacement);
+        let drift = match self.kind {
+            Frame::Free => {
+                let zero = Vec2::zeros();
+                scale * self.mean_response() - self.arms.centre(self.kind, &self.scratch, zero)
+            }
+            _ => Vec2::zeros(),
+        };
         for node in 0..self.model.n_nodes() {
             let swing = spin * perp(node_vec(&self.position, node) - centre);
-            add_node_vec(&mut self.velocity, node, swing);
+            add_node_vec(&mut self.velocity, node, drift + swing);
+        }
+        if self.kind == Frame::Free {
+            self.frame.velocity += scale * self.mean_response();
         }
     }
 }

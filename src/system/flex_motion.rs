@@ -231,13 +231,13 @@ impl FlexBlock {
         state.elastic_energy = self.end_elastic;
         state.kinetic_energy = kinetic_energy;
         state.acceleration.copy_from_slice(&self.increment);
-        let (shift, _) = self.arms.split(self.kind, &mut state.acceleration);
+        self.arms.split(self.kind, &mut state.acceleration);
         for (end, start) in state.acceleration.iter_mut().zip(&self.start_acceleration) {
             *end += start;
         }
         if self.kind == Frame::Free {
             // The increment may have changed since the frame was advanced: hard contacts, settled accelerations.
-            state.frame.acceleration = self.start_frame.acceleration + self.solve_turn * shift;
+            state.frame.acceleration = self.start_frame.acceleration + self.shift;
         }
         for &dof in &self.fixed_dofs {
             state.acceleration[dof] = 0.0;

@@ -131,6 +131,7 @@ impl FlexBlock {
             self.contact_force.fill(0.0);
             self.has_contact_force = false;
         }
+        self.contact_total = Vec2::zeros();
         self.contact_moment = 0.0;
     }
 
@@ -138,6 +139,7 @@ impl FlexBlock {
     pub fn add_contact_force(&mut self, node: usize, force: Vec2, lever: Vec2) {
         add_node_vec(&mut self.contact_force, node, force);
         self.has_contact_force = true;
+        self.contact_total += force;
         self.contact_moment += cross(lever, force);
     }
 
@@ -155,9 +157,9 @@ impl FlexBlock {
             return 0.0;
         }
         self.local.copy_from_slice(&self.increment);
-        let (shift, turn) = self.arms.split(self.kind, &mut self.local);
+        let (_, turn) = self.arms.split(self.kind, &mut self.local);
         let angle = self.frame.angle;
-        self.advance(shift, turn);
+        self.advance(turn);
         if self.is_linear {
             return 0.0;
         }
@@ -207,14 +209,24 @@ impl FlexBlock {
     }
 
     /// Applies the increments of a frame that moves; `local` holds `δ_u`.
-    fn advance(&mut self, shift: Vec2, turn: f64) {
+    ///
+    /// The centre follows the balance of momentum, which (C.5) holds too, but to the rounding of stiff elastic forces.
+    fn advance(&mut self, turn: f64) {
         let Weights { b0, b1 } = self.step.weights;
         for dof in 0..self.local.len() {
             self.displacement[dof] = self.displacement_q[dof] + b0 * self.local[dof];
             self.rate[dof] = self.rate_q[dof] + b1 * self.local[dof];
         }
-        self.solve_turn = self.turn;
-        let shift = self.turn * shift;
+        let shift = match self.kind {
+            Frame::Free => {
+                let alpha = self.model.rayleigh().mass;
+                let drag = self.frame_q.acceleration + alpha * self.frame_q.velocity;
+                let force = self.force_total + self.contact_total;
+                (force / self.arms.mass - drag) / (1.0 + alpha * b1)
+            }
+            _ => Vec2::zeros(),
+        };
+        self.shift = shift;
         let before = &self.frame_q;
         self.frame.centre = before.centre + b0 * shift;
         self.frame.velocity = before.velocity + b1 * shift;

@@ -71,6 +71,18 @@ impl Block {
         }
     }
 
+    /// Displacement of a grip from the beginning of the step to the current iterate (m); for rigid blocks linear in their
+    /// dofs, along the lever.
+    pub fn displacement(&self, grip: Grip) -> Vec2 {
+        match (self, grip.point) {
+            (Self::Flex(block), Point::Node(node)) => {
+                block.position(node) - block.start_position(node)
+            }
+            (Self::Rigid(block), Point::Arm(_)) => block.displacement(grip.lever),
+            _ => mismatch(),
+        }
+    }
+
     /// Velocity of a grip at the current iterate (m/s).
     pub fn velocity(&self, grip: Grip) -> Vec2 {
         match (self, grip.point) {

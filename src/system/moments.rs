@@ -64,15 +64,11 @@ impl Block {
     pub fn end_moments(&self) -> Moments {
         match self {
             Self::Flex(block) => {
-                let (mass, centre) = (block.arms.mass, block.frame.centre);
-                let velocity =
-                    block
-                        .arms
-                        .centre(Frame::Free, &block.velocity, block.frame.velocity);
+                let centre = block.frame.centre;
                 Moments {
-                    mass,
+                    mass: block.arms.mass,
                     centre,
-                    velocity,
+                    velocity: block.frame.velocity,
                     spin_momentum: block.angular_momentum(centre),
                     inertia: block.inertia_of(&block.displacement),
                 }
@@ -95,6 +91,7 @@ impl Block {
         match self {
             Self::Flex(block) => {
                 let centre = block.frame.centre;
+                block.frame.velocity += velocity;
                 for node in 0..block.model.n_nodes() {
                     let arm = node_vec(&block.position, node) - centre;
                     add_node_vec(&mut block.velocity, node, velocity + spin * perp(arm));

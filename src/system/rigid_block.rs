@@ -48,6 +48,7 @@ pub struct RigidBlock {
     inverse_effective: [f64; 3],
     force: [f64; 3],
     weights: Weights,
+    dt: f64,
     is_prescribed: bool,
 }
 
@@ -67,7 +68,7 @@ impl RigidBlock {
     pub fn prescribed(start: RigidMotion, end: RigidMotion) -> Self {
         Self {
             start,
-            current: end,
+            current: start,
             free: end,
             smooth_start: [0.0; 3],
             smooth_end: [0.0; 3],
@@ -76,6 +77,7 @@ impl RigidBlock {
             inverse_effective: [0.0; 3],
             force: [0.0; 3],
             weights: Weights::default(),
+            dt: 0.0,
             is_prescribed: true,
         }
     }
@@ -125,7 +127,7 @@ impl RigidBlock {
             .map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 });
         Self {
             start,
-            current: free,
+            current: start,
             free,
             smooth_start,
             smooth_end,
@@ -134,6 +136,7 @@ impl RigidBlock {
             inverse_effective,
             force: load.force,
             weights,
+            dt,
             is_prescribed: false,
         }
     }
@@ -143,14 +146,23 @@ impl RigidBlock {
         &self.start
     }
 
-    /// Motion at the end of the step, as far as it is known.
+    /// Motion at the current iterate: at the beginning of the step until the first correction.
     pub fn current(&self) -> &RigidMotion {
         &self.current
     }
 
-    /// Motion at the end of the step without multipliers.
-    pub fn free_motion(&self) -> &RigidMotion {
-        &self.free
+    /// Where a free body's velocity, or the prescribed motion, takes the body.
+    ///
+    /// Not the free motion: under a heavy neighbour that misses the neighbour's force, and may be anywhere.
+    pub fn drift(&self) -> RigidMotion {
+        if self.is_prescribed {
+            return self.free;
+        }
+        RigidMotion {
+            centre: self.start.centre + self.dt * self.start.velocity,
+            angle: self.start.angle + self.dt * self.start.spin,
+            ..self.start
+        }
     }
 
     /// Whether the motion is given.
@@ -182,8 +194,22 @@ impl RigidBlock {
     pub fn set_position_increment(&mut self, wrench: [f64; 3]) {
         let b0 = self.weights.b0;
         let step: [f64; 3] = std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]);
-        self.current.centre = self.free.centre + Vec2::new(step[0], step[1]);
-        self.current.angle = self.free.angle + step[2];
+        self.current = self.free;
+        self.current.centre += Vec2::new(step[0], step[1]);
+        self.current.angle += step[2];
+    }
+
+    /// Displacement of the end of a lever over the step, linear in the dofs (m).
+    pub fn displacement(&self, lever: Vec2) -> Vec2 {
+        let turned = self.current.angle - self.start.angle;
+        self.current.centre - self.start.centre + turned * perp(lever)
+    }
+
+    /// How far forces have taken the iterate from where the body would go by itself: distance (m) and angle (rad).
+    pub fn deviation(&self, dt: f64) -> (f64, f64) {
+        let moved = self.current.centre - self.start.centre - dt * self.start.velocity;
+        let turned = self.current.angle - self.start.angle - dt * self.start.spin;
+        (moved.norm(), turned.abs())
     }
 
     /// Sets velocity and smooth acceleration for the part of the contact forces that acts as (C.5) says.

@@ -56,8 +56,15 @@ impl Kinematics {
             .sum()
     }
 
+    /// Whether only rigid blocks take part.
+    pub fn is_rigid(&self, blocks: &[Block]) -> bool {
+        self.attachments()
+            .iter()
+            .all(|a| matches!(blocks[a.block], Block::Rigid(_)))
+    }
+
     /// Whether some grip with a weight has no inertia.
-    pub fn is_soft(&self, blocks: &[Block]) -> bool {
+    pub fn is_massless(&self, blocks: &[Block]) -> bool {
         self.attachments()
             .iter()
             .any(|a| a.weight.abs() > 1e-9 && blocks[a.block].is_massless(a.grip.point))
