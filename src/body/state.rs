@@ -127,8 +127,7 @@ impl FlexState {
         frame.spin = momentum / inertia;
         for node in 0..velocity.len() / 2 {
             let arm = back * (node_vec(position, node) - frame.centre);
-            let own =
-                back * (node_vec(velocity, node) - frame.velocity) - frame.spin * perp(arm);
+            let own = back * (node_vec(velocity, node) - frame.velocity) - frame.spin * perp(arm);
             set_node_vec(&mut self.rate, node, own);
         }
         arms.remove_mean(kind, &mut self.rate);

@@ -53,6 +53,8 @@ pub struct ActiveContact {
     pub kinematics: Kinematics,
     /// Geometry at the last iterate.
     pub(super) measured: Kinematics,
+    /// The row that the multipliers acted along when the last iterate was found.
+    pub(super) applied: Kinematics,
     /// Multipliers of the position stage, normal and tangential (N).
     pub multiplier: [f64; 2],
     /// Impulse of the velocity stage, normal and tangential (N s).

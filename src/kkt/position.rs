@@ -4,24 +4,27 @@
 //! under the multipliers it has, beginning with those of the last step; measures gaps and slips there; and, unless they
 //! hold, finds new multipliers from `b = g / b0 - W p`. A contact at rest so costs one solve.
 
-use super::delassus::{RowDirection, assemble};
+use super::delassus::{RowDirection, assemble, compliance};
 use super::island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
 use crate::constraint::contact::{ContactMemory, Kinematics, Remembered};
 use crate::linalg::complementarity::{Problem, RowKind, Status};
 use crate::math::Vec2;
-use crate::system::{Block, Point};
+use crate::system::{Block, Point, Response};
 
 /// Turning below this angle (rad) changes no position by more than round-off.
 const ANGLE_TOLERANCE: f64 = 1e-11;
 
 /// Iteration from which the rows, directions and levers of the forces, stay what they are.
-const ROWS_KEPT_FROM: usize = 3;
+const ROWS_KEPT_FROM: usize = 2;
 
 /// Iteration from which gaps are extrapolated along the rows.
 const GAPS_KEPT_FROM: usize = 12;
 
-/// Angle (rad), and distance relative to a lever, beyond which forces throw a body about within a step.
-const WILD: f64 = 0.05;
+/// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
+const NEAR: f64 = 1e5;
+
+/// Multiple of the tolerance by which redundant rows may contradict each other.
+const AVERAGED: f64 = 10.0;
 
 /// Iterations in which the working set still forms.
 const SETTLING: usize = 6;
@@ -71,10 +74,31 @@ impl Island {
         for iteration in 0..settings.max_newton {
             summary.n_newton = iteration + 1;
             let turned = self.correct();
-            let is_wild = iteration < ROWS_KEPT_FROM && self.is_wild(settings.dt);
-            let error = self.measure(is_wild || iteration >= GAPS_KEPT_FROM);
-            let has_more = !is_wild && self.add_violated(tolerance, memory);
-            if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more && !is_wild {
+            let is_guess = iteration == 0 && !self.contacts.is_empty();
+            let mut error = self.measure(is_guess || iteration >= GAPS_KEPT_FROM);
+            // Under the last step's multipliers bodies may be anywhere: geometry counts if these are nearly right.
+            let misleads = is_guess && error > NEAR * tolerance;
+            if is_guess && !misleads {
+                error = self.measure(false);
+            }
+            let has_more = !misleads && self.add_violated(tolerance, memory);
+            if std::env::var("FOIL_DBG").is_ok() {
+                eprintln!(
+                    "   it {iteration} turned {turned:.2e} error {error:.2e} more {has_more} mis {misleads} n {} st {:?}",
+                    self.contacts.len(),
+                    self.contacts
+                        .iter()
+                        .map(|c| (
+                            c.candidate,
+                            c.kinematics.gap as f32,
+                            c.multiplier[0] as f32,
+                            c.slip as f32,
+                            c.status[1]
+                        ))
+                        .collect::<Vec<_>>()
+                );
+            }
+            if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
                 return Ok(true);
             }
             if iteration < SETTLING {
@@ -85,10 +109,11 @@ impl Island {
                 return Ok(false);
             }
             if iteration + 1 < settings.max_newton {
-                if iteration < ROWS_KEPT_FROM && !is_wild {
+                let refreshes = iteration < ROWS_KEPT_FROM && !misleads;
+                if refreshes {
                     self.refresh_rows();
                 }
-                self.solve_multipliers(settings, summary)?;
+                self.solve_multipliers(settings, refreshes, tolerance, summary)?;
             } else if turned.max(error) <= ACCEPTABLE * tolerance && !has_more {
                 return Ok(true);
             }
@@ -120,7 +145,7 @@ impl Island {
             if round == 0 {
                 self.refresh_rows();
             }
-            self.solve_multipliers(settings, summary)?;
+            self.solve_multipliers(settings, round == 0, tolerance, summary)?;
         }
         self.correct();
         self.measure(true);
@@ -225,24 +250,11 @@ impl Island {
         error
     }
 
-    /// Whether the multipliers of the last step throw a rigid body about: the forces of a heavy neighbour need not balance
-    /// yet, and geometry measured there would mislead.
-    fn is_wild(&self, dt: f64) -> bool {
-        self.contacts.iter().any(|contact| {
-            contact.kinematics.attachments().iter().any(|a| {
-                let Block::Rigid(block) = &self.blocks[a.block] else {
-                    return false;
-                };
-                let (moved, turned) = block.deviation(dt);
-                turned > WILD || moved > WILD * a.grip.lever.norm()
-            })
-        })
-    }
-
     /// Makes the measured geometry the rows that forces act along.
     fn refresh_rows(&mut self) {
         for contact in &mut self.contacts {
             let gap = contact.kinematics.gap;
+            contact.applied = contact.kinematics;
             contact.kinematics = contact.measured;
             contact.kinematics.gap = gap;
             contact.known = None;
@@ -275,6 +287,8 @@ impl Island {
     fn solve_multipliers(
         &mut self,
         settings: &SolveSettings,
+        has_new_rows: bool,
+        tolerance: f64,
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
         if self.contacts.is_empty() {
@@ -282,12 +296,23 @@ impl Island {
         }
         for contact in &self.contacts {
             prepare(&mut self.blocks, &contact.kinematics);
+            if has_new_rows {
+                prepare(&mut self.blocks, &contact.applied);
+            }
         }
         self.position_rows(settings.b0);
         let contacts = &self.contacts;
         let kinematics = |index: usize| &contacts[index].kinematics;
-        assemble(&self.blocks, &self.rows, kinematics, &mut self.delassus);
-        self.take_out_multipliers();
+        assemble(
+            &self.blocks,
+            &self.rows,
+            Response::Position,
+            kinematics,
+            &mut self.delassus,
+        );
+        self.take_out_multipliers(has_new_rows);
+        let redundancy = self.redundancy_tolerance(tolerance / settings.b0);
+        self.solver.set_redundancy_tolerance(redundancy);
         let problem = Problem {
             delassus: &self.delassus,
             free: &self.free,
@@ -342,12 +367,63 @@ impl Island {
         }
     }
 
-    /// `b -= W p`: what the rows would be without the multipliers they were measured under.
-    fn take_out_multipliers(&mut self) {
+    /// The natural-map residual of rows that move by `velocity` beyond what they may (m/s²): redundant rows that contradict
+    /// each other by less are averaged.
+    fn redundancy_tolerance(&self, velocity: f64) -> f64 {
         let n = self.rows.len();
-        for (free, row) in self.free.iter_mut().zip(self.delassus.chunks_exact(n)) {
-            let response: f64 = row.iter().zip(&self.multipliers).map(|(w, p)| w * p).sum();
-            *free -= response;
+        let (mut largest, mut scale) = (0.0f64, 0.0f64);
+        for (row, free) in self.free.iter().enumerate() {
+            let own = self.delassus[row * n + row];
+            if own > 0.0 {
+                largest = largest.max(own);
+                let load = free.abs().max(own * self.multipliers[row].abs());
+                scale = scale.max(load / own.sqrt());
+            }
+        }
+        let residual = AVERAGED * velocity / (largest.sqrt() * scale);
+        residual.clamp(1e-12, 1e-6)
+    }
+
+    /// `b -= W p`: what the rows would be without the multipliers they were measured under.
+    ///
+    /// Where the rows have changed since, the response is `G A⁻¹ G₀ᵀ p` with the rows `G₀` of that iterate: under a
+    /// heavy neighbour a force that turns by 1e-4 rad may throw a light body across the scene.
+    fn take_out_multipliers(&mut self, has_new_rows: bool) {
+        let n = self.rows.len();
+        if !has_new_rows {
+            for (free, row) in self.free.iter_mut().zip(self.delassus.chunks_exact(n)) {
+                let response: f64 = row.iter().zip(&self.multipliers).map(|(w, p)| w * p).sum();
+                *free -= response;
+            }
+            return;
+        }
+        let mut row = 0;
+        while row < n {
+            let contact = &self.contacts[self.rows[row].contact];
+            let mut response = Vec2::zeros();
+            for other in self
+                .contacts
+                .iter()
+                .filter(|other| other.multiplier[0] > 0.0)
+            {
+                let applied = &other.applied;
+                let found = compliance(
+                    &self.blocks,
+                    &contact.kinematics,
+                    applied,
+                    Response::Position,
+                );
+                if let Some(compliance) = found {
+                    let [normal, tangent] = other.multiplier;
+                    let force = normal * applied.normal + tangent * applied.tangent();
+                    response += compliance * force;
+                }
+            }
+            let first = row;
+            while row < n && self.rows[row].contact == self.rows[first].contact {
+                self.free[row] -= self.rows[row].direction.dot(&response);
+                row += 1;
+            }
         }
     }
 
@@ -411,6 +487,7 @@ impl ActiveContact {
             is_massless: kinematics.is_massless(blocks),
             kinematics,
             measured: kinematics,
+            applied: kinematics,
             multiplier: [remembered.normal, remembered.tangent],
             impulse: [0.0; 2],
             status: [normal, tangential],

@@ -89,7 +89,8 @@ impl Island {
             rigid += a.weight.abs() * self.blocks[a.block].rigid_mobility(a.grip, normal);
             for b in kinematics.attachments() {
                 if a.block == b.block {
-                    let compliance = self.blocks[a.block].compliance(a.grip, b.grip);
+                    let compliance =
+                        self.blocks[a.block].compliance(a.grip, b.grip, Response::Velocity);
                     actual += a.weight * b.weight * normal.dot(&(compliance * normal));
                 }
             }
@@ -154,6 +155,7 @@ impl Island {
         assemble(
             &self.blocks,
             &self.rows,
+            Response::Velocity,
             |index| &contacts[index].kinematics,
             &mut self.delassus,
         );
@@ -177,6 +179,7 @@ impl Island {
         self.multipliers.resize(self.rows.len(), 0.0);
         self.statuses.clear();
         self.statuses.resize(self.rows.len(), Status::Stick);
+        self.solver.set_redundancy_tolerance(1e-6);
         let problem = Problem {
             delassus: &self.delassus,
             free: &self.free,
@@ -222,7 +225,7 @@ impl Island {
             match block {
                 Block::Flex(block) => block.apply_impulse(to),
                 Block::Rigid(block) => match to {
-                    Response::Velocity => block.add_impulse(*wrench),
+                    Response::Velocity | Response::Position => block.add_impulse(*wrench),
                     Response::Acceleration => block.add_smooth_acceleration(*wrench),
                 },
             }
@@ -268,6 +271,7 @@ impl Island {
         assemble(
             &self.blocks,
             &self.rows,
+            Response::Acceleration,
             |index| &contacts[index].kinematics,
             &mut self.delassus,
         );

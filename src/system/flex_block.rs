@@ -21,12 +21,14 @@ pub struct Step {
     pub weights: Weights,
 }
 
-/// What a response is added to.
+/// What responds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Response {
-    /// The end velocity.
+    /// The end position, to forces.
+    Position,
+    /// The end velocity, to impulses.
     Velocity,
-    /// The end acceleration.
+    /// The end acceleration, to forces.
     Acceleration,
 }
 
@@ -110,6 +112,8 @@ pub struct FlexBlock {
     pub(super) position: Vec<f64>,
     pub(super) velocity: Vec<f64>,
     pub(super) torque: f64,
+    /// `I(u)` of the iterate (kg m²).
+    pub(super) inertia: f64,
     /// Whether the step is linearised; see [`FlexBlock::linearize`].
     pub(super) is_linear: bool,
 }
@@ -174,6 +178,7 @@ impl FlexBlock {
             position: zeros(),
             velocity: zeros(),
             torque: 0.0,
+            inertia: 0.0,
             is_linear: false,
             model,
         }
@@ -239,6 +244,7 @@ impl FlexBlock {
         self.displacement.copy_from_slice(&state.displacement);
         self.rate.copy_from_slice(&state.rate);
         self.is_linear = false;
+        self.inertia = self.arms.polar;
         self.predict_frame();
         self.clear_contact_force();
         if self.kind != Frame::Fixed {

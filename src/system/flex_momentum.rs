@@ -41,7 +41,8 @@ impl FlexBlock {
         let impulse = (self.step.dt - b1) * self.start_torque + b1 * torque;
         let missing = self.start_momentum + impulse - momentum;
         let damped = 1.0 + self.model.rayleigh().mass * b1;
-        let change = missing / (self.inertia_of(&self.displacement) * damped);
+        self.inertia = self.inertia_of(&self.displacement);
+        let change = missing / (self.inertia * damped);
         self.frame.spin += change;
         self.frame.angle += 0.5 * self.step.dt * change;
         self.frame.spin_rate += change / self.step.dt;
@@ -93,7 +94,7 @@ impl FlexBlock {
         self.respond_to_impulse();
         match to {
             Response::Acceleration => self.add_to_acceleration(1.0),
-            Response::Velocity => self.add_to_velocity(1.0),
+            Response::Velocity | Response::Position => self.add_to_velocity(1.0),
         }
     }
 
@@ -135,7 +136,7 @@ impl FlexBlock {
             .model
             .mass()
             .moment(centre, &self.position, &self.scratch);
-        let spin = (wanted - gained) / self.inertia_of(&self.displacement);
+        let spin = (wanted - gained) / self.inertia;
         let drift = match self.kind {
             Frame::Free => {
                 let zero = Vec2::zeros();

@@ -10,7 +10,7 @@
 //! `a_q` the accelerations before the increment, `h` the centripetal and Coriolis terms: the stiffness need never be
 //! multiplied.
 
-use super::flex_block::FlexBlock;
+use super::flex_block::{FlexBlock, Response};
 use crate::body::Frame;
 use crate::integrator::Weights;
 use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
@@ -277,11 +277,37 @@ impl FlexBlock {
     }
 
     /// See [`super::Block::compliance`].
-    pub fn compliance(&self, at: usize, from: usize) -> Mat2 {
+    ///
+    /// `A⁻¹` turns the body by the reference arms; the angle follows the levers of the forces instead, as the balance of
+    /// angular momentum does. Between stiff contacts the difference would be amplified by `(ω dt)²`.
+    pub fn compliance(
+        &self,
+        (at, at_lever): (usize, Vec2),
+        (from, from_lever): (usize, Vec2),
+        of: Response,
+    ) -> Mat2 {
         let local = self.compliance.get(at, from);
         if self.kind == Frame::Fixed {
             return local;
         }
-        self.turn * local * self.turn.transpose()
+        let world = self.turn * local * self.turn.transpose();
+        if of == Response::Acceleration {
+            return world;
+        }
+        let arm = |node| perp(self.turn * node_vec(&self.arms.reference, node));
+        let damped = 1.0 + self.model.rayleigh().mass * self.step.weights.b1;
+        let reference = arm(at) * arm(from).transpose() / (self.arms.polar * damped);
+        // Beta-2 gives an angle `b0` per acceleration, the mean of two spins gives `dt b1 / 2`.
+        let Weights { b0, b1 } = self.step.weights;
+        let mean = 0.5 * self.step.dt * b1 / b0;
+        if self.is_linear {
+            return world + (mean - 1.0) * reference;
+        }
+        let share = match of {
+            Response::Position => mean / damped,
+            _ => 1.0,
+        };
+        let turned = perp(at_lever) * perp(from_lever).transpose() / self.inertia;
+        world - reference + share * turned
     }
 }

@@ -104,9 +104,11 @@ impl Block {
     /// Acceleration of `at` per unit force at `from`, `A⁻¹` between two grips of this block (1/kg).
     ///
     /// A flexible block must have been [prepared](FlexBlock::prepare_compliance) for both nodes.
-    pub fn compliance(&self, at: Grip, from: Grip) -> Mat2 {
+    pub fn compliance(&self, at: Grip, from: Grip, of: Response) -> Mat2 {
         match (self, at.point, from.point) {
-            (Self::Flex(block), Point::Node(at), Point::Node(from)) => block.compliance(at, from),
+            (Self::Flex(block), Point::Node(node), Point::Node(source)) => {
+                block.compliance((node, at.lever), (source, from.lever), of)
+            }
             (Self::Rigid(block), Point::Arm(_), Point::Arm(_)) => {
                 block.compliance(at.lever, from.lever)
             }

@@ -205,13 +205,6 @@ impl RigidBlock {
         self.current.centre - self.start.centre + turned * perp(lever)
     }
 
-    /// How far forces have taken the iterate from where the body would go by itself: distance (m) and angle (rad).
-    pub fn deviation(&self, dt: f64) -> (f64, f64) {
-        let moved = self.current.centre - self.start.centre - dt * self.start.velocity;
-        let turned = self.current.angle - self.start.angle - dt * self.start.spin;
-        (moved.norm(), turned.abs())
-    }
-
     /// Sets velocity and smooth acceleration for the part of the contact forces that acts as (C.5) says.
     pub fn set_soft_force(&mut self, wrench: [f64; 3]) {
         let change: [f64; 3] = std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]);
