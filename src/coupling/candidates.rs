@@ -123,15 +123,19 @@ pub(super) fn flex_rigid(
         let near = part_bounds(motion, placed).loosened(0.5 * edge);
         let first = island.segments.len();
         let n_segments = body.model().mesh().boundary().segments().len();
+        let mut surface: Option<Bounds> = None;
         for segment in 0..n_segments {
-            if segment_bounds(body, segment).intersects(&near) {
+            let bounds = segment_bounds(body, segment);
+            if bounds.intersects(&near) {
                 island.segments.push(segment as u32);
+                surface = Some(surface.map_or(bounds, |sum| sum.merged(bounds)));
             }
         }
         let segments = (first, island.segments.len());
-        if segments.0 == segments.1 {
+        let Some(surface) = surface else {
             continue;
-        }
+        };
+        let ends = [*motion.start(), motion.drift()];
         let part_name = (part - first_part) as u32;
         let boundary = body.model().mesh().boundary();
         let first_node = boundary.segments()[island.segments[segments.0] as usize][0];
@@ -170,6 +174,11 @@ pub(super) fn flex_rigid(
                 part: 0,
             };
             let arm = pose.transform(at);
+            // A corner of the ground far beside the body must not be measured against the piece of surface listed here.
+            let path = Bounds::of(&ends.map(|motion| motion.point(arm)));
+            if !path.loosened(radius + edge).intersects(&surface) {
+                continue;
+            }
             let pair = |segments| Pair::VertexOnSurface {
                 rigid,
                 arm,

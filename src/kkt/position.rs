@@ -445,7 +445,7 @@ fn moved(kinematics: &Kinematics, blocks: &[Block]) -> Vec2 {
 }
 
 /// Makes the compliances of a contact's nodes known.
-fn prepare(blocks: &mut [Block], kinematics: &Kinematics) {
+pub(super) fn prepare(blocks: &mut [Block], kinematics: &Kinematics) {
     for attachment in kinematics.attachments() {
         if let (Block::Flex(block), Point::Node(node)) =
             (&mut blocks[attachment.block], attachment.grip.point)

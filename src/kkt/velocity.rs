@@ -8,6 +8,7 @@
 
 use super::delassus::{RowDirection, assemble};
 use super::island::{Island, KktError, SolveSettings};
+use super::position::prepare;
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
 use crate::system::{Block, Response};
@@ -21,6 +22,8 @@ impl Island {
         self.take_out_hard_forces();
         for index in 0..self.contacts.len() {
             if self.contacts[index].is_closed() {
+                // Newton's iterations may have ended without asking for a compliance.
+                prepare(&mut self.blocks, &self.contacts[index].kinematics);
                 self.contacts[index].unresolved =
                     self.unresolved_share(&self.contacts[index].kinematics);
             }

@@ -108,6 +108,10 @@ fn nearest_segment(block: &FlexBlock, segments: &[u32], point: Vec2) -> Option<S
     } else {
         boundary.next_segment(segment)
     };
+    if !segments.contains(&(other as u32)) {
+        // The list ends here: whatever is nearest lies beyond it.
+        return None;
+    }
     let mean = own + outward(other);
     let mean = if mean.norm() > 1e-9 {
         mean.normalize()
