@@ -99,6 +99,7 @@ impl FlexBlock {
     }
 
     fn add_to_acceleration(&mut self, scale: f64) {
+        self.arms.split(self.kind, &mut self.local);
         self.torque += scale * self.impulse_moment;
         self.shift += scale * self.mean_response();
         for (sum, response) in self.increment.iter_mut().zip(&self.local) {

@@ -67,7 +67,19 @@ impl FlexBlock {
         let own = self.carried(node, |node| {
             node_vec(&self.start_acceleration, node) + node_vec(&self.increment, node)
         });
-        self.start_frame.acceleration + self.turn * own
+        if self.kind == Frame::Fixed {
+            return own;
+        }
+        let arm = node_vec(&self.position, node) - self.frame.centre;
+        let rigid = self.frame_acceleration() + self.torque / self.inertia * perp(arm);
+        rigid + self.turn * own
+    }
+
+    fn frame_acceleration(&self) -> Vec2 {
+        match self.kind {
+            Frame::Free => self.start_frame.acceleration + self.shift,
+            _ => self.frame.acceleration,
+        }
     }
 
     /// Writes the contact forces of the iterate, interleaved (N).
@@ -237,7 +249,7 @@ impl FlexBlock {
         }
         if self.kind == Frame::Free {
             // The increment may have changed since the frame was advanced: hard contacts, settled accelerations.
-            state.frame.acceleration = self.start_frame.acceleration + self.shift;
+            state.frame.acceleration = self.frame_acceleration();
         }
         for &dof in &self.fixed_dofs {
             state.acceleration[dof] = 0.0;

@@ -156,11 +156,11 @@ impl FlexBlock {
             }
             return 0.0;
         }
-        self.local.copy_from_slice(&self.increment);
-        let (_, turn) = self.arms.split(self.kind, &mut self.local);
+        let (_, turn) = self.arms.split(self.kind, &mut self.increment);
         let angle = self.frame.angle;
         self.advance(turn);
         if self.is_linear {
+            self.torque = turn * self.inertia;
             return 0.0;
         }
         self.balance_angular_momentum();
@@ -208,14 +208,14 @@ impl FlexBlock {
         self.n_solves += 1;
     }
 
-    /// Applies the increments of a frame that moves; `local` holds `δ_u`.
+    /// Applies the increments of a frame that moves; `increment` holds `δ_u`.
     ///
     /// The centre follows the balance of momentum, which (C.5) holds too, but to the rounding of stiff elastic forces.
     fn advance(&mut self, turn: f64) {
         let Weights { b0, b1 } = self.step.weights;
-        for dof in 0..self.local.len() {
-            self.displacement[dof] = self.displacement_q[dof] + b0 * self.local[dof];
-            self.rate[dof] = self.rate_q[dof] + b1 * self.local[dof];
+        for (dof, increment) in self.increment.iter().enumerate() {
+            self.displacement[dof] = self.displacement_q[dof] + b0 * increment;
+            self.rate[dof] = self.rate_q[dof] + b1 * increment;
         }
         let shift = match self.kind {
             Frame::Free => {
@@ -291,9 +291,6 @@ impl FlexBlock {
             return local;
         }
         let world = self.turn * local * self.turn.transpose();
-        if of == Response::Acceleration {
-            return world;
-        }
         let arm = |node| perp(self.turn * node_vec(&self.arms.reference, node));
         let damped = 1.0 + self.model.rayleigh().mass * self.step.weights.b1;
         let reference = arm(at) * arm(from).transpose() / (self.arms.polar * damped);
