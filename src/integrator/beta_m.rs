@@ -216,11 +216,29 @@ impl Beta3 {
         Self::new([theta * theta * theta, theta * theta, theta, 1.0])
     }
 
-    /// The third-order member with a given `β2`: `β1 = β2 - 1/6` and `β0` as given; stable only for short steps.
+    /// The third-order member with given `β0` and `β2`; `β1 = β2 - 1/6`.
+    ///
+    /// Its numerical damping ratio is `(β2/2 - β0) (ω dt)³/12` for short steps, so that `β0 > β2/2` grows at every step length;
+    /// for long ones all of them grow. At `β0 = β2/2` the amplification is right to fourth order, and `β2 = 1` then
+    /// gives the positions of Numerov's method, stable while `ω dt <= sqrt(6)`.
     ///
     /// # Errors
-    /// If a parameter, or `β1`, is negative or not finite.
+    /// If `beta2` is below 1/2, `beta0` outside `[0, beta2/2]`, or one of them not finite.
     pub fn third_order(beta0: f64, beta2: f64) -> Result<Self, IntegratorError> {
+        if !(beta2.is_finite() && beta2 >= 0.5) {
+            return Err(IntegratorError::Parameter {
+                name: "beta2",
+                value: beta2,
+                range: "[1/2, infinity)",
+            });
+        }
+        if !(0.0..=0.5 * beta2).contains(&beta0) {
+            return Err(IntegratorError::Parameter {
+                name: "beta0",
+                value: beta0,
+                range: "[0, beta2/2]",
+            });
+        }
         Self::new([beta0, beta2 - 1.0 / 6.0, beta2, 1.0])
     }
 }
