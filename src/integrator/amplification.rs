@@ -193,8 +193,8 @@ impl<const N: usize> BetaM<N> {
     pub fn critical_sampling(&self) -> f64 {
         let grows = |sampling: f64| {
             let amplification = self.amplification(TestEquation::oscillator(sampling));
-            // Written as "not stable" so that NaN counts as growth.
-            !(amplification.spectral_radius() <= 1.0 + GROWTH)
+            let radius = amplification.spectral_radius();
+            radius.is_nan() || radius > 1.0 + GROWTH
         };
         let [first, last] = SAMPLINGS;
         let n_samples = (SAMPLES_PER_DECADE as f64 * (last / first).log10()).round() as i32;

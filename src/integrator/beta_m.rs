@@ -122,17 +122,19 @@ impl<const N: usize> BetaM<N> {
     ///
     /// # Panics
     /// If the lengths differ.
-    pub fn predict_in_place(&self, dt: f64, derivatives: [&mut [f64]; N]) {
-        let n_dofs = same_length(&derivatives);
-        for dof in 0..n_dofs {
-            // q_i only needs derivatives that are not yet replaced.
-            for i in 0..Self::M {
-                let mut scale = 1.0;
-                for j in i + 1..N {
-                    scale *= dt / (j - i) as f64;
-                    derivatives[i][dof] += scale * derivatives[j][dof];
+    pub fn predict_in_place(&self, dt: f64, mut derivatives: [&mut [f64]; N]) {
+        same_length(&derivatives);
+        // q_i only needs derivatives that are not yet replaced.
+        let mut rest = &mut derivatives[..];
+        while let Some((own, higher)) = rest.split_first_mut() {
+            let mut scale = 1.0;
+            for (k, derivative) in higher.iter().enumerate() {
+                scale *= dt / (k + 1) as f64;
+                for (value, derivative) in own.iter_mut().zip(derivative.iter()) {
+                    *value += scale * derivative;
                 }
             }
+            rest = higher;
         }
     }
 

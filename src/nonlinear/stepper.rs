@@ -17,7 +17,7 @@ pub struct Motion {
     pub acceleration: Vec<f64>,
 }
 
-/// Steps a small system with user-given internal forces; keeps the buffers, so that steps do not allocate once warm.
+/// Steps a small system with user-given internal forces; keeps the buffers, so that only forces may allocate once it is warm.
 ///
 /// ```
 /// use foil2d::integrator::Beta2;
