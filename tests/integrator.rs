@@ -213,6 +213,19 @@ fn the_stability_limits_of_the_named_members_come_out_of_the_amplification_matri
 }
 
 #[test]
+fn damping_moves_the_stability_limit_as_the_root_at_minus_one_says() {
+    // Newmark's polynomial at z = -1 vanishes where Omega² (beta1 - beta0)/2 - zeta Omega (2 beta1 - 1) - 1 = 0.
+    let zeta = 0.2;
+    for (beta0, beta1) in [(0.0, 0.5), (1.0 / 3.0, 0.5), (0.3, 0.6), (0.0, 0.8)] {
+        let method = BetaM::new([beta0, beta1, 1.0]).expect("finite");
+        let (curve, slope) = (0.5 * (beta1 - beta0), zeta * (2.0 * beta1 - 1.0));
+        let expected = (slope + f64::sqrt(slope * slope + 4.0 * curve)) / (2.0 * curve);
+        let found = method.critical_sampling_damped(zeta);
+        assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+    }
+}
+
+#[test]
 fn houbolt_and_wilson_are_stable_at_every_step_and_wilson_only_from_1_366_on() {
     assert_eq!(Beta3::houbolt().critical_sampling(), f64::INFINITY);
     for theta in [1.37, 1.4, 2.0] {

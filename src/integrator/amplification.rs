@@ -191,8 +191,18 @@ impl<const N: usize> BetaM<N> {
     /// # Panics
     /// If `m = 1`: the oscillator needs `m = 2` or more.
     pub fn critical_sampling(&self) -> f64 {
+        self.critical_sampling_damped(0.0)
+    }
+
+    /// The smallest `ω dt` at which an oscillator of damping ratio `damping` (-) grows, as [`BetaM::critical_sampling`].
+    ///
+    /// Damping at the end of the step, `b1 C`, does not move the limit of members with `β1 = 1/2` and raises that of the others.
+    ///
+    /// # Panics
+    /// If `m = 1`.
+    pub fn critical_sampling_damped(&self, damping: f64) -> f64 {
         let grows = |sampling: f64| {
-            let amplification = self.amplification(TestEquation::oscillator(sampling));
+            let amplification = self.amplification(TestEquation::SecondOrder { sampling, damping });
             let radius = amplification.spectral_radius();
             radius.is_nan() || radius > 1.0 + GROWTH
         };
