@@ -22,6 +22,7 @@ pub mod integrator;
 pub mod kkt;
 pub mod linalg;
 pub mod math;
+pub mod nonlinear;
 pub mod pipeline;
 pub mod system;
 

@@ -11,7 +11,7 @@ const LAYERS: [&[&str]; 9] = [
     &["coupling"],
     &["kkt"],
     &["constraint"],
-    &["system"],
+    &["system", "nonlinear"],
     &["body"],
     &["fe", "integrator"],
     &["linalg"],

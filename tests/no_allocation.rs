@@ -264,3 +264,44 @@ fn a_free_spinning_body_allocates_nothing() -> Result<(), BuildError> {
         .assert_quiet("free spinning body", 60, 0);
     Ok(())
 }
+
+#[test]
+fn a_non_linear_step_allocates_nothing_once_warm() {
+    use foil2d::nonlinear::{CubicSpring, InternalForce, NewtonSettings, NonLinearStepper};
+
+    /// Hides the tangent, so that differences are taken.
+    struct Hidden(CubicSpring);
+    impl InternalForce for Hidden {
+        fn force(&self, position: &[f64], velocity: &[f64], force: &mut [f64]) {
+            self.0.force(position, velocity, force);
+        }
+    }
+    let spring = CubicSpring {
+        linear: 4.0,
+        cubic: 30.0,
+        damping: 0.1,
+    };
+    let laws: [&dyn InternalForce; 2] = [&spring, &Hidden(spring)];
+    for law in laws {
+        let method = Beta2::trapezoidal();
+        let settings = NewtonSettings::default();
+        let mut stepper = NonLinearStepper::lumped(&[1.0, 2.0], method, settings)
+            .expect("sound masses and settings");
+        let load = [0.0, 1.0];
+        let mut motion = stepper
+            .start(law, &load, vec![1.0, -0.5], vec![0.0; 2])
+            .expect("every dof has mass");
+        let mut step = |dt: f64| {
+            let report = stepper.step(dt, law, &load, &mut motion);
+            report.expect("it converges").n_iterations()
+        };
+        // A long step takes the most iterations, and their list is kept.
+        step(0.3);
+        let (count, stacks) = allocations(|| {
+            for _ in 0..20 {
+                step(0.02);
+            }
+        });
+        assert_eq!(count, 0, "{stacks:?}");
+    }
+}

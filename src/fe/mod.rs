@@ -8,11 +8,13 @@
 //! | [`mass_matrix`] | `M` and its moments |
 //! | [`model`] | `K`, `M` and stresses of one body |
 //! | [`mass`] | nodal masses with an inertia-free contact boundary |
+//! | [`frequency`] | the largest natural frequency, which bounds the step of explicit integration |
 //! | [`recovery`] | stresses at points and, smoothed, at nodes |
 //!
 //! SI units throughout; the strain order is `[e_xx, e_yy, g_xy]` with engineering shear.
 
 pub mod element;
+pub mod frequency;
 pub mod mass;
 pub mod mass_matrix;
 pub mod material;

@@ -3,13 +3,14 @@
 //! A model never changes once built; bodies share it by reference count.
 
 use super::element::{Element, ElementError, MAX_NODES, default_element};
+use super::frequency::frequency_bound;
 use super::mass::{self, MassError};
 pub use super::mass_matrix::{MassKind, MassMatrix};
 use super::material::{Material, Rayleigh};
 use super::mesh::{Cell, Mesh};
 use super::recovery::{CellStress, Stress, smooth_to_nodes};
 use crate::linalg::block_matrix::BlockMatrix;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use thiserror::Error;
 
 /// Why a model cannot be assembled.
@@ -75,7 +76,8 @@ pub struct Model {
     support: Vec<(usize, Vec<usize>)>,
     /// Place of a massless node in `support`, `u32::MAX` for the others.
     support_index: Vec<u32>,
-    largest_frequency: f64,
+    /// Computed when asked for: implicit integration never does.
+    largest_frequency: OnceLock<f64>,
 }
 
 impl Model {
@@ -99,36 +101,16 @@ impl Model {
             MassKind::Lumped => None,
         };
         let mut lumped = vec![0.0; n_nodes];
-        let mut matrix = [0.0; 4 * MAX_NODES * MAX_NODES];
-        for (index, cell) in mesh.cells().enumerate() {
-            let wrap = |source| ModelError::Element {
-                cell: index,
-                source,
-            };
-            let element = element_of(&description.elements, index, &cell)?;
-            let n = cell.nodes.len();
-            let corners = placed_nodes(&description.rest_positions, &cell);
-            let matrix = &mut matrix[..4 * n * n];
-            let material = description.material.as_ref();
-            element
-                .stiffness(&corners[..n], material, thickness, matrix)
-                .map_err(wrap)?;
-            stiffness.add_cell(cell.nodes, matrix);
-            let density = material.density();
+        for_each_cell(&description, |nodes, cell_stiffness, cell_mass| {
+            stiffness.add_cell(nodes, cell_stiffness);
             if let Some(consistent) = &mut consistent {
-                element
-                    .consistent_mass(&corners[..n], density, thickness, &mut matrix[..n * n])
-                    .map_err(wrap)?;
-                add_scalar_cell(consistent, cell.nodes, &matrix[..n * n]);
+                add_scalar_cell(consistent, nodes, cell_mass);
             } else {
-                element
-                    .lumped_mass(&corners[..n], density, thickness, &mut matrix[..n])
-                    .map_err(wrap)?;
-                for (&node, mass) in cell.nodes.iter().zip(&matrix[..n]) {
+                for (&node, mass) in nodes.iter().zip(cell_mass) {
                     lumped[node] += mass;
                 }
             }
-        }
+        })?;
         let wants_massless = description.massless.contains(&true);
         let mass = match consistent {
             Some(_) if wants_massless => return Err(ModelError::ConsistentRedistribution),
@@ -148,15 +130,13 @@ impl Model {
         for (index, (node, _)) in support.iter().enumerate() {
             support_index[*node] = index as u32;
         }
-        let has_massless = description.massless.contains(&true);
-        let largest_frequency = frequency_bound(&stiffness, &mass, has_massless);
         Ok(Self {
             description,
             stiffness,
             mass,
             support,
             support_index,
-            largest_frequency,
+            largest_frequency: OnceLock::new(),
         })
     }
 
@@ -221,9 +201,18 @@ impl Model {
         self.description.thickness
     }
 
-    /// An upper bound of the largest natural frequency (rad/s), infinite when some node carries no mass.
+    /// An upper bound of the largest natural frequency with no dof held (rad/s), infinite when some node carries no mass.
+    ///
+    /// The first call costs one small eigenvalue problem per cell. [`frequency`](super::frequency) has bounds for held dofs and
+    /// massless nodes, and the frequency itself.
     pub fn largest_frequency(&self) -> f64 {
-        self.largest_frequency
+        *self.largest_frequency.get_or_init(|| {
+            if self.support.is_empty() {
+                frequency_bound(self, &[]).unwrap_or(f64::INFINITY)
+            } else {
+                f64::INFINITY
+            }
+        })
     }
 
     /// Elastic energy of local displacements `u` (J).
@@ -234,6 +223,14 @@ impl Model {
             twice += u[2 * node] * a + u[2 * node + 1] * b;
         }
         0.5 * twice
+    }
+
+    /// Visits the matrices of every cell again, with the masses before any redistribution; see [`for_each_cell`].
+    pub(super) fn for_each_cell(
+        &self,
+        visit: impl FnMut(&[usize], &[f64], &[f64]),
+    ) -> Result<(), ModelError> {
+        for_each_cell(&self.description, visit)
     }
 
     /// Strains `[e_xx, e_yy, g_xy]` (-) and stresses (Pa) at the quadrature points of a cell, in the body's frame.
@@ -315,6 +312,43 @@ impl Model {
         smooth_to_nodes(cells, &mut vec![0.0; self.n_nodes()], &mut nodal);
         Ok(nodal)
     }
+}
+
+/// Calls `visit` with the nodes of every cell, its stiffness (N/m, shape `(2n, 2n)`) and its mass (kg): the consistent one,
+/// shape `(n, n)`, or the lumped one, shape `(n)`.
+fn for_each_cell(
+    description: &ModelDescription,
+    mut visit: impl FnMut(&[usize], &[f64], &[f64]),
+) -> Result<(), ModelError> {
+    let mut stiffness = [0.0; 4 * MAX_NODES * MAX_NODES];
+    let mut mass = [0.0; MAX_NODES * MAX_NODES];
+    let (material, thickness) = (description.material.as_ref(), description.thickness);
+    let density = material.density();
+    for (index, cell) in description.mesh.cells().enumerate() {
+        let wrap = |source| ModelError::Element {
+            cell: index,
+            source,
+        };
+        let element = element_of(&description.elements, index, &cell)?;
+        let n = cell.nodes.len();
+        let corners = placed_nodes(&description.rest_positions, &cell);
+        let corners = &corners[..n];
+        let stiffness = &mut stiffness[..4 * n * n];
+        element
+            .stiffness(corners, material, thickness, stiffness)
+            .map_err(wrap)?;
+        let mass = match description.mass_kind {
+            MassKind::Consistent => &mut mass[..n * n],
+            MassKind::Lumped => &mut mass[..n],
+        };
+        match description.mass_kind {
+            MassKind::Consistent => element.consistent_mass(corners, density, thickness, mass),
+            MassKind::Lumped => element.lumped_mass(corners, density, thickness, mass),
+        }
+        .map_err(wrap)?;
+        visit(cell.nodes, stiffness, mass);
+    }
+    Ok(())
 }
 
 /// The element of a cell: the last matching one the user gave, else the default of its node count.
@@ -413,28 +447,4 @@ fn massive_support(massless: &[bool], pattern: &BlockMatrix) -> Vec<(usize, Vec<
         }
     }
     support
-}
-
-/// Gershgorin's bound of the eigenvalues of `M⁻¹ K`, as a frequency (rad/s).
-fn frequency_bound(stiffness: &BlockMatrix, mass: &MassMatrix, has_massless: bool) -> f64 {
-    if has_massless {
-        return f64::INFINITY;
-    }
-    // The smallest eigenvalue of a consistent mass is at least a quarter of its row sum for our elements (1/4 for
-    // Tri3, 1/9 for Quad4 against the row sum; the bound below takes the smallest).
-    let share = match mass {
-        MassMatrix::Lumped(_) => 1.0,
-        MassMatrix::Consistent(_) => 1.0 / 9.0,
-    };
-    let sums = mass.node_sums();
-    let mut largest = 0.0f64;
-    for (node, sum) in sums.iter().enumerate() {
-        let mut rows = [0.0f64; 2];
-        for block in stiffness.row_blocks(node) {
-            rows[0] += block[0].abs() + block[1].abs();
-            rows[1] += block[2].abs() + block[3].abs();
-        }
-        largest = largest.max(rows[0].max(rows[1]) / (share * sum));
-    }
-    largest.sqrt()
 }

@@ -4,6 +4,7 @@
 //! The unknown of (C.5) is the increment of acceleration `Δa`; the state advances by
 //! `x' = q0 + b0 Δa`, `v' = q1 + b1 Δa`, `a' = q2 + b2 Δa`. Newmark's parameters are `β = β0/2`, `γ = β1`.
 
+use super::beta_m::BetaM;
 use thiserror::Error;
 
 /// A choice of parameters or step that the Beta-2 method cannot take.
@@ -31,6 +32,11 @@ pub enum IntegratorError {
         /// Upper bound of the largest natural frequency (rad/s).
         frequency: f64,
     },
+    /// The member has `β0 = 0`, for which the second row of (C.5) vanishes.
+    #[error(
+        "beta0 is 0: positions at the end of the step do not depend on the contact forces of the step, so (C.5) is singular; choose beta0 > 0, or integrate with multipliers at the forward increment"
+    )]
+    Explicit,
 }
 
 /// The weights `b0` (s²) and `b1` (s) of one step; `b2 = 1`.
@@ -42,7 +48,10 @@ pub struct Weights {
     pub b1: f64,
 }
 
-/// A member of the Beta-2 family with `β0 > 0` (the implicit members).
+/// A member of the Beta-2 family: implicit with `β0 > 0`, explicit with `β0 = 0`.
+///
+/// The three members that section C.4 names are [`Beta2::linear_acceleration`], [`Beta2::trapezoidal`] and
+/// [`Beta2::central_difference`].
 ///
 /// The default is [`Beta2::damped`] with `rho_infinity = 0.9`: vibrations that the step cannot resolve die out within a second
 /// at 60 Hz, while the motion of a free body's frame is not damped at all. The trapezoidal rule keeps the energy of vibrations,
@@ -64,7 +73,7 @@ impl Default for Beta2 {
 }
 
 impl Beta2 {
-    /// Any implicit member.
+    /// Any implicit member; [`Beta2::explicit`] makes the others.
     ///
     /// # Errors
     /// If a parameter is not finite, `beta0` is outside `(0, 2]` or `beta1` outside `[1/2, 3/2]`:
@@ -87,6 +96,15 @@ impl Beta2 {
         Ok(Self { beta0, beta1 })
     }
 
+    /// Any explicit member, `β0 = 0`: the position at the end of a step follows from its beginning alone.
+    ///
+    /// # Errors
+    /// If `beta1` is not finite or outside `[1/2, 3/2]`.
+    pub fn explicit(beta1: f64) -> Result<Self, IntegratorError> {
+        let Self { beta1, .. } = Self::new(1.0, beta1)?;
+        Ok(Self { beta0: 0.0, beta1 })
+    }
+
     /// The trapezoidal rule (constant acceleration), `β0 = β1 = 1/2`: second order, unconditionally
     /// stable, and without numerical damping.
     pub const fn trapezoidal() -> Self {
@@ -101,6 +119,15 @@ impl Beta2 {
     pub const fn linear_acceleration() -> Self {
         Self {
             beta0: 1.0 / 3.0,
+            beta1: 0.5,
+        }
+    }
+
+    /// The central difference method, `β0 = 0`, `β1 = 1/2`: second order, stable while `ω dt <= 2`, and explicit:
+    /// with a lumped mass a step solves nothing. (C.5) is singular for it, see [`Beta2::require_implicit`].
+    pub const fn central_difference() -> Self {
+        Self {
+            beta0: 0.0,
             beta1: 0.5,
         }
     }
@@ -134,6 +161,27 @@ impl Beta2 {
         self.beta1
     }
 
+    /// Whether `b0 = 0`: no effective stiffness, and no position that contact forces of the step could correct.
+    pub fn is_explicit(&self) -> bool {
+        self.beta0 == 0.0
+    }
+
+    /// Refuses an explicit member where (C.5) is to be solved.
+    ///
+    /// # Errors
+    /// [`IntegratorError::Explicit`] if `b0 = 0`.
+    pub fn require_implicit(&self) -> Result<(), IntegratorError> {
+        if self.is_explicit() {
+            return Err(IntegratorError::Explicit);
+        }
+        Ok(())
+    }
+
+    /// The same member as one of the generalized family, with `m = 2`.
+    pub const fn family(&self) -> BetaM<3> {
+        BetaM::from_parameters([self.beta0, self.beta1, 1.0])
+    }
+
     /// The weights of a step of `dt` (s).
     pub fn weights(&self, dt: f64) -> Weights {
         Weights {
@@ -147,13 +195,13 @@ impl Beta2 {
         self.beta0 >= self.beta1 - 1e-15
     }
 
-    /// The largest stable `ω dt` without damping: infinite if unconditionally stable, else
-    /// `2 / sqrt(2 β1 - 2 β0) ` written for Newmark's parameters.
+    /// The largest stable `ω dt` without damping: infinite if unconditionally stable, else `sqrt(2 / (β1 - β0))`,
+    /// which is 2 for the central difference method and `sqrt(12)` for linear acceleration.
     pub fn critical_sampling(&self) -> f64 {
         if self.is_unconditionally_stable() {
             f64::INFINITY
         } else {
-            2.0 / (2.0 * (self.beta1 - self.beta0)).sqrt()
+            (2.0 / (self.beta1 - self.beta0)).sqrt()
         }
     }
 
@@ -222,6 +270,7 @@ mod tests {
         for method in [
             Beta2::trapezoidal(),
             Beta2::linear_acceleration(),
+            Beta2::central_difference(),
             Beta2 {
                 beta0: 1.0,
                 beta1: 0.5,
@@ -258,6 +307,16 @@ mod tests {
     }
 
     #[test]
+    fn the_explicit_members_are_recognized_and_refused_where_c5_is_singular() {
+        let central = Beta2::central_difference();
+        assert_eq!(Beta2::explicit(0.5), Ok(central));
+        assert!(central.is_explicit() && central.weights(0.1).b0 == 0.0);
+        assert_eq!(central.critical_sampling(), 2.0);
+        assert_eq!(central.require_implicit(), Err(IntegratorError::Explicit));
+        assert!(Beta2::default().require_implicit().is_ok());
+    }
+
+    #[test]
     fn parameters_out_of_range_are_refused_by_name() {
         assert!(matches!(
             Beta2::new(0.0, 0.5),
@@ -269,6 +328,8 @@ mod tests {
         ));
         assert!(Beta2::new(f64::NAN, 0.5).is_err());
         assert!(Beta2::damped(1.1).is_err());
+        assert!(Beta2::explicit(0.4).is_err());
+        assert!(Beta2::explicit(f64::INFINITY).is_err());
         assert!(Beta2::linear_acceleration().check_step(0.1, 100.0).is_err());
         assert!(Beta2::trapezoidal().check_step(1e3, 1e9).is_ok());
     }

@@ -1,5 +1,15 @@
 //! Time integration: weights and operators only, no matrix (methods of section C.4).
+//!
+//! | module | owns |
+//! |---|---|
+//! | `beta2` | the method of (C.5), its named members |
+//! | `beta_m` | the generalized family, for systems of first and second order |
+//! | `amplification` | stability and accuracy of any member, from the test equation |
 
+mod amplification;
 mod beta2;
+mod beta_m;
 
+pub use amplification::{Amplification, Mode, TestEquation};
+pub use beta_m::{Beta1, Beta3, BetaM};
 pub use beta2::{Beta2, IntegratorError, Weights};

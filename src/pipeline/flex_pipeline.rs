@@ -255,7 +255,11 @@ impl FlexPipeline {
             }
             if !self.integrator.is_unconditionally_stable() {
                 self.integrator
-                    .check_step(dt, body.model().largest_frequency())
+                    .require_implicit()
+                    .and_then(|()| {
+                        let frequency = body.model().largest_frequency();
+                        self.integrator.check_step(dt, frequency)
+                    })
                     .map_err(|source| StepError::Integrator {
                         body: handle,
                         source,

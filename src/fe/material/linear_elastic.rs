@@ -72,6 +72,12 @@ impl LinearElastic {
         self
     }
 
+    /// Sets both parts of Rayleigh damping, such as those of [`Rayleigh::from_ratios`].
+    pub fn damping(mut self, rayleigh: Rayleigh) -> Self {
+        self.rayleigh = rayleigh;
+        self
+    }
+
     /// Young's modulus (Pa).
     pub fn young(&self) -> f64 {
         self.young

@@ -6,8 +6,10 @@
 
 pub mod conformance;
 mod linear_elastic;
+mod rayleigh;
 
 pub use linear_elastic::{LinearElastic, Plane};
+pub use rayleigh::{DampingError, Rayleigh};
 
 use std::fmt::Debug;
 
@@ -50,23 +52,6 @@ pub trait Material: Send + Sync + Debug {
     fn validate(&self) -> Result<(), MaterialError> {
         Ok(())
     }
-}
-
-/// Rayleigh damping `C = alpha M + beta K`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Rayleigh {
-    /// The mass part alpha (1/s). It drags rigid motion too: leave it at zero for free bodies.
-    pub mass: f64,
-    /// The stiffness part beta (s): the damping ratio of a mode of circular frequency w is `beta w / 2`.
-    pub stiffness: f64,
-}
-
-impl Rayleigh {
-    /// No damping.
-    pub const NONE: Self = Self {
-        mass: 0.0,
-        stiffness: 0.0,
-    };
 }
 
 /// A material parameter out of its range.

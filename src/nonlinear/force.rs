@@ -1,0 +1,50 @@
+//! The vector of internal forces `Q(x, ẋ)` of (C.1).
+
+/// Where the tangent of an iteration came from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TangentSource {
+    /// The force law gave it.
+    #[default]
+    Supplied,
+    /// Central differences of the force, `4 n` more evaluations.
+    FiniteDifferences,
+}
+
+/// A law of internal forces; on the left of (C.1), so that a spring has `Q = +k x`.
+pub trait InternalForce {
+    /// Writes `Q(x, ẋ)` (N).
+    ///
+    /// - `position` (m), `velocity` (m/s), `force`: one entry per dof.
+    fn force(&self, position: &[f64], velocity: &[f64], force: &mut [f64]);
+
+    /// Writes the tangents `K = ∂Q/∂x` (N/m) and `C = ∂Q/∂ẋ` (N s/m), row-major, shape `(n, n)`, both zero on entry.
+    ///
+    /// Returns where they come from; a law without tangents keeps this method, writes nothing and asks for finite
+    /// differences. An inexact tangent slows the iterations down but does not change what they end at.
+    fn tangent(
+        &self,
+        position: &[f64],
+        velocity: &[f64],
+        stiffness: &mut [f64],
+        damping: &mut [f64],
+    ) -> TangentSource {
+        let _ = (position, velocity, stiffness, damping);
+        TangentSource::FiniteDifferences
+    }
+}
+
+impl<F: InternalForce + ?Sized> InternalForce for &F {
+    fn force(&self, position: &[f64], velocity: &[f64], force: &mut [f64]) {
+        (**self).force(position, velocity, force);
+    }
+
+    fn tangent(
+        &self,
+        position: &[f64],
+        velocity: &[f64],
+        stiffness: &mut [f64],
+        damping: &mut [f64],
+    ) -> TangentSource {
+        (**self).tangent(position, velocity, stiffness, damping)
+    }
+}
