@@ -338,7 +338,14 @@ fn drop_blocks(seed: u64, meshes: &[[usize; 2]]) {
         let (angle, height) = (dice.between(-0.8, 0.8), dice.between(0.6, 1.2));
         let (speed, mu) = (dice.between(-1.0, 1.0), dice.pick(&[0.0, 0.3, 1.0]));
         let mut scene = Scene::new(dt).with_integrator(Beta2::trapezoidal());
-        if std::env::var("FOIL_LIST").is_ok() { eprintln!("case {case}: {young} {} {} {} {angle} {height} {speed} {mu}", 1.0/dt, cells[0], cells[1]); }
+        if std::env::var("FOIL_LIST").is_ok() {
+            eprintln!(
+                "case {case}: {young} {} {} {} {angle} {height} {speed} {mu}",
+                1.0 / dt,
+                cells[0],
+                cells[1]
+            );
+        }
         scene.ground(mu);
         scene.flexible(
             FlexBodyBuilder::rectangle([1.0, 0.6], cells)

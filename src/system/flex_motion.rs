@@ -243,10 +243,11 @@ impl FlexBlock {
         state.elastic_energy = self.end_elastic;
         state.kinetic_energy = kinetic_energy;
         state.acceleration.copy_from_slice(&self.increment);
-        self.arms.split(self.kind, &mut state.acceleration);
         for (end, start) in state.acceleration.iter_mut().zip(&self.start_acceleration) {
             *end += start;
         }
+        // The sum, not the increment: what rounding leaves of a mean would add up.
+        self.arms.split(self.kind, &mut state.acceleration);
         if self.kind == Frame::Free {
             // The increment may have changed since the frame was advanced: hard contacts, settled accelerations.
             state.frame.acceleration = self.frame_acceleration();

@@ -5,7 +5,7 @@
 
 use super::candidate::{Candidate, Pair};
 use super::memory::Remembered;
-use super::surface::{SurfacePoint, closest_surface_point, faces, facing_point};
+use super::surface::{SurfacePoint, closest_surface_point, faced_at_start, faces, facing_point};
 use crate::constraint::geometry::{ConvexPart, Feature, Pose2, separation};
 use crate::math::{Vec2, perp, rotation};
 use crate::system::{Block, FlexBlock, Grip, Point, RigidBlock};
@@ -221,8 +221,17 @@ fn node_on_part(
     let normal = rotation(motion.current().angle) * placed.pose.rotate(found.normal);
     let is_sharp_vertex =
         matches!(found.feature, Feature::Vertex(_)) && placed.part.radius() == 0.0;
-    if !faces(flex_of(scene, block)?, segment, normal, is_sharp_vertex) {
+    let body = flex_of(scene, block)?;
+    if !faces(body, segment, normal, is_sharp_vertex) {
         return None;
+    }
+    if found.distance < 0.0 {
+        // What comes through the body from behind has been met on its other side.
+        let before = separation(&placed.part, local_start, reference, None);
+        let towards = rotation(motion.start().angle) * placed.pose.rotate(before.normal);
+        if before.distance > 0.0 && !faced_at_start(body, segment, towards) {
+            return None;
+        }
     }
     let grips = [
         (block, Point::Node(node), 1.0),

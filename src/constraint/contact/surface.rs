@@ -177,6 +177,19 @@ pub(super) fn faces(block: &FlexBlock, segment: usize, normal: Vec2, exactly: bo
     is_within || normals.iter().any(|own| own.dot(&normal) < -FACING)
 }
 
+/// Whether a target was in front of the surface around a boundary node when the step began; `normal` pointed from it to
+/// the node.
+pub(super) fn faced_at_start(block: &FlexBlock, segment: usize, normal: Vec2) -> bool {
+    let boundary = block.model().mesh().boundary();
+    [segment, boundary.previous_segment(segment)]
+        .into_iter()
+        .any(|segment| {
+            let [a, b] = boundary.segments()[segment];
+            let along = block.start_position(b) - block.start_position(a);
+            -perp(along).dot(&normal) < FACING * along.norm()
+        })
+}
+
 /// Least cosine between a surface and a face that push each other.
 const FACING: f64 = 0.05;
 
@@ -189,7 +202,8 @@ pub(super) fn facing_point(
     start: Vec2,
 ) -> Option<SurfacePoint> {
     if let Some(entered) = entered_segment(block, segments, point, start) {
-        return Some(entered);
+        // A point above a node belongs to the segment that starts there.
+        return (entered.xi < 1.0).then_some(entered);
     }
     let &segment = segments.first()?;
     let [a, b] = block.model().mesh().boundary().segments()[segment as usize];
