@@ -100,7 +100,7 @@ pub struct BlockCholesky {
     panels: Panels,
     sources: factor::Sources,
     values: Vec<[f64; 4]>,
-    /// One right-hand side in elimination order, and a node of zeros for rows that fill up a pair.
+    /// One or two right-hand sides in elimination order, and a node for rows that fill up a pair.
     vector: Vec<[f64; 2]>,
     /// The panel being factorized, or eight right-hand sides, and two nodes for rows that stand for
     /// none.
@@ -123,7 +123,7 @@ impl BlockCholesky {
             pattern: Arc::clone(matrix.pattern()),
             sources: factor::Sources::new(matrix, &ordering, &panels),
             values: vec![[0.0; 4]; panels.n_values],
-            vector: vec![[0.0; 2]; n_nodes + 1],
+            vector: vec![[0.0; 2]; 2 * (n_nodes + 1)],
             rows: vec![[0.0; 16]; n_nodes + 2],
             node_at: ordering.node_at,
             panels,
@@ -176,12 +176,16 @@ impl BlockCholesky {
     /// If `x` does not have `n_dofs` entries, or if the last factorization failed or never was.
     pub fn solve_in_place(&mut self, x: &mut [f64]) {
         self.assert_ready(x.len(), 1);
-        self.arch.dispatch(solve::SolveOne {
+        self.solve_few::<1>(x);
+    }
+
+    fn solve_few<const R: usize>(&mut self, columns: &mut [f64]) {
+        self.arch.dispatch(solve::SolveFew::<R> {
             panels: &self.panels,
             values: &self.values,
             node_at: &self.node_at,
-            work: &mut self.vector,
-            x,
+            work: self.vector.as_chunks_mut().0,
+            columns,
         });
     }
 
@@ -199,9 +203,16 @@ impl BlockCholesky {
         self.assert_ready(columns.len(), n_columns);
         let n_dofs = self.n_dofs();
         for block in columns.chunks_mut((8 * n_dofs).max(1)) {
-            if block.len() == n_dofs {
-                self.solve_in_place(block);
-                continue;
+            match block.len() / n_dofs {
+                1 => {
+                    self.solve_few::<1>(block);
+                    continue;
+                }
+                2 => {
+                    self.solve_few::<2>(block);
+                    continue;
+                }
+                _ => {}
             }
             self.rows_are_zero = false;
             self.arch.dispatch(solve::SolveEight {
@@ -288,12 +299,12 @@ mod tests {
         let load: Vec<f64> = (0..matrix.n_dofs()).map(|dof| (dof as f64).cos()).collect();
         let (mut x, mut y) = (load.clone(), load);
         wide.solve_in_place(&mut x);
-        let solve = solve::SolveOne {
+        let solve = solve::SolveFew::<1> {
             panels: &plain.panels,
             values: &plain.values,
             node_at: &plain.node_at,
-            work: &mut plain.vector,
-            x: &mut y,
+            work: plain.vector.as_chunks_mut().0,
+            columns: &mut y,
         };
         solve.with_simd(Scalar::new());
         assert_eq!(x, y);
