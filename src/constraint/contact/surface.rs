@@ -155,7 +155,10 @@ pub(super) fn faces(block: &FlexBlock, segment: usize, normal: Vec2, exactly: bo
         let [a, b] = boundary.segments()[segment];
         -perp(block.position(b) - block.position(a)).normalize()
     };
-    let normals = [outward(segment), outward(boundary.previous_segment(segment))];
+    let normals = [
+        outward(segment),
+        outward(boundary.previous_segment(segment)),
+    ];
     let mean = normals[0] + normals[1];
     let mean = if mean.norm() > 1e-9 {
         mean.normalize()

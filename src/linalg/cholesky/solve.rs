@@ -62,7 +62,11 @@ impl<const R: usize> SolveFew<'_, R> {
                 _ => self.backward::<S, 8>(simd, panel),
             }
         }
-        for (r, column) in self.columns.chunks_exact_mut((2 * n_nodes).max(1)).enumerate() {
+        for (r, column) in self
+            .columns
+            .chunks_exact_mut((2 * n_nodes).max(1))
+            .enumerate()
+        {
             for (y, &node) in self.work.iter().zip(self.node_at) {
                 column[2 * node as usize..][..2].copy_from_slice(&y[r]);
             }
@@ -220,6 +224,8 @@ pub(super) struct SolveEight<'a> {
     pub work: &'a mut [NodeRow],
     /// Column-major, at most eight columns.
     pub columns: &'a mut [f64],
+    /// For each panel whether its unknowns are wanted; empty if all are.
+    pub is_wanted: &'a [bool],
 }
 
 impl WithSimd for SolveEight<'_> {
@@ -244,7 +250,10 @@ impl WithSimd for SolveEight<'_> {
                 _ => self.forward::<8>(panel),
             }
         }
-        for panel in self.panels.panels.iter().rev() {
+        for (index, panel) in self.panels.panels.iter().enumerate().rev() {
+            if self.is_wanted.get(index) == Some(&false) {
+                continue;
+            }
             match panel.width {
                 1 => self.backward::<2>(panel),
                 2 => self.backward::<4>(panel),
@@ -252,7 +261,11 @@ impl WithSimd for SolveEight<'_> {
                 _ => self.backward::<8>(panel),
             }
         }
-        for (k, column) in self.columns.chunks_exact_mut((2 * n_nodes).max(1)).enumerate() {
+        for (k, column) in self
+            .columns
+            .chunks_exact_mut((2 * n_nodes).max(1))
+            .enumerate()
+        {
             for (row, &node) in self.work.iter().zip(self.node_at) {
                 column[2 * node as usize..][..2].copy_from_slice(&[row[k], row[8 + k]]);
             }
