@@ -344,6 +344,31 @@ fn any_number_of_right_hand_sides_at_once_gives_what_one_by_one_gives() {
 }
 
 #[test]
+fn a_selected_node_gets_what_it_gets_in_a_whole_solve() {
+    let mut random = Random(8);
+    let body = mesh(17, 6, [1.0, 1.0], 0.3, &mut random);
+    let matrix = assemble(&body, &random.permutation(body.points.len()), 0.1);
+    let n = matrix.n_dofs();
+    let mut cholesky = BlockCholesky::analyze(&matrix);
+    cholesky.factorize(&matrix).unwrap();
+    for nodes in [vec![], vec![3], vec![0, 5, 41], (0..n / 2).collect()] {
+        for n_columns in [1, 2, 5, 8, 11] {
+            let mut whole = random.vector(n * n_columns);
+            let mut part = whole.clone();
+            cholesky.solve_many_in_place(&mut whole, n_columns);
+            let selection = cholesky.select(nodes.iter().copied());
+            cholesky.solve_many_for(&selection, &mut part, n_columns);
+            // The same operations in the same order: the same bits.
+            for (whole, part) in whole.chunks(n).zip(part.chunks(n)) {
+                for &node in &nodes {
+                    assert_eq!(part[2 * node..2 * node + 2], whole[2 * node..2 * node + 2]);
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn fixed_dofs_keep_their_right_hand_side_and_leave_the_rest_of_the_system_alone() {
     let mut random = Random(7);
     let body = mesh(6, 3, [1.0, 1.0], 0.2, &mut random);

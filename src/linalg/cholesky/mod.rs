@@ -31,6 +31,7 @@
 //! that results are the same bits whichever is chosen; fusing the products of the factorization
 //! gained 5 % at 100,352 dofs and nothing below.
 
+mod aligned;
 mod diagonal;
 mod factor;
 mod ordering;
@@ -38,6 +39,7 @@ mod panels;
 mod solve;
 
 use super::block_matrix::{BlockMatrix, Pattern};
+use aligned::AlignedColumns;
 use faer::traits::pulp::Arch;
 use ordering::Ordering;
 use panels::Panels;
@@ -73,6 +75,13 @@ pub enum CholeskyError {
     },
 }
 
+/// The part of a factor that some unknowns depend on; see [`BlockCholesky::select`].
+#[derive(Debug, Clone, Default)]
+pub struct Selection {
+    /// For each panel.
+    is_wanted: Vec<bool>,
+}
+
 /// The Cholesky factor of a [`BlockMatrix`], refilled as often as its values change.
 ///
 /// Only [`analyze`](Self::analyze) allocates.
@@ -99,8 +108,8 @@ pub struct BlockCholesky {
     node_at: Vec<u32>,
     panels: Panels,
     sources: factor::Sources,
-    values: Vec<[f64; 4]>,
-    /// One right-hand side in elimination order, and a node of zeros for rows that fill up a pair.
+    values: AlignedColumns,
+    /// One or two right-hand sides in elimination order, and a node for rows that fill up a pair.
     vector: Vec<[f64; 2]>,
     /// The panel being factorized, or eight right-hand sides, and two nodes for rows that stand for
     /// none.
@@ -122,8 +131,8 @@ impl BlockCholesky {
         Self {
             pattern: Arc::clone(matrix.pattern()),
             sources: factor::Sources::new(matrix, &ordering, &panels),
-            values: vec![[0.0; 4]; panels.n_values],
-            vector: vec![[0.0; 2]; n_nodes + 1],
+            values: AlignedColumns::zeros(panels.n_values),
+            vector: vec![[0.0; 2]; 2 * (n_nodes + 1)],
             rows: vec![[0.0; 16]; n_nodes + 2],
             node_at: ordering.node_at,
             panels,
@@ -156,7 +165,7 @@ impl BlockCholesky {
             panels: &self.panels,
             sources: &self.sources,
             blocks: matrix.blocks(),
-            values: &mut self.values,
+            values: self.values.get_mut(),
             rows: &mut self.rows,
         });
         outcome.map_err(|failure| CholeskyError::NotPositiveDefinite {
@@ -176,12 +185,16 @@ impl BlockCholesky {
     /// If `x` does not have `n_dofs` entries, or if the last factorization failed or never was.
     pub fn solve_in_place(&mut self, x: &mut [f64]) {
         self.assert_ready(x.len(), 1);
-        self.arch.dispatch(solve::SolveOne {
+        self.solve_few::<1>(x);
+    }
+
+    fn solve_few<const R: usize>(&mut self, columns: &mut [f64]) {
+        self.arch.dispatch(solve::SolveFew::<R> {
             panels: &self.panels,
-            values: &self.values,
+            values: self.values.get(),
             node_at: &self.node_at,
-            work: &mut self.vector,
-            x,
+            work: self.vector.as_chunks_mut().0,
+            columns,
         });
     }
 
@@ -196,20 +209,66 @@ impl BlockCholesky {
     /// # Panics
     /// If `columns` has another length, or if the last factorization failed or never was.
     pub fn solve_many_in_place(&mut self, columns: &mut [f64], n_columns: usize) {
+        self.solve_columns(columns, n_columns, &[]);
+    }
+
+    /// Solves for many right-hand sides where only the unknowns of `selection` are wanted; what is left at other nodes
+    /// has no meaning. Allocates nothing.
+    ///
+    /// Backward substitution skips panels that no selected node depends on. Eight columns of unit vectors on the
+    /// boundary of a square of 64 x 64 quads, wanted on the boundary, take three quarters of the time they take everywhere.
+    ///
+    /// # Panics
+    /// Like [`solve_many_in_place`](Self::solve_many_in_place), and if the selection was made by another analysis.
+    pub fn solve_many_for(&mut self, selection: &Selection, columns: &mut [f64], n_columns: usize) {
+        assert!(
+            selection.is_wanted.len() == self.panels.panels.len(),
+            "the selection was made by another analysis: select the nodes with this one"
+        );
+        self.solve_columns(columns, n_columns, &selection.is_wanted);
+    }
+
+    /// Finds out which part of the factor the unknowns of these nodes depend on.
+    ///
+    /// # Panics
+    /// If a node does not exist.
+    pub fn select(&self, nodes: impl IntoIterator<Item = usize>) -> Selection {
+        let mut is_wanted_node = vec![false; self.node_at.len()];
+        nodes
+            .into_iter()
+            .for_each(|node| is_wanted_node[node] = true);
+        let is_wanted_position: Vec<bool> = self
+            .node_at
+            .iter()
+            .map(|&node| is_wanted_node[node as usize])
+            .collect();
+        let is_wanted = self.panels.close_upwards(&is_wanted_position);
+        Selection { is_wanted }
+    }
+
+    fn solve_columns(&mut self, columns: &mut [f64], n_columns: usize, is_wanted: &[bool]) {
         self.assert_ready(columns.len(), n_columns);
         let n_dofs = self.n_dofs();
         for block in columns.chunks_mut((8 * n_dofs).max(1)) {
-            if block.len() == n_dofs {
-                self.solve_in_place(block);
-                continue;
+            match block.len() / n_dofs {
+                1 => {
+                    self.solve_few::<1>(block);
+                    continue;
+                }
+                2 => {
+                    self.solve_few::<2>(block);
+                    continue;
+                }
+                _ => {}
             }
             self.rows_are_zero = false;
             self.arch.dispatch(solve::SolveEight {
                 panels: &self.panels,
-                values: &self.values,
+                values: self.values.get(),
                 node_at: &self.node_at,
                 work: &mut self.rows,
                 columns: block,
+                is_wanted,
             });
         }
     }
@@ -279,23 +338,27 @@ mod tests {
             panels: &plain.panels,
             sources: &plain.sources,
             blocks: matrix.blocks(),
-            values: &mut plain.values,
+            values: plain.values.get_mut(),
             rows: &mut plain.rows,
         };
         assert!(factorize.with_simd(Scalar::new()).is_ok());
-        assert_eq!(wide.values, plain.values);
+        assert_eq!(wide.values.get(), plain.values.get());
 
         let load: Vec<f64> = (0..matrix.n_dofs()).map(|dof| (dof as f64).cos()).collect();
-        let (mut x, mut y) = (load.clone(), load);
+        let (mut x, mut y) = (load.clone(), load.clone());
         wide.solve_in_place(&mut x);
-        let solve = solve::SolveOne {
+        let solve = solve::SolveFew::<1> {
             panels: &plain.panels,
-            values: &plain.values,
+            values: plain.values.get(),
             node_at: &plain.node_at,
-            work: &mut plain.vector,
-            x: &mut y,
+            work: plain.vector.as_chunks_mut().0,
+            columns: &mut y,
         };
         solve.with_simd(Scalar::new());
         assert_eq!(x, y);
+        // A second right-hand side must not show either.
+        let mut pair = [load.clone(), load].concat();
+        wide.solve_many_in_place(&mut pair, 2);
+        assert_eq!(pair, [y.clone(), y].concat());
     }
 }

@@ -1,131 +1,218 @@
-//! Substitution: `L y = P b`, then `Lᵀ P x = y`, one right-hand side or eight at a time.
+//! Substitution: `L y = P b`, then `Lᵀ P x = y`, one, two or eight right-hand sides at a time.
 //!
 //! Forwards, a panel solves for its own dofs and subtracts from the rows below; backwards, it
 //! gathers the rows below and then solves. Its diagonal block is kept as an inverse, so solving is
 //! multiplying, without divisions in line. `K` is the number of dof columns of a panel.
 
 use super::factor::{NodeRow, subtract_product};
-use super::panels::{Panel, Panels};
-use faer::traits::pulp::{Simd, WithSimd};
+use super::panels::{Panel, Panels, View};
+use faer::traits::pulp::{Scalar, Simd, WithSimd};
 
-/// The solve for one right-hand side, as a task for one instruction set.
-pub(super) struct SolveOne<'a> {
+/// The solve for `R` right-hand sides, one or two, as a task for one instruction set.
+///
+/// A second right-hand side costs less than the first, because a panel comes from far memory once
+/// for both.
+pub(super) struct SolveFew<'a, const R: usize> {
     pub panels: &'a Panels,
     pub values: &'a [[f64; 4]],
     pub node_at: &'a [u32],
-    /// In elimination order. The last node stands for rows that fill up a pair and stays zero.
-    pub work: &'a mut [[f64; 2]],
-    pub x: &'a mut [f64],
+    /// In elimination order. The last node stands for rows that fill up a pair.
+    pub work: &'a mut [[[f64; 2]; R]],
+    /// Column-major.
+    pub columns: &'a mut [f64],
 }
 
-impl WithSimd for SolveOne<'_> {
+impl<const R: usize> WithSimd for SolveFew<'_, R> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, _: S) {
-        for (y, &node) in self.work.iter_mut().zip(self.node_at) {
-            y.copy_from_slice(&self.x[2 * node as usize..][..2]);
+    fn with_simd<S: Simd>(self, simd: S) {
+        // A tile has four rows: wider registers than that are left to the compiler.
+        if S::F64_LANES > 4 {
+            self.run(Scalar::new());
+        } else {
+            self.run(simd);
         }
+    }
+}
+
+impl<const R: usize> SolveFew<'_, R> {
+    #[inline(always)]
+    fn run<S: Simd>(mut self, simd: S) {
+        let n_nodes = self.node_at.len();
+        for (r, column) in self.columns.chunks_exact((2 * n_nodes).max(1)).enumerate() {
+            for (y, &node) in self.work.iter_mut().zip(self.node_at) {
+                y[r].copy_from_slice(&column[2 * node as usize..][..2]);
+            }
+        }
+        self.work[n_nodes] = [[0.0; 2]; R];
         for panel in &self.panels.panels {
             match panel.width {
-                1 => self.forward::<2>(panel),
-                2 => self.forward::<4>(panel),
-                3 => self.forward::<6>(panel),
-                _ => self.forward::<8>(panel),
+                1 => self.forward::<S, 2>(simd, panel),
+                2 => self.forward::<S, 4>(simd, panel),
+                3 => self.forward::<S, 6>(simd, panel),
+                _ => self.forward::<S, 8>(simd, panel),
             }
         }
         for panel in self.panels.panels.iter().rev() {
             match panel.width {
-                1 => self.backward::<2>(panel),
-                2 => self.backward::<4>(panel),
-                3 => self.backward::<6>(panel),
-                _ => self.backward::<8>(panel),
+                1 => self.backward::<S, 2>(simd, panel),
+                2 => self.backward::<S, 4>(simd, panel),
+                3 => self.backward::<S, 6>(simd, panel),
+                _ => self.backward::<S, 8>(simd, panel),
             }
         }
-        for (y, &node) in self.work.iter().zip(self.node_at) {
-            self.x[2 * node as usize..][..2].copy_from_slice(y);
-        }
-    }
-}
-
-impl SolveOne<'_> {
-    #[inline(always)]
-    fn forward<const K: usize>(&mut self, panel: &Panel) {
-        let view = self.panels.view::<K>(panel, self.values);
-        let own = self.work[panel.first as usize..][..K / 2].as_flattened_mut();
-        let mut y = [0.0; K];
-        y.copy_from_slice(own);
-        let mut solved = [0.0; 8];
-        for (tile, out) in view
-            .diagonal
-            .chunks_exact(K)
-            .zip(solved.chunks_exact_mut(4))
+        for (r, column) in self
+            .columns
+            .chunks_exact_mut((2 * n_nodes).max(1))
+            .enumerate()
         {
-            out.copy_from_slice(&multiply_tile(tile, &y));
+            for (y, &node) in self.work.iter().zip(self.node_at) {
+                column[2 * node as usize..][..2].copy_from_slice(&y[r]);
+            }
         }
-        y.copy_from_slice(&solved[..K]);
-        own.copy_from_slice(&y);
-        for (tile, pair) in view.tiles.chunks_exact(K).zip(view.indices.chunks_exact(2)) {
-            let product = multiply_tile(tile, &y);
-            let upper = &mut self.work[pair[0] as usize];
-            upper[0] -= product[0];
-            upper[1] -= product[1];
-            let lower = &mut self.work[pair[1] as usize];
-            lower[0] -= product[2];
-            lower[1] -= product[3];
+    }
+
+    /// Solves for the dofs of a panel and subtracts from the rows below; nothing while they are
+    /// zero, as most are under a load on a few nodes.
+    #[inline(always)]
+    fn forward<S: Simd, const K: usize>(&mut self, simd: S, panel: &Panel) {
+        let first = panel.first as usize;
+        let own = first..first + K / 2;
+        let view = self.panels.view::<K>(panel, self.values);
+        for r in 0..R {
+            let mut y = [0.0; 8];
+            for (y, node) in y.chunks_exact_mut(2).zip(&self.work[own.clone()]) {
+                y.copy_from_slice(&node[r]);
+            }
+            if y == [0.0; 8] {
+                continue;
+            }
+            let factors = y.map(|y| simd.splat_f64s(y));
+            for (t, tile) in view.diagonal.as_chunks::<K>().0.iter().enumerate() {
+                // The inverse is lower triangular: a tile ends with its last row.
+                let solved = match t {
+                    0 if K > 4 => multiply::<S, 4>(simd, &tile[..4], &factors),
+                    _ => multiply::<S, K>(simd, tile, &factors),
+                };
+                y[4 * t..4 * t + 4].copy_from_slice(&solved);
+            }
+            for (y, node) in y.chunks_exact(2).zip(&mut self.work[own.clone()]) {
+                node[r].copy_from_slice(y);
+            }
+            let factors = y.map(|y| simd.splat_f64s(y));
+            for (tile, pair) in tiles_of::<K>(&view) {
+                let product = multiply::<S, K>(simd, tile, &factors);
+                let upper = &mut self.work[pair[0] as usize][r];
+                upper[0] -= product[0];
+                upper[1] -= product[1];
+                let lower = &mut self.work[pair[1] as usize][r];
+                lower[0] -= product[2];
+                lower[1] -= product[3];
+            }
+        }
+    }
+
+    /// Gathers the rows below a panel, last row first so that memory is read in one direction, and
+    /// solves for its dofs.
+    #[inline(always)]
+    fn backward<S: Simd, const K: usize>(&mut self, simd: S, panel: &Panel) {
+        let first = panel.first as usize;
+        let own = first..first + K / 2;
+        let view = self.panels.view::<K>(panel, self.values);
+        for r in 0..R {
+            let mut sums = Sums::<S, K>::new(simd);
+            for (tile, pair) in tiles_of::<K>(&view).rev() {
+                let [x0, x1] = self.work[pair[0] as usize][r];
+                let [x2, x3] = self.work[pair[1] as usize][r];
+                sums.add(simd, tile, &[x0, x1, x2, x3]);
+            }
+            let mut y = [0.0; 8];
+            for (y, node) in y.chunks_exact_mut(2).zip(&self.work[own.clone()]) {
+                y.copy_from_slice(&node[r]);
+            }
+            for (y, sum) in y.iter_mut().zip(sums.totals()) {
+                *y -= sum;
+            }
+            let mut sums = Sums::<S, K>::new(simd);
+            for (tile, y) in view.diagonal.as_chunks::<K>().0.iter().zip(y.as_chunks().0) {
+                sums.add(simd, tile, y);
+            }
+            let totals = sums.totals();
+            for (x, node) in totals.chunks_exact(2).zip(&mut self.work[own.clone()]) {
+                node[r].copy_from_slice(x);
+            }
+        }
+    }
+}
+
+/// The tiles below a panel, each with the two nodes whose rows it holds.
+#[inline(always)]
+fn tiles_of<'a, const K: usize>(
+    view: &View<'a>,
+) -> impl DoubleEndedIterator<Item = (&'a [[f64; 4]; K], &'a [u32; 2])> {
+    let (tiles, pairs) = (view.tiles.as_chunks::<K>().0, view.indices.as_chunks().0);
+    tiles.iter().zip(pairs)
+}
+
+/// The first `K` columns of a tile times as many numbers, each spread over a register.
+///
+/// Even and odd columns are summed apart so that two chains of additions run side by side. Written
+/// with explicit registers: left alone, the compiler halves and transposes them.
+#[inline(always)]
+fn multiply<S: Simd, const K: usize>(
+    simd: S,
+    tile: &[[f64; 4]],
+    factors: &[S::f64s; 8],
+) -> [f64; 4] {
+    let mut product = [0.0; 4];
+    for (part, out) in S::as_mut_simd_f64s(&mut product).0.iter_mut().enumerate() {
+        let term = |k: usize| simd.mul_f64s(S::as_simd_f64s(&tile[k]).0[part], factors[k]);
+        let (mut even, mut odd) = (term(0), term(1));
+        for k in (2..K).step_by(2) {
+            even = simd.add_f64s(even, term(k));
+            odd = simd.add_f64s(odd, term(k + 1));
+        }
+        *out = simd.add_f64s(even, odd);
+    }
+    product
+}
+
+/// The products of each column of some tiles with numbers for their rows, not yet added up.
+struct Sums<S: Simd, const K: usize> {
+    /// Four numbers a column: the first `4 / F64_LANES` registers.
+    columns: [[S::f64s; 4]; K],
+}
+
+impl<S: Simd, const K: usize> Sums<S, K> {
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        let columns = [[simd.splat_f64s(0.0); 4]; K];
+        Self { columns }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, simd: S, tile: &[[f64; 4]; K], x: &[f64; 4]) {
+        let x = S::as_simd_f64s(x).0;
+        for (sums, column) in self.columns.iter_mut().zip(tile) {
+            let column = S::as_simd_f64s(column).0;
+            for ((sum, column), x) in sums.iter_mut().zip(column).zip(x) {
+                *sum = simd.add_f64s(*sum, simd.mul_f64s(*column, *x));
+            }
         }
     }
 
     #[inline(always)]
-    fn backward<const K: usize>(&mut self, panel: &Panel) {
-        let view = self.panels.view::<K>(panel, self.values);
-        let mut sums = [[0.0; 4]; K];
-        for (tile, pair) in view.tiles.chunks_exact(K).zip(view.indices.chunks_exact(2)) {
-            let [x0, x1] = self.work[pair[0] as usize];
-            let [x2, x3] = self.work[pair[1] as usize];
-            add_transposed(tile, &[x0, x1, x2, x3], &mut sums);
-        }
-        let own = self.work[panel.first as usize..][..K / 2].as_flattened_mut();
-        let mut y = [0.0; 8];
-        for ((y, own), sum) in y.iter_mut().zip(own.iter()).zip(&sums) {
-            *y = own - add_up(sum);
-        }
-        let mut sums = [[0.0; 4]; K];
-        for (tile, y) in view.diagonal.chunks_exact(K).zip(y.chunks_exact(4)) {
-            add_transposed(tile, &[y[0], y[1], y[2], y[3]], &mut sums);
-        }
-        for (own, sum) in own.iter_mut().zip(&sums) {
-            *own = add_up(sum);
-        }
+    fn totals(&self) -> [f64; K] {
+        std::array::from_fn(|k| {
+            let mut entries = [0.0; 4];
+            let parts = S::as_mut_simd_f64s(&mut entries).0;
+            for (part, sum) in parts.iter_mut().zip(&self.columns[k]) {
+                *part = *sum;
+            }
+            (entries[0] + entries[2]) + (entries[1] + entries[3])
+        })
     }
-}
-
-/// `tile * y`, even and odd columns apart so that two chains of additions run side by side.
-#[inline(always)]
-fn multiply_tile<const K: usize>(tile: &[[f64; 4]], y: &[f64; K]) -> [f64; 4] {
-    let (mut even, mut odd) = ([0.0; 4], [0.0; 4]);
-    for (columns, y) in tile.chunks_exact(2).zip(y.chunks_exact(2)) {
-        for q in 0..4 {
-            even[q] += columns[0][q] * y[0];
-            odd[q] += columns[1][q] * y[1];
-        }
-    }
-    std::array::from_fn(|q| even[q] + odd[q])
-}
-
-/// Adds to each column's sums the products of its entries with `x`.
-#[inline(always)]
-fn add_transposed<const K: usize>(tile: &[[f64; 4]], x: &[f64; 4], sums: &mut [[f64; 4]; K]) {
-    for (sum, column) in sums.iter_mut().zip(tile) {
-        for q in 0..4 {
-            sum[q] += column[q] * x[q];
-        }
-    }
-}
-
-#[inline(always)]
-fn add_up(sum: &[f64; 4]) -> f64 {
-    (sum[0] + sum[2]) + (sum[1] + sum[3])
 }
 
 /// The solve for up to eight right-hand sides, as a task for one instruction set.
@@ -137,6 +224,8 @@ pub(super) struct SolveEight<'a> {
     pub work: &'a mut [NodeRow],
     /// Column-major, at most eight columns.
     pub columns: &'a mut [f64],
+    /// For each panel whether its unknowns are wanted; empty if all are.
+    pub is_wanted: &'a [bool],
 }
 
 impl WithSimd for SolveEight<'_> {
@@ -146,7 +235,7 @@ impl WithSimd for SolveEight<'_> {
     fn with_simd<S: Simd>(mut self, _: S) {
         let n_nodes = self.node_at.len();
         self.work.fill([0.0; 16]);
-        for (k, column) in self.columns.chunks_exact(2 * n_nodes).enumerate() {
+        for (k, column) in self.columns.chunks_exact((2 * n_nodes).max(1)).enumerate() {
             for (row, &node) in self.work.iter_mut().zip(self.node_at) {
                 let entries = &column[2 * node as usize..][..2];
                 row[k] = entries[0];
@@ -161,7 +250,10 @@ impl WithSimd for SolveEight<'_> {
                 _ => self.forward::<8>(panel),
             }
         }
-        for panel in self.panels.panels.iter().rev() {
+        for (index, panel) in self.panels.panels.iter().enumerate().rev() {
+            if self.is_wanted.get(index) == Some(&false) {
+                continue;
+            }
             match panel.width {
                 1 => self.backward::<2>(panel),
                 2 => self.backward::<4>(panel),
@@ -169,7 +261,11 @@ impl WithSimd for SolveEight<'_> {
                 _ => self.backward::<8>(panel),
             }
         }
-        for (k, column) in self.columns.chunks_exact_mut(2 * n_nodes).enumerate() {
+        for (k, column) in self
+            .columns
+            .chunks_exact_mut((2 * n_nodes).max(1))
+            .enumerate()
+        {
             for (row, &node) in self.work.iter().zip(self.node_at) {
                 column[2 * node as usize..][..2].copy_from_slice(&[row[k], row[8 + k]]);
             }
