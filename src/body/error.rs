@@ -97,7 +97,7 @@ pub enum FlexBodyError {
     NotFinite(&'static str),
     /// The world does not hold the body's carrier.
     #[error(
-        "the world given does not hold the carrier of {0:?}: use the world it was inserted into, and remove the body from its set first"
+        "the world given does not hold the carrier of {0:?} as it was left: use the world it was inserted into, leave the pose and shape of its carrier alone, and remove the body from its set first"
     )]
     NoCarrier(FlexBodyHandle),
 }

@@ -3,22 +3,13 @@
 use super::contact_settings::ContactSettings;
 use super::error::FlexBodyError;
 use super::frame::{Arms, Frame};
-use super::state::FlexState;
+use super::state::{BodyEnergy, FlexState};
 use crate::fe::mesh::Mesh;
 use crate::fe::model::{Model, ModelError};
 use crate::fe::recovery::Stress;
 use crate::math::{Vec2, cross, node_vec};
 use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
 use std::sync::Arc;
-
-/// Energy of a body (J).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BodyEnergy {
-    /// Kinetic energy.
-    pub kinetic: f64,
-    /// Elastic energy.
-    pub elastic: f64,
-}
 
 /// A flexible body.
 #[derive(Debug)]
@@ -410,6 +401,13 @@ impl FlexBody {
         if !give(&mut self.state, &self.nodal_force, &self.prescribed)
             || !self.state.has_finite_accelerations()
         {
+            self.state.clear_accelerations();
+        }
+    }
+
+    /// Takes back what [`FlexBody::start_with`] gave, if no step has been committed since.
+    pub(crate) fn forget_start(&mut self) {
+        if !self.is_started {
             self.state.clear_accelerations();
         }
     }

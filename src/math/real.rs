@@ -14,3 +14,9 @@ pub fn from_rapier(v: Vector) -> Vec2 {
 pub fn to_rapier(v: Vec2) -> Vector {
     Vector::new(v.x as Real, v.y as Real)
 }
+
+/// Whether rapier's precision holds a number and its square, with room for the sums of its boxes.
+#[inline]
+pub fn is_held(value: f64) -> bool {
+    value.abs() <= (Real::MAX as f64).sqrt() / 16.0
+}
