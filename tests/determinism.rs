@@ -130,12 +130,6 @@ impl Scene {
     }
 }
 
-fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
-    assert_eq!(one.len(), other.len());
-    let differences = one.iter().zip(other).map(|(a, b)| (a - b).abs());
-    differences.fold(0.0, f64::max)
-}
-
 #[test]
 fn the_same_scene_gives_the_same_bits_at_every_step() -> Result<(), BuildError> {
     let order = [0, 1, 2, 3];
@@ -165,33 +159,21 @@ fn a_scene_stepped_on_another_thread_gives_the_same_bits() -> Result<(), BuildEr
 }
 
 #[test]
-fn the_order_of_insertion_changes_round_off_only() -> Result<(), BuildError> {
-    // All bodies rest, rock, roll or slide on others. Where an order enters at all (rows of a system, the choice of the
-    // contactor, slots of rapier's sets), sums are rounded differently, and nothing here multiplies round-off fast.
-    // Rapier's f32 poses are rounded the same way in every order, so the same bar (m, m/s) holds for both precisions.
-    let tolerance = 1e-9;
+fn the_order_of_insertion_changes_no_bit() -> Result<(), BuildError> {
+    // Members of an island are visited in the order of their places, and rapier's own bodies only meet the floor.
     let mut reference = scene([0, 1, 2, 3], [0, 1, 2, 3])?;
     let mut others = [
         scene([3, 2, 1, 0], [0, 1, 2, 3])?,
         scene([0, 1, 2, 3], [3, 1, 0, 2])?,
         scene([2, 0, 3, 1], [2, 3, 1, 0])?,
     ];
-    let mut largest = [0.0f64; 2];
-    for step in 0..90 {
+    for step in 0..300 {
         reference.step();
-        let expected = reference.state();
+        let expected = reference.hash();
         for (index, other) in others.iter_mut().enumerate() {
             other.step();
-            let found = other.state();
-            let differences =
-                [0, 1].map(|which| largest_difference(&expected[which], &found[which]));
-            let is_close = differences
-                .iter()
-                .all(|difference| *difference <= tolerance);
-            assert!(is_close, "order {index}, step {step}: {differences:?}");
-            largest = [0, 1].map(|which| largest[which].max(differences[which]));
+            assert_eq!(expected, other.hash(), "order {index}, step {step}");
         }
     }
-    println!("{:.1e} m and {:.1e} m/s apart", largest[0], largest[1]);
     Ok(())
 }

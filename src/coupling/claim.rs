@@ -50,9 +50,10 @@ pub(crate) struct Claims {
     /// Component of every member: flexible bodies first, then rigid ones.
     parent: Vec<usize>,
     rigid_index: HashMap<RigidBodyHandle, usize>,
-    flex_of_collider: HashMap<ColliderHandle, usize>,
+    pub(super) flex_of_collider: HashMap<ColliderHandle, usize>,
     seen: HashSet<(ColliderHandle, ColliderHandle)>,
-    swept_hits: Vec<(usize, ColliderHandle)>,
+    /// What the swept boxes meet, by flexible body.
+    pub(super) swept_hits: Vec<(usize, ColliderHandle)>,
     neighbours: Vec<ColliderHandle>,
 }
 
@@ -109,7 +110,7 @@ impl Claims {
     }
 
     /// Finds what the swept boxes meet, with rapier's tree, after the detection step has taken over the user's changes.
-    fn sweep(&mut self, sets: &RapierSets<'_>) {
+    pub fn sweep(&mut self, sets: &RapierSets<'_>) {
         self.swept_hits.clear();
         let dt = sets.integration_parameters.dt;
         let rigid = sets
@@ -155,7 +156,7 @@ impl Claims {
         self.swept_hits.sort_unstable_by_key(|(index, _)| *index);
     }
 
-    /// Walks the contact graph of the detection step.
+    /// Walks the contact graph from what the swept boxes met.
     pub fn walk(&mut self, sets: &RapierSets<'_>) {
         self.rigid.clear();
         self.rigid_index.clear();
@@ -163,7 +164,6 @@ impl Claims {
         self.seen.clear();
         self.parent.clear();
         self.parent.extend(0..self.flex.len());
-        self.sweep(sets);
         for flex in 0..self.flex.len() {
             self.collect_neighbours(sets, flex);
             for slot in 0..self.neighbours.len() {
@@ -421,12 +421,18 @@ fn loosened(aabb: Aabb, margin: Real) -> Aabb {
     aabb.loosened(margin.max(0.0))
 }
 
+/// Pose of a collider on its body, up to date even where the user has moved the body since the last step.
+pub(super) fn placed_on(body: &RigidBody, collider: &Collider) -> Pose {
+    let offset = collider.position_wrt_parent().copied().unwrap_or_default();
+    *body.position() * offset
+}
+
 /// Box of a collider from where it is to where its velocity takes it.
 pub(crate) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) -> Aabb {
-    let aabb = collider.compute_aabb();
     let Some(body) = collider.parent().and_then(|parent| bodies.get(parent)) else {
-        return aabb;
+        return collider.compute_aabb();
     };
+    let aabb = collider.shape().compute_aabb(&placed_on(body, collider));
     if body.is_fixed() {
         return aabb;
     }

@@ -8,6 +8,7 @@ mod claim;
 mod gather;
 mod hand_back;
 mod masters;
+mod nearby;
 mod reading;
 mod sets;
 mod shapes;

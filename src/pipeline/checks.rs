@@ -73,13 +73,8 @@ impl FlexPipeline {
         Ok(())
     }
 
-    /// Leaves no trace of a step that failed after the detection step, before which energy of `dissipated` was lost (J).
-    pub(super) fn undo(
-        &mut self,
-        sets: &mut RapierSets<'_>,
-        flex_bodies: &mut FlexBodySet,
-        dissipated: f64,
-    ) {
+    /// Leaves no trace of a step that failed, before which energy of `dissipated` was lost (J).
+    pub(super) fn undo(&mut self, flex_bodies: &mut FlexBodySet, dissipated: f64) {
         self.landings.clear();
         self.reserves.clear();
         self.memory.discard_notes();
@@ -88,8 +83,5 @@ impl FlexPipeline {
         for (_, body) in flex_bodies.iter_mut() {
             body.forget_start();
         }
-        // The first detection step may have taken the tree out to be optimized; one without changes puts it back, so
-        // that queries work.
-        sets.detect();
     }
 }

@@ -194,20 +194,28 @@ impl FlexPipeline {
         let dissipated = self.report.energy.dissipated;
         let step = self.check(&sets, flex_bodies)?;
         self.claims.look_ahead(&sets, flex_bodies);
+        let is_detected = step.dt == 0.0 || self.claims.needs_detection(&sets);
         clock.lap(&mut self.report.times.claim);
-        sets.detect();
-        clock.lap(&mut self.report.times.rapier);
-        self.report.note_quarantine(&sets);
-        if step.dt == 0.0 {
-            // The tree may be out to be optimized: a detection step without changes puts it back for queries.
+        if is_detected {
             sets.detect();
-            return Ok(&self.report);
+            self.report.note_quarantine(&sets);
+            clock.lap(&mut self.report.times.rapier);
+            if step.dt == 0.0 {
+                // The tree may be out to be optimized: a detection step without changes puts it back for queries.
+                sets.detect();
+                return Ok(&self.report);
+            }
+            self.claims.sweep(&sets);
         }
         self.claims.walk(&sets);
         self.gatherer.retain(&sets, flex_bodies);
         clock.lap(&mut self.report.times.claim);
         if let Err(error) = self.solve_islands(step, &sets, flex_bodies, &mut clock) {
-            self.undo(&mut sets, flex_bodies, dissipated);
+            self.undo(flex_bodies, dissipated);
+            if is_detected {
+                // As above.
+                sets.detect();
+            }
             return Err(error);
         }
         hand_back(&mut self.landings, &mut sets);
