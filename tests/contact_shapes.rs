@@ -134,6 +134,99 @@ fn a_flexible_plate_on_two_balls_shares_its_weight() {
     }
 }
 
+/// Bodies that stand by themselves with their lowest points at height `-foot`, with their names.
+fn bodies() -> Vec<(&'static str, ColliderBuilder, f64)> {
+    let p = vec2;
+    let pentagon = [p(-0.22, 0.0), p(0.22, 0.0), p(0.4, 0.3), p(-0.4, 0.3)];
+    let parts = vec![
+        (
+            Pose::from_translation(p(-0.3, 0.1)),
+            SharedShape::cuboid(0.12, 0.1),
+        ),
+        (Pose::from_translation(p(0.3, 0.1)), SharedShape::ball(0.1)),
+        (
+            Pose::from_translation(p(0.0, 0.25)),
+            SharedShape::cuboid(0.4, 0.05),
+        ),
+    ];
+    let [a, b, c] = [p(-0.33, 0.0), p(0.33, 0.0), p(0.0, 0.4)];
+    let hull = ColliderBuilder::convex_hull(&pentagon);
+    let round_hull = ColliderBuilder::round_convex_hull(&pentagon, 0.05);
+    vec![
+        ("ball", ColliderBuilder::ball(0.2), 0.2),
+        ("cuboid", ColliderBuilder::cuboid(0.27, 0.2), 0.2),
+        (
+            "round cuboid",
+            ColliderBuilder::round_cuboid(0.22, 0.15, 0.05),
+            0.2,
+        ),
+        ("capsule", ColliderBuilder::capsule_x(0.27, 0.1), 0.1),
+        ("triangle", ColliderBuilder::triangle(a, b, c), 0.0),
+        (
+            "round triangle",
+            ColliderBuilder::round_triangle(a, b, c, 0.05),
+            0.05,
+        ),
+        ("convex polygon", hull.expect("a hull"), 0.0),
+        ("round convex polygon", round_hull.expect("a hull"), 0.05),
+        ("compound", ColliderBuilder::compound(parts), 0.0),
+    ]
+}
+
+#[test]
+fn every_shape_dropped_on_a_flexible_slab_comes_to_rest() {
+    let mut findings = Findings::default();
+    for (young, rate) in [(1e7, 60.0), (1e7, 240.0), (2e11, 60.0)] {
+        // On a node of the slab's surface, and between two.
+        for x in [1.5, 1.437] {
+            for (name, collider, foot) in bodies() {
+                let mut scene = Scene::new(1.0 / rate);
+                let slab = scene.flexible(
+                    FlexBodyBuilder::rectangle([3.0, 0.5], [30, 5])
+                        .material(
+                            LinearElastic::plane_stress(young, 0.3)
+                                .density(1000.0)
+                                .rayleigh(1e-2 * (1e7 / young).sqrt()),
+                        )
+                        .pin_where(|[_, y]| y == 0.0, Pin::both()),
+                );
+                // The ball would roll to and fro in its own hollow for long.
+                let damping = if name == "ball" { 5.0 } else { 0.0 };
+                let (body, collider) = scene.rigid(
+                    RigidBodyBuilder::dynamic()
+                        .translation(vec2(x, 0.52 + foot))
+                        .angular_damping(damping),
+                    collider.density(1000.0),
+                );
+                let mut gap = 0.0f64;
+                for _ in 0..(3.0 * rate) as usize {
+                    gap = gap.max(scene.step().gap_violation());
+                }
+                let case = format!("{name} at {x}, E {young:e}, dt 1/{rate}");
+                let weight = scene.mass(body) * G;
+                let [fx, fy] = scene.force_on_collider(collider);
+                let error = (fx / weight).abs().max((fy / weight - 1.0).abs());
+                findings.check(error < 1e-3, || format!("{case}: force off by {error:e}"));
+                findings.check(gap <= gap_tolerance(), || {
+                    format!("{case}: overlap of {gap:e} m")
+                });
+                // Every contact pushes the body up and the slab down.
+                let rises = scene.report().contacts().iter().all(|contact| {
+                    let is_body = contact.contactor == Participant::Rigid(collider);
+                    let sign = if is_body { 1.0 } else { -1.0 };
+                    sign * contact.normal[1] > 0.9
+                });
+                findings.check(rises, || format!("{case}: a normal does not point up"));
+                let opposite = scene.force_on_flexible(slab)[1] + fy;
+                findings.check(opposite.abs() < 1e-9 * weight, || {
+                    format!("{case}: action and reaction differ by {opposite:e} N")
+                });
+            }
+        }
+    }
+    findings.report();
+}
+
 #[test]
 fn a_moving_platform_carries_a_flexible_block() {
     for young in [1e6, 1e9] {

@@ -8,6 +8,8 @@ mod fuzz;
 mod loads;
 #[path = "pipeline/rapier_features.rs"]
 mod rapier_features;
+#[path = "pipeline/stability.rs"]
+mod stability;
 #[path = "pipeline/support.rs"]
 mod support;
 #[path = "pipeline/time.rs"]

@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use foil2d::pipeline::ContactReport;
+use foil2d::pipeline::{ContactReport, Participant};
 
 /// A rigid box of half extents `half` (m), density 0 but for its `mass` (kg).
 fn boxed(
@@ -19,6 +19,121 @@ fn boxed(
             .mass(real(mass))
             .friction(0.5),
     )
+}
+
+/// Upward force of one participant on another (N).
+fn upward(contacts: &[ContactReport], below: Participant, above: Participant) -> f64 {
+    contacts
+        .iter()
+        .map(|contact| {
+            let [nx, ny] = contact.normal;
+            let force = contact.normal_force * ny + contact.tangential_force * nx;
+            if (contact.contactor, contact.target) == (above, below) {
+                force
+            } else if (contact.contactor, contact.target) == (below, above) {
+                -force
+            } else {
+                0.0
+            }
+        })
+        .sum()
+}
+
+/// Three boxes on a beam of 4 m × 0.2 m with its lower corners pinned; largest errors of the three interfaces' forces in
+/// the last ten seconds of a minute, relative to the weight above.
+fn three_boxes(masses: [f64; 3], x: f64, dt: f64) -> f64 {
+    let mut scene = Scene::new(dt);
+    let beam = scene.flexible(
+        FlexBodyBuilder::rectangle([4.0, 0.2], [40, 4])
+            .material(
+                LinearElastic::plane_stress(1e10, 0.3)
+                    .density(1000.0)
+                    .rayleigh(0.02),
+            )
+            .pin_where(|[x, y]| y == 0.0 && (x == 0.0 || x == 4.0), Pin::both()),
+    );
+    let boxes: Vec<_> = (0..3)
+        .map(|k| boxed(&mut scene, [x, 0.4 + 0.4 * k as f64], [0.2, 0.2], masses[k]))
+        .collect();
+    let mut worst = 0.0f64;
+    let steps = (60.0 / dt) as usize;
+    for step in 0..steps {
+        scene.step();
+        if step < steps - (10.0 / dt) as usize {
+            continue;
+        }
+        let mut below = Participant::Flex(beam);
+        for k in 0..3 {
+            let own = Participant::Rigid(boxes[k].1);
+            let force = upward(scene.report().contacts(), below, own);
+            worst = worst.max((force / (masses[k..].iter().sum::<f64>() * G) - 1.0).abs());
+            below = own;
+        }
+    }
+    for (k, (body, _)) in boxes.iter().enumerate() {
+        let body = &scene.world.bodies[*body];
+        let off = f64::from(body.translation().x) - x;
+        assert!(off.abs() < 0.01, "box {k} is {off} m beside its place");
+        assert!(
+            body.linvel().length() < 1e-4,
+            "box {k} moves at {:?}",
+            body.linvel()
+        );
+    }
+    worst
+}
+
+#[test]
+fn three_boxes_of_one_weight_stand_on_a_beam_for_a_minute() {
+    // Once between the nodes of the beam and once with the boxes' corners exactly above nodes.
+    for x in [2.03, 2.0] {
+        let error = three_boxes([100.0; 3], x, 1.0 / 60.0);
+        assert!(error < 1e-3, "x {x}: forces are off by {error:e}");
+    }
+}
+
+#[test]
+fn a_box_a_thousand_times_heavier_stands_on_two_light_ones_on_a_beam_for_a_minute() {
+    for x in [2.03, 2.0] {
+        let error = three_boxes([10.0, 10.0, 10_000.0], x, 1.0 / 60.0);
+        assert!(error < 1e-3, "x {x}: forces are off by {error:e}");
+    }
+}
+
+#[test]
+fn a_body_a_million_times_heavier_on_a_light_one_presses_with_the_total_weight() {
+    let mut findings = Findings::default();
+    // B22, on a flexible block that the weight squeezes by 1 %, or hardly.
+    for (young, dt) in [(1e9, 1.0 / 60.0), (1e11, 1.0 / 60.0), (1e11, 1.0 / 500.0)] {
+        let mut scene = Scene::new(dt);
+        let ground = scene.ground(0.5);
+        let block = scene.flexible(
+            FlexBodyBuilder::rectangle([1.0, 1.0], [8, 8]).material(
+                LinearElastic::plane_stress(young, 0.3)
+                    .density(1000.0)
+                    .rayleigh(5e-3),
+            ),
+        );
+        let (light, _) = boxed(&mut scene, [0.507, 1.1], [0.3, 0.1], 1.0);
+        let (heavy, _) = boxed(&mut scene, [0.507, 1.5], [0.3, 0.3], 1e6);
+        scene.steps((10.0 / dt) as usize);
+        let places = [light, heavy].map(|body| scene.world.bodies[body].translation());
+        scene.steps((10.0 / dt) as usize);
+        let total = G * (1e6 + 1.0 + scene.body(block).mass());
+        let (own, floor) = (Participant::Flex(block), Participant::Rigid(ground));
+        let force = upward(scene.report().contacts(), floor, own);
+        let error = (force / total - 1.0).abs();
+        findings.check(error < 1e-6, || {
+            format!("E {young:e}, dt {dt}: off by {error:e}")
+        });
+        for (body, place) in [light, heavy].into_iter().zip(places) {
+            let drift = (scene.world.bodies[body].translation() - place).length();
+            findings.check(drift < 1e-6, || {
+                format!("E {young:e}, dt {dt}: drifts by {drift:e} m")
+            });
+        }
+    }
+    findings.report();
 }
 
 #[test]

@@ -77,6 +77,8 @@ impl FlexBody {
 
     /// Brings the split and the kinetic energy up to date with the nodal velocities.
     fn velocity_changed(&mut self) {
+        let near = self.state.frame.velocity;
+        self.state.frame.velocity = self.arms.centre(self.frame, &self.state.velocity, near);
         self.state.split_velocity(&self.arms, self.frame);
         let velocity = &self.state.velocity;
         self.state.kinetic_energy = 0.5 * self.model.mass().inner(velocity, velocity);

@@ -62,11 +62,32 @@ impl Arms {
     }
 
     /// Centre of the frame for nodal positions (or velocities) `dofs`.
-    pub fn centre(&self, frame: Frame, dofs: &[f64]) -> Vec2 {
+    ///
+    /// - `near`: the centre as far as it is known; a mean of differences from it is exact where a mean of large
+    ///   coordinates would drift by a rounding at every step.
+    pub fn centre(&self, frame: Frame, dofs: &[f64], near: Vec2) -> Vec2 {
         match frame {
             Frame::Fixed => Vec2::zeros(),
             Frame::Hinged(node) => node_vec(dofs, node),
-            Frame::Free => weighted_mean(&self.node_mass, self.mass, dofs),
+            Frame::Free => {
+                let mut sum = Vec2::zeros();
+                for (mass, p) in self.node_mass.iter().zip(dofs.chunks_exact(2)) {
+                    sum += *mass * (Vec2::new(p[0], p[1]) - near);
+                }
+                near + sum / self.mass
+            }
+        }
+    }
+
+    /// Takes the mean that the mass sees out of a local vector of a free body.
+    pub fn remove_mean(&self, frame: Frame, local: &mut [f64]) {
+        if frame != Frame::Free {
+            return;
+        }
+        let mean = weighted_mean(&self.node_mass, self.mass, local);
+        for value in local.chunks_exact_mut(2) {
+            value[0] -= mean.x;
+            value[1] -= mean.y;
         }
     }
 

@@ -95,64 +95,50 @@ impl FlexState {
         self.torque = 0.0;
     }
 
-    /// Splits world positions into the placement of the frame and displacements in it.
+    /// Splits world positions into the placement of the frame, whose centre is known, and displacements in it.
     ///
     /// Round-off would otherwise leave a rigid part in `u`, which a spinning frame would fling outwards.
     pub fn split_position(&mut self, arms: &Arms, kind: Frame) {
         if kind == Frame::Fixed {
             return;
         }
-        let centre = arms.centre(kind, &self.position);
+        let centre = self.frame.centre;
         let angle = arms.angle(&self.position, centre, self.frame.angle);
-        (self.frame.centre, self.frame.angle) = (centre, angle);
+        self.frame.angle = angle;
         let back = rotation(-angle);
         for node in 0..self.position.len() / 2 {
             let u =
                 back * (node_vec(&self.position, node) - centre) - node_vec(&arms.reference, node);
             set_node_vec(&mut self.displacement, node, u);
         }
+        arms.remove_mean(kind, &mut self.displacement);
     }
 
-    /// Splits world velocities into the motion of the frame and rates in it.
+    /// Splits world velocities into the motion of the frame, whose centre's velocity is known, and the rates
+    /// `u̇ = Rᵀ(v - ċ) - ω J (X + u)` left in it.
+    ///
+    /// The centre keeps its own velocity to the last digit: the mean of fast vibrations is rounding, and would add up.
     pub fn split_velocity(&mut self, arms: &Arms, kind: Frame) {
-        let motion = split_velocity(
-            arms,
-            kind,
-            &self.frame,
-            &self.position,
-            &self.velocity,
-            &mut self.rate,
-        );
-        (self.frame.velocity, self.frame.spin) = motion;
+        if kind == Frame::Fixed {
+            self.rate.copy_from_slice(&self.velocity);
+            (self.frame.velocity, self.frame.spin) = (Vec2::zeros(), 0.0);
+            return;
+        }
+        let (position, velocity) = (&self.position, &self.velocity);
+        let frame = &mut self.frame;
+        let back = rotation(-frame.angle);
+        let (mut momentum, mut inertia) = (0.0, 0.0);
+        for (node, moment) in arms.mass_moment.chunks_exact(2).enumerate() {
+            let moment = Vec2::new(moment[0], moment[1]);
+            momentum += cross(moment, back * (node_vec(velocity, node) - frame.velocity));
+            inertia += moment.dot(&(back * (node_vec(position, node) - frame.centre)));
+        }
+        frame.spin = momentum / inertia;
+        for node in 0..velocity.len() / 2 {
+            let arm = back * (node_vec(position, node) - frame.centre);
+            let own = back * (node_vec(velocity, node) - frame.velocity) - frame.spin * perp(arm);
+            set_node_vec(&mut self.rate, node, own);
+        }
+        arms.remove_mean(kind, &mut self.rate);
     }
-}
-
-/// Writes velocity of the centre and spin of the mass, and the rates `u̇ = Rᵀ(v - ċ) - ω J (X + u)` left in the frame.
-fn split_velocity(
-    arms: &Arms,
-    kind: Frame,
-    frame: &FrameMotion,
-    position: &[f64],
-    velocity: &[f64],
-    rate: &mut [f64],
-) -> (Vec2, f64) {
-    if kind == Frame::Fixed {
-        rate.copy_from_slice(velocity);
-        return (Vec2::zeros(), 0.0);
-    }
-    let centre = arms.centre(kind, velocity);
-    let back = rotation(-frame.angle);
-    let (mut momentum, mut inertia) = (0.0, 0.0);
-    for (node, moment) in arms.mass_moment.chunks_exact(2).enumerate() {
-        let moment = Vec2::new(moment[0], moment[1]);
-        momentum += cross(moment, back * (node_vec(velocity, node) - centre));
-        inertia += moment.dot(&(back * (node_vec(position, node) - frame.centre)));
-    }
-    let spin = momentum / inertia;
-    for node in 0..velocity.len() / 2 {
-        let arm = back * (node_vec(position, node) - frame.centre);
-        let own = back * (node_vec(velocity, node) - centre) - spin * perp(arm);
-        set_node_vec(rate, node, own);
-    }
-    (centre, spin)
 }

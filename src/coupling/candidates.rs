@@ -81,7 +81,7 @@ fn part_bounds(rigid: &RigidBlock, part: &PlacedPart) -> Bounds {
         let [low, high] = part.part.aabb(&world_pose(motion, part));
         Bounds { low, high }
     };
-    bounds(rigid.start()).merged(bounds(rigid.free_motion()))
+    bounds(rigid.start()).merged(bounds(&rigid.drift()))
 }
 
 /// Adds the parts of a collider to the island; `offset` is the collider's pose about its body's centre of mass.
@@ -140,9 +140,13 @@ pub(super) fn flex_rigid(
             let [a, b] = boundary.segments()[island.segments[slot] as usize];
             // Segments come in loop order: a node shared with the one before, or with the first, is listed already.
             let closes = slot > segments.0 && b == first_node;
-            let nodes = [(a != last_end).then_some(a), (!closes).then_some(b)];
+            let segment = island.segments[slot] as usize;
+            let nodes = [
+                (a != last_end).then_some((a, segment)),
+                (!closes).then(|| (b, boundary.next_segment(segment))),
+            ];
             last_end = b;
-            for node in nodes.into_iter().flatten() {
+            for (node, starting) in nodes.into_iter().flatten() {
                 let key = ContactKey {
                     contactor: names.one,
                     point: node as u32,
@@ -150,7 +154,7 @@ pub(super) fn flex_rigid(
                     part: part_name,
                 };
                 let pair = Pair::NodeOnPart {
-                    node: (flex, node),
+                    node: (flex, node, starting),
                     rigid,
                     part,
                 };
@@ -166,14 +170,27 @@ pub(super) fn flex_rigid(
                 part: 0,
             };
             let arm = pose.transform(at);
-            let pair = Pair::VertexOnSurface {
+            let pair = |segments| Pair::VertexOnSurface {
                 rigid,
                 arm,
                 radius,
                 flex,
                 segments,
             };
-            island.candidates.push(Candidate { key, pair, law });
+            if radius == 0.0 {
+                let pair = pair(segments);
+                island.candidates.push(Candidate { key, pair, law });
+                continue;
+            }
+            // A round vertex may touch several segments at once; their nodes meet the part by themselves.
+            for slot in segments.0..segments.1 {
+                let key = ContactKey {
+                    part: 1 + island.segments[slot],
+                    ..key
+                };
+                let pair = pair((slot, slot + 1));
+                island.candidates.push(Candidate { key, pair, law });
+            }
         }
     }
 }
@@ -339,5 +356,5 @@ pub(super) fn rigid_rigid(
 
 /// How far a point of a block may move in the step (m).
 fn approach(block: &RigidBlock) -> f64 {
-    (block.free_motion().centre - block.start().centre).norm()
+    (block.drift().centre - block.start().centre).norm()
 }

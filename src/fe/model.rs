@@ -129,12 +129,12 @@ impl Model {
                 }
             }
         }
-        let has_massless = description.massless.contains(&true);
+        let wants_massless = description.massless.contains(&true);
         let mass = match consistent {
-            Some(_) if has_massless => return Err(ModelError::ConsistentRedistribution),
+            Some(_) if wants_massless => return Err(ModelError::ConsistentRedistribution),
             Some(matrix) => MassMatrix::Consistent(matrix),
             None => {
-                if has_massless {
+                if wants_massless {
                     redistribute(&mut description, &mut lumped, &stiffness)?;
                 }
                 MassMatrix::Lumped(lumped)
@@ -148,6 +148,7 @@ impl Model {
         for (index, (node, _)) in support.iter().enumerate() {
             support_index[*node] = index as u32;
         }
+        let has_massless = description.massless.contains(&true);
         let largest_frequency = frequency_bound(&stiffness, &mass, has_massless);
         Ok(Self {
             description,
@@ -357,6 +358,8 @@ fn add_scalar_cell(matrix: &mut BlockMatrix, nodes: &[usize], cell: &[f64]) {
     }
 }
 
+/// Moves the mass of massless nodes inwards, unless a free body would turn or balance differently by it: the nodes inside
+/// of a coarse mesh may be too few to carry its centre and polar moment. Then all mass stays where it is.
 fn redistribute(
     description: &mut ModelDescription,
     lumped: &mut [f64],
@@ -374,9 +377,15 @@ fn redistribute(
             all.filter(|&n| n != node && !is_held(n)).collect()
         })
         .collect();
-    mass::redistribute(&nodes, lumped, &description.massless, |node| {
+    let before = lumped.to_vec();
+    let found = mass::redistribute(&nodes, lumped, &description.massless, |node| {
         &neighbours[node]
     })?;
+    let is_free = !(0..nodes.len()).any(is_held);
+    if is_free && !(found.keeps_centre && found.keeps_polar_moment) {
+        lumped.copy_from_slice(&before);
+        description.massless.fill(false);
+    }
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use crate::constraint::contact::Kinematics;
 use crate::math::{Mat2, Vec2};
-use crate::system::Block;
+use crate::system::{Block, Response};
 
 /// One row of `G`: a contact and a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,12 +13,14 @@ pub(super) struct RowDirection {
     pub direction: Vec2,
 }
 
-/// Writes `W` for `rows`, row-major, shape `(n, n)`; `kinematics` yields the geometry of a contact.
+/// Writes `W` for `rows`, row-major, shape `(n, n)`, as positions or velocities respond; `kinematics` yields the geometry
+/// of a contact.
 ///
 /// Rows of the same contact are neighbours, so the 2×2 compliance between two contacts is computed once.
 pub(super) fn assemble<'a>(
     blocks: &[Block],
     rows: &[RowDirection],
+    of: Response,
     kinematics: impl Fn(usize) -> &'a Kinematics,
     delassus: &mut Vec<f64>,
 ) {
@@ -32,7 +34,7 @@ pub(super) fn assemble<'a>(
         let mut other = 0;
         while other <= first {
             let other_last = end_of_contact(rows, other);
-            let between = compliance(blocks, own, kinematics(rows[other].contact));
+            let between = compliance(blocks, own, kinematics(rows[other].contact), of);
             if let Some(between) = between {
                 for i in first..last {
                     for j in other..other_last {
@@ -58,12 +60,17 @@ fn end_of_contact(rows: &[RowDirection], first: usize) -> usize {
 }
 
 /// `Σ w_a w_b (A⁻¹)_ab` over the grips that two contacts have on common blocks; `None` if there is none.
-fn compliance(blocks: &[Block], one: &Kinematics, other: &Kinematics) -> Option<Mat2> {
+pub(super) fn compliance(
+    blocks: &[Block],
+    one: &Kinematics,
+    other: &Kinematics,
+    of: Response,
+) -> Option<Mat2> {
     let mut sum: Option<Mat2> = None;
     for a in one.attachments() {
         for b in other.attachments() {
             if a.block == b.block {
-                let term = a.weight * b.weight * blocks[a.block].compliance(a.grip, b.grip);
+                let term = a.weight * b.weight * blocks[a.block].compliance(a.grip, b.grip, of);
                 sum = Some(sum.map_or(term, |sum| sum + term));
             }
         }

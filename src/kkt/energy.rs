@@ -56,7 +56,7 @@ impl Island {
             for a in kinematics.attachments() {
                 let block = &self.blocks[a.block];
                 if matches!(block, Block::Rigid(block) if block.is_prescribed()) {
-                    let moved = block.position(a.grip) - block.start_position(a.grip);
+                    let moved = block.position(a.grip.point) - block.start_position(a.grip.point);
                     work -= a.weight * force.dot(&moved);
                 }
             }
@@ -81,7 +81,7 @@ impl Island {
                 .filter(|a| matches!(&self.blocks[a.block], Block::Rigid(block) if block.is_prescribed()))
                 .map(|a| {
                     let block = &self.blocks[a.block];
-                    block.position(a.grip) - block.start_position(a.grip)
+                    block.position(a.grip.point) - block.start_position(a.grip.point)
                 })
                 .sum();
             let force = contact.multiplier[0].max(contact.remembered.normal);

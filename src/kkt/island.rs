@@ -7,7 +7,8 @@ use crate::constraint::contact::{
 };
 use crate::linalg::cholesky::CholeskyError;
 use crate::linalg::complementarity::{ComplementarityError, RowKind, Solver, Status};
-use crate::system::{Block, Grip};
+use crate::math::{Vec2, cross};
+use crate::system::{Block, FlexBlock, Grip, Point};
 use thiserror::Error;
 
 /// Why an island cannot be solved.
@@ -33,6 +34,8 @@ pub struct SolveSettings {
     pub dt: f64,
     /// Beta-2 weight `b0` (s²).
     pub b0: f64,
+    /// Beta-2 weight `b1` (s).
+    pub b1: f64,
     /// What is done on impact.
     pub impact: ImpactTreatment,
     /// Approach velocity below which restitution is ignored (m/s).
@@ -46,18 +49,25 @@ pub struct SolveSettings {
 pub struct ActiveContact {
     /// Index of the candidate.
     pub candidate: usize,
-    /// Geometry at the last iterate.
+    /// The row that the forces act along, with the gap at the last iterate.
     pub kinematics: Kinematics,
+    /// Geometry at the last iterate.
+    pub(super) measured: Kinematics,
+    /// The row that the multipliers acted along when the last iterate was found.
+    pub(super) applied: Kinematics,
     /// Multipliers of the position stage, normal and tangential (N).
     pub multiplier: [f64; 2],
     /// Impulse of the velocity stage, normal and tangential (N s).
     pub impulse: [f64; 2],
     /// Status of the normal and of the friction row.
     pub status: [Status; 2],
-    /// Whether all grips carry inertia.
+    /// Whether it is one of rigid bodies only.
     pub is_hard: bool,
-    /// Gap and relative position `Σ w x` at which the geometry was frozen, once it is.
-    pub(super) frozen: Option<(f64, crate::math::Vec2)>,
+    /// Whether some grip carries no inertia.
+    pub is_massless: bool,
+    /// Gap and relative motion `Σ w u` at the last measurement, from which gaps are extrapolated where the
+    /// geometry has no answer or keeps changing.
+    pub(super) known: Option<(f64, Vec2)>,
     /// Tangential motion since the beginning of the step (m).
     pub slip: f64,
     /// Share of the contact that is shorter than the step, 0 to 1 (-).
@@ -69,7 +79,7 @@ pub struct ActiveContact {
 }
 
 impl ActiveContact {
-    /// Force over the step: the multiplier, or for contacts between masses the impulse over the step length (N).
+    /// Force over the step: the multiplier, or for contacts of rigid bodies the impulse over the step length (N).
     pub fn force(&self, dt: f64) -> [f64; 2] {
         if self.is_hard {
             self.impulse.map(|impulse| impulse / dt)
@@ -79,6 +89,21 @@ impl ActiveContact {
                 self.multiplier[1] + self.impulse[1] / dt,
             ]
         }
+    }
+
+    /// How far the velocity stage holds the contact's relative velocity, 0 to 1 (-): masses that meet would ring at every
+    /// mesh's highest frequency; a massless surface only where the step is longer than the impact.
+    pub(super) fn holds_velocity(&self) -> f64 {
+        if self.is_massless {
+            self.unresolved
+        } else {
+            1.0
+        }
+    }
+
+    /// Whether the contact acted in this step or, through stored accelerations, from the last one.
+    pub(super) fn acts(&self) -> bool {
+        self.is_closed() || self.remembered.normal > 0.0
     }
 
     /// Whether the contact carries or would carry a force.
@@ -133,6 +158,7 @@ pub struct Island {
     pub(super) multipliers: Vec<f64>,
     pub(super) statuses: Vec<Status>,
     pub(super) wrenches: Vec<[f64; 3]>,
+    pub(super) groups: Vec<usize>,
     pub(super) solver: Solver,
 }
 
@@ -165,6 +191,7 @@ impl Island {
         let allowance = self.external_work();
         if settings.impact == ImpactTreatment::Stabilized {
             self.solve_velocities(settings)?;
+            self.balance_angular_momentum();
         } else {
             self.keep_plain_forces();
         }
@@ -192,9 +219,7 @@ impl Island {
                 &contact.kinematics,
                 force,
                 None,
-                |block, node, force| {
-                    block.add_contact_force(node, force);
-                },
+                |block, node, force, lever| block.add_contact_force(node, force, lever),
             );
         }
     }
@@ -217,16 +242,17 @@ impl Island {
         kinematics: &Kinematics,
         force: [f64; 2],
         mut wrenches: Option<&mut [[f64; 3]]>,
-        mut on_node: impl FnMut(&mut crate::system::FlexBlock, usize, crate::math::Vec2),
+        mut on_node: impl FnMut(&mut FlexBlock, usize, Vec2, Vec2),
     ) {
         let total = force[0] * kinematics.normal + force[1] * kinematics.tangent();
         for attachment in kinematics.attachments() {
             let share = attachment.weight * total;
-            match (&mut blocks[attachment.block], attachment.grip) {
-                (Block::Flex(block), Grip::Node(node)) => on_node(block, node, share),
-                (Block::Rigid(block), Grip::Arm(arm)) => {
+            let Grip { point, lever } = attachment.grip;
+            match (&mut blocks[attachment.block], point) {
+                (Block::Flex(block), Point::Node(node)) => on_node(block, node, share, lever),
+                (Block::Rigid(_), Point::Arm(_)) => {
                     if let Some(wrenches) = &mut wrenches {
-                        let wrench = block.wrench(arm, share);
+                        let wrench = [share.x, share.y, cross(lever, share)];
                         for (sum, value) in wrenches[attachment.block].iter_mut().zip(wrench) {
                             *sum += value;
                         }

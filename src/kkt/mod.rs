@@ -10,6 +10,7 @@ mod delassus;
 mod energy;
 mod impact;
 mod island;
+mod momentum;
 mod position;
 mod velocity;
 

@@ -4,17 +4,27 @@
 //! under the multipliers it has, beginning with those of the last step; measures gaps and slips there; and, unless they
 //! hold, finds new multipliers from `b = g / b0 - W p`. A contact at rest so costs one solve.
 
-use super::delassus::{RowDirection, assemble};
+use super::delassus::{RowDirection, assemble, compliance};
 use super::island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
 use crate::constraint::contact::{ContactMemory, Kinematics, Remembered};
 use crate::linalg::complementarity::{Problem, RowKind, Status};
-use crate::system::{Block, Grip};
+use crate::math::Vec2;
+use crate::system::{Block, Point, Response};
 
 /// Turning below this angle (rad) changes no position by more than round-off.
 const ANGLE_TOLERANCE: f64 = 1e-11;
 
-/// Iteration from which the geometry of contacts is kept.
-const FROZEN_FROM: usize = 6;
+/// Iteration from which the rows, directions and levers of the forces, stay what they are.
+const ROWS_KEPT_FROM: usize = 2;
+
+/// Iteration from which gaps are extrapolated along the rows.
+const GAPS_KEPT_FROM: usize = 12;
+
+/// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
+const NEAR: f64 = 1e5;
+
+/// Multiple of the tolerance by which redundant rows may contradict each other.
+const AVERAGED: f64 = 10.0;
 
 /// Iterations in which the working set still forms.
 const SETTLING: usize = 6;
@@ -64,8 +74,30 @@ impl Island {
         for iteration in 0..settings.max_newton {
             summary.n_newton = iteration + 1;
             let turned = self.correct();
-            let error = self.refresh_kinematics(iteration >= FROZEN_FROM);
-            let has_more = self.add_violated(tolerance, memory);
+            let is_guess = iteration == 0 && !self.contacts.is_empty();
+            let mut error = self.measure(is_guess || iteration >= GAPS_KEPT_FROM);
+            // Under the last step's multipliers bodies may be anywhere: geometry counts if these are nearly right.
+            let misleads = is_guess && error > NEAR * tolerance;
+            if is_guess && !misleads {
+                error = self.measure(false);
+            }
+            let has_more = !misleads && self.add_violated(tolerance, memory);
+            if std::env::var("FOIL_DBG").is_ok() {
+                eprintln!(
+                    "   it {iteration} turned {turned:.2e} error {error:.2e} more {has_more} mis {misleads} n {} st {:?}",
+                    self.contacts.len(),
+                    self.contacts
+                        .iter()
+                        .map(|c| (
+                            c.candidate,
+                            c.kinematics.gap as f32,
+                            c.multiplier[0] as f32,
+                            c.slip as f32,
+                            c.status[1]
+                        ))
+                        .collect::<Vec<_>>()
+                );
+            }
             if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
                 return Ok(true);
             }
@@ -77,7 +109,11 @@ impl Island {
                 return Ok(false);
             }
             if iteration + 1 < settings.max_newton {
-                self.solve_multipliers(settings, summary)?;
+                let refreshes = iteration < ROWS_KEPT_FROM && !misleads;
+                if refreshes {
+                    self.refresh_rows();
+                }
+                self.solve_multipliers(settings, refreshes, tolerance, summary)?;
             } else if turned.max(error) <= ACCEPTABLE * tolerance && !has_more {
                 return Ok(true);
             }
@@ -102,14 +138,17 @@ impl Island {
         self.contacts.clear();
         self.is_working.fill(false);
         self.remember_contacts(memory);
-        for _ in 0..LINEAR_ROUNDS {
+        for round in 0..LINEAR_ROUNDS {
             self.correct();
-            self.refresh_kinematics(true);
+            self.measure(round > 0);
             self.add_violated(tolerance, memory);
-            self.solve_multipliers(settings, summary)?;
+            if round == 0 {
+                self.refresh_rows();
+            }
+            self.solve_multipliers(settings, round == 0, tolerance, summary)?;
         }
         self.correct();
-        self.refresh_kinematics(true);
+        self.measure(true);
         Ok(())
     }
 
@@ -155,17 +194,14 @@ impl Island {
                 &contact.kinematics,
                 contact.multiplier,
                 Some(&mut self.wrenches),
-                |block, node, force| block.add_contact_force(node, force),
+                |block, node, force, lever| block.add_contact_force(node, force, lever),
             );
         }
         let mut turned = 0.0f64;
         for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
             match block {
                 Block::Flex(block) => turned = turned.max(block.solve()),
-                Block::Rigid(block) if !block.is_prescribed() => {
-                    block.set_position_increment(*wrench);
-                }
-                Block::Rigid(_) => {}
+                Block::Rigid(block) => block.set_position_increment(*wrench),
             }
         }
         turned
@@ -174,23 +210,28 @@ impl Island {
     /// Measures the working set where the blocks are now; returns how far the laws are from holding (m): overlaps, gaps
     /// of pressing contacts, slip of sticking ones, and slip that friction drives instead of opposing.
     ///
-    /// With `freezes` the rows of `G` stay what they are from now on and only gaps follow: (C.2) with known restrictions.
-    /// A sharp corner turns the segment it dents, and normals that follow every iterate need not converge.
-    fn refresh_kinematics(&mut self, freezes: bool) -> f64 {
+    /// The forces keep acting along the rows they have: gaps are true, and Newton's matrix is that of the rows. With
+    /// `extrapolates` gaps follow the rows too, which always converges.
+    fn measure(&mut self, extrapolates: bool) -> f64 {
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         let mut error = 0.0f64;
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
-            let relative = contact
-                .kinematics
-                .relative(&self.blocks, |block, grip| block.position(grip));
-            if let (true, Some((gap, from))) = (freezes, contact.frozen) {
-                contact.kinematics.gap = gap + contact.kinematics.normal.dot(&(relative - from));
-            } else if let Some(kinematics) = candidate.evaluate(&scene, &contact.remembered) {
-                contact.kinematics = kinematics;
-                let at = kinematics.relative(&self.blocks, |block, grip| block.position(grip));
-                contact.frozen = Some((kinematics.gap, at));
-            }
+            let at = moved(&contact.kinematics, &self.blocks);
+            let found = match contact.known {
+                Some(_) if extrapolates => None,
+                _ => candidate.evaluate(&scene, &contact.remembered),
+            };
+            let along = contact.kinematics.normal;
+            contact.kinematics.gap = match (found, contact.known) {
+                (Some(found), _) => {
+                    contact.measured = found;
+                    found.gap
+                }
+                (None, Some((gap, from))) => gap + along.dot(&(at - from)),
+                (None, None) => contact.kinematics.gap,
+            };
+            contact.known = Some((contact.kinematics.gap, at));
             let kinematics = contact.kinematics;
             error = error.max(-kinematics.gap);
             if contact.multiplier[0] <= 0.0 {
@@ -207,6 +248,17 @@ impl Island {
             }
         }
         error
+    }
+
+    /// Makes the measured geometry the rows that forces act along.
+    fn refresh_rows(&mut self) {
+        for contact in &mut self.contacts {
+            let gap = contact.kinematics.gap;
+            contact.applied = contact.kinematics;
+            contact.kinematics = contact.measured;
+            contact.kinematics.gap = gap;
+            contact.known = None;
+        }
     }
 
     /// Adds candidates that overlap now; returns whether there were any.
@@ -235,6 +287,8 @@ impl Island {
     fn solve_multipliers(
         &mut self,
         settings: &SolveSettings,
+        has_new_rows: bool,
+        tolerance: f64,
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
         if self.contacts.is_empty() {
@@ -242,12 +296,23 @@ impl Island {
         }
         for contact in &self.contacts {
             prepare(&mut self.blocks, &contact.kinematics);
+            if has_new_rows {
+                prepare(&mut self.blocks, &contact.applied);
+            }
         }
         self.position_rows(settings.b0);
         let contacts = &self.contacts;
         let kinematics = |index: usize| &contacts[index].kinematics;
-        assemble(&self.blocks, &self.rows, kinematics, &mut self.delassus);
-        self.take_out_multipliers();
+        assemble(
+            &self.blocks,
+            &self.rows,
+            Response::Position,
+            kinematics,
+            &mut self.delassus,
+        );
+        self.take_out_multipliers(has_new_rows);
+        let redundancy = self.redundancy_tolerance(tolerance / settings.b0);
+        self.solver.set_redundancy_tolerance(redundancy);
         let problem = Problem {
             delassus: &self.delassus,
             free: &self.free,
@@ -302,12 +367,63 @@ impl Island {
         }
     }
 
-    /// `b -= W p`: what the rows would be without the multipliers they were measured under.
-    fn take_out_multipliers(&mut self) {
+    /// The natural-map residual of rows that move by `velocity` beyond what they may (m/s²): redundant rows that contradict
+    /// each other by less are averaged.
+    fn redundancy_tolerance(&self, velocity: f64) -> f64 {
         let n = self.rows.len();
-        for (free, row) in self.free.iter_mut().zip(self.delassus.chunks_exact(n)) {
-            let response: f64 = row.iter().zip(&self.multipliers).map(|(w, p)| w * p).sum();
-            *free -= response;
+        let (mut largest, mut scale) = (0.0f64, 0.0f64);
+        for (row, free) in self.free.iter().enumerate() {
+            let own = self.delassus[row * n + row];
+            if own > 0.0 {
+                largest = largest.max(own);
+                let load = free.abs().max(own * self.multipliers[row].abs());
+                scale = scale.max(load / own.sqrt());
+            }
+        }
+        let residual = AVERAGED * velocity / (largest.sqrt() * scale);
+        residual.clamp(1e-12, 1e-6)
+    }
+
+    /// `b -= W p`: what the rows would be without the multipliers they were measured under.
+    ///
+    /// Where the rows have changed since, the response is `G A⁻¹ G₀ᵀ p` with the rows `G₀` of that iterate: under a
+    /// heavy neighbour a force that turns by 1e-4 rad may throw a light body across the scene.
+    fn take_out_multipliers(&mut self, has_new_rows: bool) {
+        let n = self.rows.len();
+        if !has_new_rows {
+            for (free, row) in self.free.iter_mut().zip(self.delassus.chunks_exact(n)) {
+                let response: f64 = row.iter().zip(&self.multipliers).map(|(w, p)| w * p).sum();
+                *free -= response;
+            }
+            return;
+        }
+        let mut row = 0;
+        while row < n {
+            let contact = &self.contacts[self.rows[row].contact];
+            let mut response = Vec2::zeros();
+            for other in self
+                .contacts
+                .iter()
+                .filter(|other| other.multiplier[0] > 0.0)
+            {
+                let applied = &other.applied;
+                let found = compliance(
+                    &self.blocks,
+                    &contact.kinematics,
+                    applied,
+                    Response::Position,
+                );
+                if let Some(compliance) = found {
+                    let [normal, tangent] = other.multiplier;
+                    let force = normal * applied.normal + tangent * applied.tangent();
+                    response += compliance * force;
+                }
+            }
+            let first = row;
+            while row < n && self.rows[row].contact == self.rows[first].contact {
+                self.free[row] -= self.rows[row].direction.dot(&response);
+                row += 1;
+            }
         }
     }
 
@@ -320,17 +436,19 @@ impl Island {
 
 /// Tangential motion of the point against the target's material since the beginning of the step (m).
 fn slip(kinematics: &Kinematics, blocks: &[Block]) -> f64 {
-    let moved = kinematics.relative(blocks, |block, grip| {
-        block.position(grip) - block.start_position(grip)
-    });
-    moved.dot(&kinematics.tangent())
+    moved(kinematics, blocks).dot(&kinematics.tangent())
+}
+
+/// Motion of the point against the target since the beginning of the step, linear in the dofs of rigid blocks (m).
+fn moved(kinematics: &Kinematics, blocks: &[Block]) -> Vec2 {
+    kinematics.relative(blocks, |block, grip| block.displacement(grip))
 }
 
 /// Makes the compliances of a contact's nodes known.
 fn prepare(blocks: &mut [Block], kinematics: &Kinematics) {
     for attachment in kinematics.attachments() {
-        if let (Block::Flex(block), Grip::Node(node)) =
-            (&mut blocks[attachment.block], attachment.grip)
+        if let (Block::Flex(block), Point::Node(node)) =
+            (&mut blocks[attachment.block], attachment.grip.point)
         {
             block.prepare_compliance(node);
         }
@@ -365,12 +483,15 @@ impl ActiveContact {
         };
         Self {
             candidate,
-            is_hard: !kinematics.is_soft(blocks),
+            is_hard: kinematics.is_rigid(blocks),
+            is_massless: kinematics.is_massless(blocks),
             kinematics,
+            measured: kinematics,
+            applied: kinematics,
             multiplier: [remembered.normal, remembered.tangent],
             impulse: [0.0; 2],
             status: [normal, tangential],
-            frozen: None,
+            known: Some((kinematics.gap, moved(&kinematics, blocks))),
             slip: 0.0,
             unresolved: 0.0,
             approach,

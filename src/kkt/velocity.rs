@@ -10,7 +10,7 @@ use super::delassus::{RowDirection, assemble};
 use super::island::{Island, KktError, SolveSettings};
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
-use crate::system::{Block, Grip, Response};
+use crate::system::{Block, Response};
 
 /// Share of rigid mobility below which an impact counts as resolved, and above which as unresolved.
 const RESOLVED: f64 = 0.3;
@@ -45,25 +45,10 @@ impl Island {
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         for contact in &self.contacts {
             let (blocks, kinematics) = (&mut self.blocks, &contact.kinematics);
-            if contact.is_hard {
-                Self::spread(
-                    blocks,
-                    kinematics,
-                    contact.multiplier,
-                    None,
-                    |block, node, force| {
-                        block.drop_hard_force(node, force);
-                    },
-                );
-            } else {
+            let force = contact.multiplier;
+            if !contact.is_hard {
                 let wrenches = Some(&mut self.wrenches[..]);
-                Self::spread(
-                    blocks,
-                    kinematics,
-                    contact.multiplier,
-                    wrenches,
-                    |_, _, _| {},
-                );
+                Self::spread(blocks, kinematics, force, wrenches, |_, _, _, _| {});
             }
         }
         self.set_soft_forces();
@@ -80,7 +65,7 @@ impl Island {
                 &contact.kinematics,
                 contact.multiplier,
                 Some(&mut self.wrenches),
-                |_, _, _| {},
+                |_, _, _, _| {},
             );
         }
         self.set_soft_forces();
@@ -101,10 +86,11 @@ impl Island {
         let normal = kinematics.normal;
         let (mut rigid, mut actual) = (0.0, 0.0);
         for a in kinematics.attachments() {
-            rigid += a.weight * a.weight * self.blocks[a.block].rigid_mobility(a.grip, normal);
+            rigid += a.weight.abs() * self.blocks[a.block].rigid_mobility(a.grip, normal);
             for b in kinematics.attachments() {
                 if a.block == b.block {
-                    let compliance = self.blocks[a.block].compliance(a.grip, b.grip);
+                    let compliance =
+                        self.blocks[a.block].compliance(a.grip, b.grip, Response::Velocity);
                     actual += a.weight * b.weight * normal.dot(&(compliance * normal));
                 }
             }
@@ -119,13 +105,20 @@ impl Island {
         self.kinds.clear();
         self.free.clear();
         for (index, contact) in self.contacts.iter().enumerate() {
-            if !contact.is_closed() || !(contact.is_hard || contact.unresolved > 0.0) {
+            if !contact.is_closed() || contact.holds_velocity() == 0.0 {
                 continue;
             }
             let law = self.candidates[contact.candidate].law;
             let kinematics = &contact.kinematics;
             let velocity = kinematics.relative(&self.blocks, |block, grip| block.velocity(grip));
             let rebound = law.rebound(contact.approach, settings.restitution_threshold);
+            // A resolved impact rebounds by its elasticity.
+            let is_elastic = !contact.is_hard && !contact.is_massless;
+            let rebound = if is_elastic {
+                contact.unresolved * rebound
+            } else {
+                rebound
+            };
             let normal_row = self.rows.len();
             self.rows.push(RowDirection {
                 contact: index,
@@ -162,6 +155,7 @@ impl Island {
         assemble(
             &self.blocks,
             &self.rows,
+            Response::Velocity,
             |index| &contacts[index].kinematics,
             &mut self.delassus,
         );
@@ -174,7 +168,7 @@ impl Island {
         for row in 0..n {
             let contact = &self.contacts[self.rows[row].contact];
             if !contact.is_hard {
-                let share = contact.unresolved.max(1e-12);
+                let share = contact.holds_velocity().max(1e-12);
                 self.delassus[row * n + row] *= 1.0 + (1.0 - share) / share;
             }
         }
@@ -185,6 +179,7 @@ impl Island {
         self.multipliers.resize(self.rows.len(), 0.0);
         self.statuses.clear();
         self.statuses.resize(self.rows.len(), Status::Stick);
+        self.solver.set_redundancy_tolerance(1e-6);
         let problem = Problem {
             delassus: &self.delassus,
             free: &self.free,
@@ -220,7 +215,7 @@ impl Island {
                 kinematics,
                 force,
                 Some(&mut self.wrenches),
-                |block, node, impulse| block.gather_impulse(node, impulse),
+                |block, node, impulse, lever| block.gather_impulse(node, impulse, lever),
             );
         }
         if !touched {
@@ -230,7 +225,7 @@ impl Island {
             match block {
                 Block::Flex(block) => block.apply_impulse(to),
                 Block::Rigid(block) => match to {
-                    Response::Velocity => block.add_impulse(*wrench),
+                    Response::Velocity | Response::Position => block.add_impulse(*wrench),
                     Response::Acceleration => block.add_smooth_acceleration(*wrench),
                 },
             }
@@ -244,15 +239,15 @@ impl Island {
         self.kinds.clear();
         self.free.clear();
         for (index, contact) in self.contacts.iter().enumerate() {
-            if contact.is_hard || !contact.is_closed() || contact.unresolved == 0.0 {
+            if contact.is_hard || !contact.is_closed() || contact.holds_velocity() == 0.0 {
                 continue;
             }
             let kinematics = &contact.kinematics;
             let mut acceleration =
                 kinematics.relative(&self.blocks, |block, grip| block.smooth_acceleration(grip));
             for a in kinematics.attachments() {
-                if let (Block::Rigid(block), Grip::Arm(arm)) = (&self.blocks[a.block], a.grip) {
-                    acceleration += a.weight * block.respond(arm, self.wrenches[a.block]);
+                if let Block::Rigid(block) = &self.blocks[a.block] {
+                    acceleration += a.weight * block.respond(a.grip.lever, self.wrenches[a.block]);
                 }
             }
             let sticks = contact.status[1] == Status::Stick;
@@ -276,6 +271,7 @@ impl Island {
         assemble(
             &self.blocks,
             &self.rows,
+            Response::Acceleration,
             |index| &contacts[index].kinematics,
             &mut self.delassus,
         );
@@ -296,7 +292,7 @@ impl Island {
                 &contact.kinematics,
                 force,
                 Some(&mut self.wrenches),
-                |_, _, _| {},
+                |_, _, _, _| {},
             );
         }
     }

@@ -286,6 +286,7 @@ impl FlexPipeline {
         let settings = SolveSettings {
             dt: step.dt,
             b0: step.weights.b0,
+            b1: step.weights.b1,
             impact: self.impact,
             restitution_threshold: self.restitution_threshold,
             max_newton: self.max_newton,

@@ -21,12 +21,14 @@ pub struct Step {
     pub weights: Weights,
 }
 
-/// What a response is added to.
+/// What responds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Response {
-    /// The end velocity.
+    /// The end position, to forces.
+    Position,
+    /// The end velocity, to impulses.
     Velocity,
-    /// The end acceleration.
+    /// The end acceleration, to forces.
     Acceleration,
 }
 
@@ -73,7 +75,13 @@ pub struct FlexBlock {
     pub(super) start_acceleration: Vec<f64>,
     /// Applied nodal forces, gravity included (N).
     pub(super) force: Vec<f64>,
+    /// Their resultant (N).
+    pub(super) force_total: Vec2,
+    /// Increment of the centre's acceleration, world axes (m/s²).
+    pub(super) shift: Vec2,
     pub(super) prescribed: Vec<f64>,
+    /// Gravity and other forces per mass; `None` if forces act on single nodes (m/s²).
+    pub(super) uniform: Option<Vec2>,
     /// `u_q`, `u̇_q`.
     pub(super) displacement_q: Vec<f64>,
     pub(super) rate_q: Vec<f64>,
@@ -86,7 +94,16 @@ pub struct FlexBlock {
     pub(super) increment: Vec<f64>,
     pub(super) contact_force: Vec<f64>,
     pub(super) has_contact_force: bool,
+    /// Resultant of the contact forces (N).
+    pub(super) contact_total: Vec2,
+    /// Moment of the contact forces about the centre, by the levers they were given with (N m).
+    pub(super) contact_moment: f64,
     pub(super) impulse: Vec<f64>,
+    pub(super) has_impulse: bool,
+    /// Resultant of the impulses (N s).
+    pub(super) impulse_total: Vec2,
+    /// Moment of the impulses about the centre (N m s).
+    pub(super) impulse_moment: f64,
     pub(super) local: Vec<f64>,
     pub(super) scratch: Vec<f64>,
     /// `u`, `u̇` of the iterate.
@@ -95,6 +112,8 @@ pub struct FlexBlock {
     pub(super) position: Vec<f64>,
     pub(super) velocity: Vec<f64>,
     pub(super) torque: f64,
+    /// `I(u)` of the iterate (kg m²).
+    pub(super) inertia: f64,
     /// Whether the step is linearised; see [`FlexBlock::linearize`].
     pub(super) is_linear: bool,
 }
@@ -134,7 +153,10 @@ impl FlexBlock {
             end_elastic: 0.0,
             start_acceleration: zeros(),
             force: zeros(),
+            force_total: Vec2::zeros(),
+            shift: Vec2::zeros(),
             prescribed: zeros(),
+            uniform: None,
             displacement_q: zeros(),
             rate_q: zeros(),
             frame_q: FrameMotion::default(),
@@ -143,7 +165,12 @@ impl FlexBlock {
             increment: zeros(),
             contact_force: zeros(),
             has_contact_force: false,
+            contact_total: Vec2::zeros(),
+            contact_moment: 0.0,
             impulse: zeros(),
+            has_impulse: false,
+            impulse_total: Vec2::zeros(),
+            impulse_moment: 0.0,
             local: zeros(),
             scratch: zeros(),
             displacement: zeros(),
@@ -151,6 +178,7 @@ impl FlexBlock {
             position: zeros(),
             velocity: zeros(),
             torque: 0.0,
+            inertia: 0.0,
             is_linear: false,
             model,
         }
@@ -159,6 +187,11 @@ impl FlexBlock {
     /// Size of the coordinates that round-off is relative to (m).
     pub fn extent(&self) -> f64 {
         self.extent.max(self.frame.centre.amax())
+    }
+
+    /// What the frame turns about, at the iterate (m).
+    pub fn centre(&self) -> Vec2 {
+        self.frame.centre
     }
 
     /// The model the block was built for.
@@ -196,18 +229,22 @@ impl FlexBlock {
         self.start_torque = state.torque;
         self.start_energy = [state.kinetic_energy, state.elastic_energy];
         self.prescribed.copy_from_slice(load.prescribed);
+        let is_uniform = load.force.iter().all(|force| *force == 0.0);
+        self.uniform = is_uniform.then_some(load.gravity);
         for (node, mass) in self.arms.node_mass.iter().enumerate() {
             for axis in 0..2 {
                 let dof = 2 * node + axis;
                 self.force[dof] = load.force[dof] + mass * load.gravity[axis];
             }
         }
+        self.force_total = sum_of(load.force) + self.arms.mass * load.gravity;
         let start = [&state.displacement[..], &state.rate, &state.acceleration];
         Beta2::predict(step.dt, start, &mut self.displacement_q, &mut self.rate_q);
         // The iterate starts from where the body is: the operators of unresolved modes are large and cancel in the solve.
         self.displacement.copy_from_slice(&state.displacement);
         self.rate.copy_from_slice(&state.rate);
         self.is_linear = false;
+        self.inertia = self.arms.polar;
         self.predict_frame();
         self.clear_contact_force();
         if self.kind != Frame::Fixed {
@@ -317,4 +354,9 @@ impl FlexBlock {
         self.factored_for = Some(weights);
         Ok(())
     }
+}
+
+/// Sum of nodal vectors.
+fn sum_of(dofs: &[f64]) -> Vec2 {
+    dofs.chunks_exact(2).map(|v| Vec2::new(v[0], v[1])).sum()
 }

@@ -80,26 +80,6 @@ impl FlexBlock {
         node_vec(&self.force, node)
     }
 
-    /// Takes a contact force on a node with mass out of the stored acceleration and velocity: its impulse is applied
-    /// at velocity level instead.
-    pub fn drop_hard_force(&mut self, node: usize, force: Vec2) {
-        let mass = self.arms.node_mass[node];
-        if mass <= 0.0 {
-            return;
-        }
-        let arm = node_vec(&self.position, node) - self.frame.centre;
-        self.torque -= cross(arm, force);
-        let mut local = self.turn.transpose() * force;
-        for axis in 0..2 {
-            if self.is_fixed[2 * node + axis] {
-                local[axis] = 0.0;
-            }
-        }
-        add_node_vec(&mut self.increment, node, -local / mass);
-        let change = self.turn * local * (self.step.weights.b1 / mass);
-        add_node_vec(&mut self.velocity, node, -change);
-    }
-
     /// Mobility of the whole body moving rigidly, `n·M⁻¹·n` at a node (1/kg); zero when its pins hold it.
     pub fn rigid_mobility(&self, node: usize, direction: Vec2) -> f64 {
         let centre = self.frame.centre;
@@ -184,8 +164,12 @@ impl FlexBlock {
         if self.kind == Frame::Fixed {
             return;
         }
-        let centre = self.arms.centre(self.kind, &self.position);
-        let drift = self.arms.centre(self.kind, &self.velocity);
+        let centre = self
+            .arms
+            .centre(self.kind, &self.position, self.frame.centre);
+        let drift = self
+            .arms
+            .centre(self.kind, &self.velocity, self.frame.velocity);
         let spin = self
             .model
             .mass()
@@ -200,7 +184,7 @@ impl FlexBlock {
 
     /// The mass centre from `centre` (m): zero for a free body.
     fn mass_offset(&self, centre: Vec2) -> Vec2 {
-        self.arms.centre(Frame::Free, &self.position) - centre
+        self.arms.centre(Frame::Free, &self.position, centre) - centre
     }
 
     /// Linear momentum (N s) and first moment of mass `Σ m x` (kg m).
@@ -247,13 +231,13 @@ impl FlexBlock {
         state.elastic_energy = self.end_elastic;
         state.kinetic_energy = kinetic_energy;
         state.acceleration.copy_from_slice(&self.increment);
-        let (shift, _) = self.arms.split(self.kind, &mut state.acceleration);
+        self.arms.split(self.kind, &mut state.acceleration);
         for (end, start) in state.acceleration.iter_mut().zip(&self.start_acceleration) {
             *end += start;
         }
         if self.kind == Frame::Free {
             // The increment may have changed since the frame was advanced: hard contacts, settled accelerations.
-            state.frame.acceleration = self.start_frame.acceleration + self.turn * shift;
+            state.frame.acceleration = self.start_frame.acceleration + self.shift;
         }
         for &dof in &self.fixed_dofs {
             state.acceleration[dof] = 0.0;

@@ -10,10 +10,10 @@
 //! `a_q` the accelerations before the increment, `h` the centripetal and Coriolis terms: the stiffness need never be
 //! multiplied.
 
-use super::flex_block::FlexBlock;
+use super::flex_block::{FlexBlock, Response};
 use crate::body::Frame;
 use crate::integrator::Weights;
-use crate::math::{Mat2, Vec2, add_node_vec, node_vec, perp, rotation, set_node_vec};
+use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
 
 impl FlexBlock {
     /// Solves for the end of the step under the contact forces given, in the frame and with the inertial terms of the
@@ -131,12 +131,16 @@ impl FlexBlock {
             self.contact_force.fill(0.0);
             self.has_contact_force = false;
         }
+        self.contact_total = Vec2::zeros();
+        self.contact_moment = 0.0;
     }
 
-    /// Adds a contact force at a node (N).
-    pub fn add_contact_force(&mut self, node: usize, force: Vec2) {
+    /// Adds a contact force at a node (N) that acts at a lever from the centre (m).
+    pub fn add_contact_force(&mut self, node: usize, force: Vec2, lever: Vec2) {
         add_node_vec(&mut self.contact_force, node, force);
         self.has_contact_force = true;
+        self.contact_total += force;
+        self.contact_moment += cross(lever, force);
     }
 
     /// Applies the increments of the iterate; returns how far the frame's angle moved (rad).
@@ -153,9 +157,9 @@ impl FlexBlock {
             return 0.0;
         }
         self.local.copy_from_slice(&self.increment);
-        let (shift, turn) = self.arms.split(self.kind, &mut self.local);
+        let (_, turn) = self.arms.split(self.kind, &mut self.local);
         let angle = self.frame.angle;
-        self.advance(shift, turn);
+        self.advance(turn);
         if self.is_linear {
             return 0.0;
         }
@@ -205,13 +209,24 @@ impl FlexBlock {
     }
 
     /// Applies the increments of a frame that moves; `local` holds `δ_u`.
-    fn advance(&mut self, shift: Vec2, turn: f64) {
+    ///
+    /// The centre follows the balance of momentum, which (C.5) holds too, but to the rounding of stiff elastic forces.
+    fn advance(&mut self, turn: f64) {
         let Weights { b0, b1 } = self.step.weights;
         for dof in 0..self.local.len() {
             self.displacement[dof] = self.displacement_q[dof] + b0 * self.local[dof];
             self.rate[dof] = self.rate_q[dof] + b1 * self.local[dof];
         }
-        let shift = rotation(self.frame.angle) * shift;
+        let shift = match self.kind {
+            Frame::Free => {
+                let alpha = self.model.rayleigh().mass;
+                let drag = self.frame_q.acceleration + alpha * self.frame_q.velocity;
+                let force = self.force_total + self.contact_total;
+                (force / self.arms.mass - drag) / (1.0 + alpha * b1)
+            }
+            _ => Vec2::zeros(),
+        };
+        self.shift = shift;
         let before = &self.frame_q;
         self.frame.centre = before.centre + b0 * shift;
         self.frame.velocity = before.velocity + b1 * shift;
@@ -262,11 +277,37 @@ impl FlexBlock {
     }
 
     /// See [`super::Block::compliance`].
-    pub fn compliance(&self, at: usize, from: usize) -> Mat2 {
+    ///
+    /// `A⁻¹` turns the body by the reference arms; the angle follows the levers of the forces instead, as the balance of
+    /// angular momentum does. Between stiff contacts the difference would be amplified by `(ω dt)²`.
+    pub fn compliance(
+        &self,
+        (at, at_lever): (usize, Vec2),
+        (from, from_lever): (usize, Vec2),
+        of: Response,
+    ) -> Mat2 {
         let local = self.compliance.get(at, from);
         if self.kind == Frame::Fixed {
             return local;
         }
-        self.turn * local * self.turn.transpose()
+        let world = self.turn * local * self.turn.transpose();
+        if of == Response::Acceleration {
+            return world;
+        }
+        let arm = |node| perp(self.turn * node_vec(&self.arms.reference, node));
+        let damped = 1.0 + self.model.rayleigh().mass * self.step.weights.b1;
+        let reference = arm(at) * arm(from).transpose() / (self.arms.polar * damped);
+        // Beta-2 gives an angle `b0` per acceleration, the mean of two spins gives `dt b1 / 2`.
+        let Weights { b0, b1 } = self.step.weights;
+        let mean = 0.5 * self.step.dt * b1 / b0;
+        if self.is_linear {
+            return world + (mean - 1.0) * reference;
+        }
+        let share = match of {
+            Response::Position => mean / damped,
+            _ => 1.0,
+        };
+        let turned = perp(at_lever) * perp(from_lever).transpose() / self.inertia;
+        world - reference + share * turned
     }
 }

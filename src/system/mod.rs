@@ -8,21 +8,35 @@ mod flex_block;
 mod flex_momentum;
 mod flex_motion;
 mod flex_solve;
+mod moments;
 mod rigid_block;
 
 pub use flex_block::{FlexBlock, FlexLoad, Response, Step};
 pub use flex_motion::Balance;
+pub use moments::Moments;
 pub use rigid_block::{RigidBlock, RigidLoad, RigidMotion};
 
 use crate::math::{Mat2, Vec2};
 
-/// Where a constraint row holds on to a block.
+/// A material point of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Grip {
+pub enum Point {
     /// A node of a flexible block.
     Node(usize),
-    /// A material point of a rigid block: its arm from the centre of mass, in body axes (m).
+    /// A point of a rigid block: its arm from the centre of mass, in body axes (m).
     Arm(Vec2),
+}
+
+/// Where a constraint row holds on to a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grip {
+    /// The point that is held.
+    pub point: Point,
+    /// Lever of the force from the block's centre, in world axes, where the row was measured (m).
+    ///
+    /// It stays what it is while a step iterates: forces whose levers followed every iterate would need their own
+    /// stiffness in the system to converge under heavy loads.
+    pub lever: Vec2,
 }
 
 /// A member of an island.
@@ -39,38 +53,50 @@ pub enum Block {
 }
 
 impl Block {
-    /// Position of a grip at the beginning of the step (m).
-    pub fn start_position(&self, grip: Grip) -> Vec2 {
-        match (self, grip) {
-            (Self::Flex(block), Grip::Node(node)) => block.start_position(node),
-            (Self::Rigid(block), Grip::Arm(arm)) => block.start().point(arm),
+    /// Position of a point at the beginning of the step (m).
+    pub fn start_position(&self, point: Point) -> Vec2 {
+        match (self, point) {
+            (Self::Flex(block), Point::Node(node)) => block.start_position(node),
+            (Self::Rigid(block), Point::Arm(arm)) => block.start().point(arm),
             _ => mismatch(),
         }
     }
 
-    /// Position of a grip at the current iterate of the end of the step (m).
-    pub fn position(&self, grip: Grip) -> Vec2 {
-        match (self, grip) {
-            (Self::Flex(block), Grip::Node(node)) => block.position(node),
-            (Self::Rigid(block), Grip::Arm(arm)) => block.current().point(arm),
+    /// Position of a point at the current iterate of the end of the step (m).
+    pub fn position(&self, point: Point) -> Vec2 {
+        match (self, point) {
+            (Self::Flex(block), Point::Node(node)) => block.position(node),
+            (Self::Rigid(block), Point::Arm(arm)) => block.current().point(arm),
+            _ => mismatch(),
+        }
+    }
+
+    /// Displacement of a grip from the beginning of the step to the current iterate (m); for rigid blocks linear in their
+    /// dofs, along the lever.
+    pub fn displacement(&self, grip: Grip) -> Vec2 {
+        match (self, grip.point) {
+            (Self::Flex(block), Point::Node(node)) => {
+                block.position(node) - block.start_position(node)
+            }
+            (Self::Rigid(block), Point::Arm(_)) => block.displacement(grip.lever),
             _ => mismatch(),
         }
     }
 
     /// Velocity of a grip at the current iterate (m/s).
     pub fn velocity(&self, grip: Grip) -> Vec2 {
-        match (self, grip) {
-            (Self::Flex(block), Grip::Node(node)) => block.velocity(node),
-            (Self::Rigid(block), Grip::Arm(arm)) => block.current().point_velocity(arm),
+        match (self, grip.point) {
+            (Self::Flex(block), Point::Node(node)) => block.velocity(node),
+            (Self::Rigid(block), Point::Arm(_)) => block.velocity(grip.lever),
             _ => mismatch(),
         }
     }
 
     /// Velocity of a grip at the beginning of the step (m/s).
     pub fn start_velocity(&self, grip: Grip) -> Vec2 {
-        match (self, grip) {
-            (Self::Flex(block), Grip::Node(node)) => block.start_velocity(node),
-            (Self::Rigid(block), Grip::Arm(arm)) => block.start().point_velocity(arm),
+        match (self, grip.point) {
+            (Self::Flex(block), Point::Node(node)) => block.start_velocity(node),
+            (Self::Rigid(block), Point::Arm(arm)) => block.start().point_velocity(arm),
             _ => mismatch(),
         }
     }
@@ -78,42 +104,54 @@ impl Block {
     /// Acceleration of `at` per unit force at `from`, `A⁻¹` between two grips of this block (1/kg).
     ///
     /// A flexible block must have been [prepared](FlexBlock::prepare_compliance) for both nodes.
-    pub fn compliance(&self, at: Grip, from: Grip) -> Mat2 {
-        match (self, at, from) {
-            (Self::Flex(block), Grip::Node(at), Grip::Node(from)) => block.compliance(at, from),
-            (Self::Rigid(block), Grip::Arm(at), Grip::Arm(from)) => block.compliance(at, from),
+    pub fn compliance(&self, at: Grip, from: Grip, of: Response) -> Mat2 {
+        match (self, at.point, from.point) {
+            (Self::Flex(block), Point::Node(node), Point::Node(source)) => {
+                block.compliance((node, at.lever), (source, from.lever), of)
+            }
+            (Self::Rigid(block), Point::Arm(_), Point::Arm(_)) => {
+                block.compliance(at.lever, from.lever)
+            }
             _ => mismatch(),
+        }
+    }
+
+    /// Centre of the block at the current iterate: of mass, or what its frame turns about (m).
+    pub fn centre(&self) -> Vec2 {
+        match self {
+            Self::Flex(block) => block.centre(),
+            Self::Rigid(block) => block.current().centre,
         }
     }
 
     /// Mobility `n·M⁻¹·n` of the block at a grip if it were rigid (1/kg).
     pub fn rigid_mobility(&self, grip: Grip, direction: Vec2) -> f64 {
-        match (self, grip) {
-            (Self::Flex(block), Grip::Node(node)) => block.rigid_mobility(node, direction),
-            (Self::Rigid(block), Grip::Arm(arm)) => block.rigid_mobility(arm, direction),
+        match (self, grip.point) {
+            (Self::Flex(block), Point::Node(node)) => block.rigid_mobility(node, direction),
+            (Self::Rigid(block), Point::Arm(_)) => block.rigid_mobility(grip.lever, direction),
             _ => mismatch(),
         }
     }
 
     /// Acceleration of a grip at the end of the step, without hard contact forces (m/s²).
     pub fn smooth_acceleration(&self, grip: Grip) -> Vec2 {
-        match (self, grip) {
-            (Self::Flex(block), Grip::Node(node)) => block.end_acceleration(node),
-            (Self::Rigid(block), Grip::Arm(arm)) => block.smooth_acceleration(arm),
+        match (self, grip.point) {
+            (Self::Flex(block), Point::Node(node)) => block.end_acceleration(node),
+            (Self::Rigid(block), Point::Arm(_)) => block.smooth_acceleration(grip.lever),
             _ => mismatch(),
         }
     }
 
-    /// Whether the grip carries no inertia, so that contact there is a quasi-static spring.
-    pub fn is_massless(&self, grip: Grip) -> bool {
-        match (self, grip) {
-            (Self::Flex(block), Grip::Node(node)) => block.is_massless(node),
+    /// Whether a point carries no inertia, so that contact there is a quasi-static spring.
+    pub fn is_massless(&self, point: Point) -> bool {
+        match (self, point) {
+            (Self::Flex(block), Point::Node(node)) => block.is_massless(node),
             _ => false,
         }
     }
 }
 
-/// A grip of the wrong kind is a programming error inside this crate.
+/// A point of the wrong kind is a programming error inside this crate.
 #[cold]
 fn mismatch() -> ! {
     panic!("a node grips only flexible blocks, an arm only rigid ones")

@@ -48,6 +48,7 @@ pub struct RigidBlock {
     inverse_effective: [f64; 3],
     force: [f64; 3],
     weights: Weights,
+    dt: f64,
     is_prescribed: bool,
 }
 
@@ -67,7 +68,7 @@ impl RigidBlock {
     pub fn prescribed(start: RigidMotion, end: RigidMotion) -> Self {
         Self {
             start,
-            current: end,
+            current: start,
             free: end,
             smooth_start: [0.0; 3],
             smooth_end: [0.0; 3],
@@ -76,6 +77,7 @@ impl RigidBlock {
             inverse_effective: [0.0; 3],
             force: [0.0; 3],
             weights: Weights::default(),
+            dt: 0.0,
             is_prescribed: true,
         }
     }
@@ -125,7 +127,7 @@ impl RigidBlock {
             .map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 });
         Self {
             start,
-            current: free,
+            current: start,
             free,
             smooth_start,
             smooth_end,
@@ -134,6 +136,7 @@ impl RigidBlock {
             inverse_effective,
             force: load.force,
             weights,
+            dt,
             is_prescribed: false,
         }
     }
@@ -143,14 +146,23 @@ impl RigidBlock {
         &self.start
     }
 
-    /// Motion at the end of the step, as far as it is known.
+    /// Motion at the current iterate: at the beginning of the step until the first correction.
     pub fn current(&self) -> &RigidMotion {
         &self.current
     }
 
-    /// Motion at the end of the step without multipliers.
-    pub fn free_motion(&self) -> &RigidMotion {
-        &self.free
+    /// Where a free body's velocity, or the prescribed motion, takes the body.
+    ///
+    /// Not the free motion: under a heavy neighbour that misses the neighbour's force, and may be anywhere.
+    pub fn drift(&self) -> RigidMotion {
+        if self.is_prescribed {
+            return self.free;
+        }
+        RigidMotion {
+            centre: self.start.centre + self.dt * self.start.velocity,
+            angle: self.start.angle + self.dt * self.start.spin,
+            ..self.start
+        }
     }
 
     /// Whether the motion is given.
@@ -163,30 +175,34 @@ impl RigidBlock {
         self.mass
     }
 
-    /// See [`super::Block::compliance`], at the current angle.
+    /// See [`super::Block::compliance`], for two levers.
     pub fn compliance(&self, at: Vec2, from: Vec2) -> Mat2 {
-        let turn = rotation(self.current.angle);
-        mobility(&self.inverse_effective, turn * at, turn * from)
+        mobility(&self.inverse_effective, at, from)
     }
 
-    /// Force and torque about the centre of mass of a world force at `arm`.
-    pub fn wrench(&self, arm: Vec2, force: Vec2) -> [f64; 3] {
-        let lever = rotation(self.current.angle) * arm;
-        [force.x, force.y, lever.x * force.y - lever.y * force.x]
+    /// Velocity at the end of a lever (m/s).
+    pub fn velocity(&self, lever: Vec2) -> Vec2 {
+        self.current.velocity + self.current.spin * perp(lever)
     }
 
     /// See [`super::Block::smooth_acceleration`]; the centripetal part is left out, as in `G a`.
-    pub fn smooth_acceleration(&self, arm: Vec2) -> Vec2 {
-        let lever = rotation(self.current.angle) * arm;
+    pub fn smooth_acceleration(&self, lever: Vec2) -> Vec2 {
         Vec2::new(self.smooth_end[0], self.smooth_end[1]) + self.smooth_end[2] * perp(lever)
     }
 
-    /// Displacement of a grip from the free motion's end to the current iterate, linear in the dofs (m).
+    /// Moves the iterate away from the free motion by what a wrench does.
     pub fn set_position_increment(&mut self, wrench: [f64; 3]) {
         let b0 = self.weights.b0;
         let step: [f64; 3] = std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]);
-        self.current.centre = self.free.centre + Vec2::new(step[0], step[1]);
-        self.current.angle = self.free.angle + step[2];
+        self.current = self.free;
+        self.current.centre += Vec2::new(step[0], step[1]);
+        self.current.angle += step[2];
+    }
+
+    /// Displacement of the end of a lever over the step, linear in the dofs (m).
+    pub fn displacement(&self, lever: Vec2) -> Vec2 {
+        let turned = self.current.angle - self.start.angle;
+        self.current.centre - self.start.centre + turned * perp(lever)
     }
 
     /// Sets velocity and smooth acceleration for the part of the contact forces that acts as (C.5) says.
@@ -198,6 +214,24 @@ impl RigidBlock {
         for (sum, change) in self.smooth_end.iter_mut().zip(change) {
             *sum += change;
         }
+    }
+
+    /// Whether no damping acts and no axis is locked.
+    pub(super) fn moves_freely(&self) -> bool {
+        !self.is_prescribed
+            && self.inverse_effective == self.inverse_mass
+            && self.inverse_mass.iter().all(|inverse| *inverse > 0.0)
+    }
+
+    /// Applied force and torque, gravity included (N, N, N m).
+    pub(super) fn force(&self) -> [f64; 3] {
+        self.force
+    }
+
+    /// Adds a rigid motion to the end velocity (m/s, rad/s).
+    pub(super) fn add_velocity(&mut self, velocity: Vec2, spin: f64) {
+        self.current.velocity += velocity;
+        self.current.spin += spin;
     }
 
     /// Adds an impulse (N s, N s, N m s) to the end velocity.
@@ -221,9 +255,8 @@ impl RigidBlock {
         }
     }
 
-    /// Acceleration of a grip under a wrench (m/s²).
-    pub fn respond(&self, arm: Vec2, wrench: [f64; 3]) -> Vec2 {
-        let lever = rotation(self.current.angle) * arm;
+    /// Acceleration at the end of a lever under a wrench (m/s²).
+    pub fn respond(&self, lever: Vec2, wrench: [f64; 3]) -> Vec2 {
         let change: [f64; 3] = std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]);
         Vec2::new(change[0], change[1]) + change[2] * perp(lever)
     }
@@ -243,9 +276,8 @@ impl RigidBlock {
             + self.mass[2] * motion.spin * motion.spin)
     }
 
-    /// Mobility of the body as if it were alone, `n·M⁻¹·n` at a grip (1/kg).
-    pub fn rigid_mobility(&self, arm: Vec2, direction: Vec2) -> f64 {
-        let lever = rotation(self.current.angle) * arm;
+    /// Mobility of the body as if it were alone, `n·M⁻¹·n` at a lever (1/kg).
+    pub fn rigid_mobility(&self, lever: Vec2, direction: Vec2) -> f64 {
         direction.dot(&(mobility(&self.inverse_mass, lever, lever) * direction))
     }
 }

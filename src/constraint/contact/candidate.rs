@@ -30,8 +30,8 @@ pub struct ContactKey {
 pub enum Pair {
     /// A node of a flexible block against a convex part of a rigid one.
     NodeOnPart {
-        /// Flexible block and its node.
-        node: (usize, usize),
+        /// Flexible block, its node and the boundary segment that starts there.
+        node: (usize, usize, usize),
         /// Rigid block.
         rigid: usize,
         /// Index into the island's parts.
@@ -47,7 +47,7 @@ pub enum Pair {
         radius: f64,
         /// Flexible block.
         flex: usize,
-        /// Range of the island's list of near segments.
+        /// Range of the island's list of near segments; of one segment if the vertex is round, which may touch several.
         segments: (usize, usize),
     },
     /// A node of a flexible block against the surface of another.

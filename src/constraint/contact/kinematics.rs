@@ -5,10 +5,10 @@
 
 use super::candidate::{Candidate, Pair};
 use super::memory::Remembered;
-use super::surface::{SurfacePoint, closest_surface_point};
+use super::surface::{SurfacePoint, closest_surface_point, faces, facing_point};
 use crate::constraint::geometry::{ConvexPart, Feature, Pose2, separation};
 use crate::math::{Vec2, perp, rotation};
-use crate::system::{Block, FlexBlock, Grip, RigidBlock};
+use crate::system::{Block, FlexBlock, Grip, Point, RigidBlock};
 use std::sync::Arc;
 
 /// One grip of a row with its weight: +1 at the point, `-N_i` at the target.
@@ -56,23 +56,41 @@ impl Kinematics {
             .sum()
     }
 
-    /// Whether some grip with a weight has no inertia.
-    pub fn is_soft(&self, blocks: &[Block]) -> bool {
+    /// Whether only rigid blocks take part.
+    pub fn is_rigid(&self, blocks: &[Block]) -> bool {
         self.attachments()
             .iter()
-            .any(|a| a.weight.abs() > 1e-9 && blocks[a.block].is_massless(a.grip))
+            .all(|a| matches!(blocks[a.block], Block::Rigid(_)))
     }
 
-    fn new(gap: f64, normal: Vec2, position: Vec2, grips: &[(usize, Grip, f64)]) -> Self {
+    /// Whether some grip with a weight has no inertia.
+    pub fn is_massless(&self, blocks: &[Block]) -> bool {
+        self.attachments()
+            .iter()
+            .any(|a| a.weight.abs() > 1e-9 && blocks[a.block].is_massless(a.grip.point))
+    }
+
+    fn new(
+        scene: &Scene<'_>,
+        gap: f64,
+        normal: Vec2,
+        position: Vec2,
+        grips: &[(usize, Point, f64)],
+    ) -> Self {
         let mut attachments = [Attachment {
             block: 0,
-            grip: Grip::Node(0),
+            grip: Grip {
+                point: Point::Node(0),
+                lever: Vec2::zeros(),
+            },
             weight: 0.0,
         }; 3];
-        for (slot, &(block, grip, weight)) in attachments.iter_mut().zip(grips) {
+        // One point of action for all, so that the forces of a contact have no couple.
+        for (slot, &(block, point, weight)) in attachments.iter_mut().zip(grips) {
+            let lever = position - scene.blocks[block].centre();
             *slot = Attachment {
                 block,
-                grip,
+                grip: Grip { point, lever },
                 weight,
             };
         }
@@ -121,15 +139,24 @@ impl Candidate {
                 flex,
                 segments,
             } => {
-                let point = scene.blocks[rigid].position(Grip::Arm(arm));
-                let start = scene.blocks[rigid].start_position(Grip::Arm(arm));
-                let hit = surface_of(scene, flex, segments, (point, start))?;
-                let position = point - (hit.distance) * hit.normal;
+                let point = scene.blocks[rigid].position(Point::Arm(arm));
+                let start = scene.blocks[rigid].start_position(Point::Arm(arm));
+                let hit = if radius > 0.0 {
+                    facing_point(
+                        flex_of(scene, flex)?,
+                        &scene.segments[segments.0..segments.1],
+                        point,
+                        start,
+                    )
+                } else {
+                    surface_of(scene, flex, segments, (point, start))
+                }?;
+                let position = point - hit.distance * hit.normal;
                 // The arm of the force ends where the force acts, on the flexible surface.
-                let grip = Grip::Arm(rigid_of(scene, rigid)?.current().arm(position));
+                let held = Point::Arm(rigid_of(scene, rigid)?.current().arm(position));
                 Some(on_surface(
                     scene,
-                    (rigid, grip),
+                    (rigid, held),
                     flex,
                     &hit,
                     radius,
@@ -141,12 +168,12 @@ impl Candidate {
                 flex,
                 segments,
             } => {
-                let point = scene.blocks[block].position(Grip::Node(node));
-                let start = scene.blocks[block].start_position(Grip::Node(node));
+                let point = scene.blocks[block].position(Point::Node(node));
+                let start = scene.blocks[block].start_position(Point::Node(node));
                 let hit = surface_of(scene, flex, segments, (point, start))?;
                 Some(on_surface(
                     scene,
-                    (block, Grip::Node(node)),
+                    (block, Point::Node(node)),
                     flex,
                     &hit,
                     0.0,
@@ -179,24 +206,29 @@ fn flex_of<'a>(scene: &Scene<'a>, block: usize) -> Option<&'a FlexBlock> {
 
 fn node_on_part(
     scene: &Scene<'_>,
-    (block, node): (usize, usize),
+    (block, node, segment): (usize, usize, usize),
     rigid: usize,
     placed: &PlacedPart,
     reference: Option<Feature>,
 ) -> Option<Kinematics> {
     let motion = rigid_of(scene, rigid)?;
-    let point = scene.blocks[block].position(Grip::Node(node));
-    let start = scene.blocks[block].start_position(Grip::Node(node));
+    let point = scene.blocks[block].position(Point::Node(node));
+    let start = scene.blocks[block].start_position(Point::Node(node));
     let arm = motion.current().arm(point);
     let local = placed.pose.inverse_transform(arm);
     let local_start = placed.pose.inverse_transform(motion.start().arm(start));
     let found = separation(&placed.part, local, reference, Some(local_start));
     let normal = rotation(motion.current().angle) * placed.pose.rotate(found.normal);
+    let is_sharp_vertex =
+        matches!(found.feature, Feature::Vertex(_)) && placed.part.radius() == 0.0;
+    if !faces(flex_of(scene, block)?, segment, normal, is_sharp_vertex) {
+        return None;
+    }
     let grips = [
-        (block, Grip::Node(node), 1.0),
-        (rigid, Grip::Arm(arm), -1.0),
+        (block, Point::Node(node), 1.0),
+        (rigid, Point::Arm(arm), -1.0),
     ];
-    let mut kinematics = Kinematics::new(found.distance, normal, point, &grips);
+    let mut kinematics = Kinematics::new(scene, found.distance, normal, point, &grips);
     kinematics.feature = Some(found.feature);
     Some(kinematics)
 }
@@ -217,7 +249,7 @@ fn surface_of(
 
 fn on_surface(
     scene: &Scene<'_>,
-    (block, grip): (usize, Grip),
+    (block, held): (usize, Point),
     flex: usize,
     hit: &SurfacePoint,
     radius: f64,
@@ -227,23 +259,24 @@ fn on_surface(
         Some(target) => target.model().mesh().boundary().segments()[hit.segment],
         None => [0, 0],
     };
-    let point = (block, grip, 1.0);
+    let point = (block, held, 1.0);
     let gap = hit.distance - radius;
     if hit.xi <= 0.0 || hit.xi >= 1.0 {
         let node = if hit.xi <= 0.0 { first } else { second };
         return Kinematics::new(
+            scene,
             gap,
             hit.normal,
             position,
-            &[point, (flex, Grip::Node(node), -1.0)],
+            &[point, (flex, Point::Node(node), -1.0)],
         );
     }
     let grips = [
         point,
-        (flex, Grip::Node(first), hit.xi - 1.0),
-        (flex, Grip::Node(second), -hit.xi),
+        (flex, Point::Node(first), hit.xi - 1.0),
+        (flex, Point::Node(second), -hit.xi),
     ];
-    Kinematics::new(gap, hit.normal, position, &grips)
+    Kinematics::new(scene, gap, hit.normal, position, &grips)
 }
 
 fn point_on_face(
@@ -254,7 +287,7 @@ fn point_on_face(
     radius: f64,
 ) -> Option<Kinematics> {
     let motion = rigid_of(scene, face)?.current();
-    let point = scene.blocks[block].position(Grip::Arm(arm));
+    let point = scene.blocks[block].position(Point::Arm(arm));
     let [a, b] = ends.map(|end| motion.point(end));
     let along = b - a;
     let (gap, normal) = if along.norm() > 0.0 {
@@ -272,8 +305,8 @@ fn point_on_face(
     let position = point - (gap + radius) * normal;
     let own = rigid_of(scene, block)?.current().arm(position);
     let grips = [
-        (block, Grip::Arm(own), 1.0),
-        (face, Grip::Arm(motion.arm(position)), -1.0),
+        (block, Point::Arm(own), 1.0),
+        (face, Point::Arm(motion.arm(position)), -1.0),
     ];
-    Some(Kinematics::new(gap, normal, position, &grips))
+    Some(Kinematics::new(scene, gap, normal, position, &grips))
 }

@@ -1,6 +1,6 @@
 //! The deformed surface of a flexible block as a target: the boundary polyline, material on its left.
 
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, cross, perp};
 use crate::system::FlexBlock;
 
 /// The point of a surface closest to a given one.
@@ -101,7 +101,8 @@ fn nearest_segment(block: &FlexBlock, segments: &[u32], point: Vec2) -> Option<S
             distance,
         });
     }
-    // Closest to a node: the sign comes from the mean normal of both its segments, the direction from the node itself.
+    // Closest to a node: measured along the direction from it, within the cone of its segments' normals. Where these are
+    // parallel, or rounding decides on the direction, that is the normal of the surface.
     let other = if xi == 0.0 {
         boundary.previous_segment(segment)
     } else {
@@ -113,25 +114,90 @@ fn nearest_segment(block: &FlexBlock, segments: &[u32], point: Vec2) -> Option<S
     } else {
         own
     };
+    let offset = point - foot;
+    let sign = if mean.dot(&offset) >= 0.0 { 1.0 } else { -1.0 };
     let distance = squared.sqrt();
-    let (a, b) = ends(segment);
-    if distance <= 1e-12 * (b - a).norm() {
-        return Some(SurfacePoint {
-            segment,
-            xi,
-            normal: mean,
-            distance: 0.0,
-        });
-    }
-    let sign = if mean.dot(&(point - foot)) >= 0.0 {
-        1.0
+    let direction = if distance > 0.0 {
+        sign * offset / distance
     } else {
-        -1.0
+        mean
     };
+    let normal = nearest_in_cone(direction, [own, outward(other)], mean);
     Some(SurfacePoint {
         segment,
         xi,
-        normal: sign * (point - foot) / distance,
-        distance: sign * distance,
+        normal,
+        distance: normal.dot(&offset),
+    })
+}
+
+/// The unit vector between two normals that is nearest to `direction`.
+fn nearest_in_cone(direction: Vec2, [one, other]: [Vec2; 2], mean: Vec2) -> Vec2 {
+    // Within the cone a vector is as near to the mean as the normals are.
+    if direction.dot(&mean) >= one.dot(&mean) {
+        direction
+    } else if direction.dot(&one) >= direction.dot(&other) {
+        one
+    } else {
+        other
+    }
+}
+
+/// Whether the surface around a boundary node faces a target whose outward normal is `normal`, so that the target can push
+/// it into the body. `segment` starts at the node.
+///
+/// A node that lies exactly under the corner of a box is as near to the side of the box as to its bottom; only the bottom
+/// can push. With `exactly` the normal must be opposite to one in the node's cone: two vertices touch only there,
+/// elsewhere the target's vertex touches a segment.
+pub(super) fn faces(block: &FlexBlock, segment: usize, normal: Vec2, exactly: bool) -> bool {
+    let boundary = block.model().mesh().boundary();
+    let outward = |segment: usize| {
+        let [a, b] = boundary.segments()[segment];
+        -perp(block.position(b) - block.position(a)).normalize()
+    };
+    let normals = [
+        outward(segment),
+        outward(boundary.previous_segment(segment)),
+    ];
+    let mean = normals[0] + normals[1];
+    let mean = if mean.norm() > 1e-9 {
+        mean.normalize()
+    } else {
+        normals[0]
+    };
+    let is_within = -normal.dot(&mean) >= normals[0].dot(&mean) - 1e-12;
+    let turns_left = cross(normals[1], normals[0]) > 0.0;
+    if exactly {
+        return is_within && turns_left;
+    }
+    is_within || normals.iter().any(|own| own.dot(&normal) < -FACING)
+}
+
+/// Least cosine between a surface and a face that push each other.
+const FACING: f64 = 0.05;
+
+/// Where a round vertex meets one boundary segment: at a foot between the segment's nodes, on the side the vertex came
+/// from; `None` elsewhere, as nodes meet the part by themselves.
+pub(super) fn facing_point(
+    block: &FlexBlock,
+    segments: &[u32],
+    point: Vec2,
+    start: Vec2,
+) -> Option<SurfacePoint> {
+    if let Some(entered) = entered_segment(block, segments, point, start) {
+        return Some(entered);
+    }
+    let &segment = segments.first()?;
+    let [a, b] = block.model().mesh().boundary().segments()[segment as usize];
+    let (from, to) = (block.position(a), block.position(b));
+    let along = to - from;
+    let normal = -perp(along).normalize();
+    let distance = normal.dot(&(point - from));
+    let xi = (point - from).dot(&along) / along.norm_squared();
+    (distance > 0.0 && xi > 0.0 && xi < 1.0).then_some(SurfacePoint {
+        segment: segment as usize,
+        xi,
+        normal,
+        distance,
     })
 }

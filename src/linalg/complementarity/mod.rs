@@ -150,8 +150,13 @@ impl Solver {
     /// least-squares multipliers are the answer, which vary smoothly; above it the solver looks for the
     /// exact one, in which some of the rows open. Default `1e-6`; gaps read from an `f32` world need more.
     pub fn with_redundancy_tolerance(mut self, residual: f64) -> Self {
-        self.redundancy_tolerance = residual;
+        self.set_redundancy_tolerance(residual);
         self
+    }
+
+    /// See [`Solver::with_redundancy_tolerance`].
+    pub fn set_redundancy_tolerance(&mut self, residual: f64) {
+        self.redundancy_tolerance = residual;
     }
 
     /// Solves the problem as well as it can; `outcome.residual` says how well.

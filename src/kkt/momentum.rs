@@ -1,0 +1,99 @@
+//! Angular momentum of bodies that touch each other and nothing else.
+//!
+//! The multipliers of a contact have no resultant and no couple, so linear momentum is kept to rounding. Angular momentum
+//! `Σ (x - C) × m (v - V) + L` is not: a contact that closes within the step acts at the levers of the step's end, and
+//! positions are corrected without their velocities. The error, of the first order in the step, is taken out by turning the
+//! velocities of the whole group rigidly, which changes no relative velocity at any contact.
+
+use super::island::Island;
+use crate::math::{Vec2, cross, perp};
+use crate::system::Moments;
+
+impl Island {
+    /// Restores the angular momentum of every group of free bodies that touch.
+    pub(super) fn balance_angular_momentum(&mut self) {
+        self.groups.clear();
+        self.groups.extend(0..self.blocks.len());
+        for contact in &self.contacts {
+            if !contact.acts() {
+                continue;
+            }
+            for pair in contact.kinematics.attachments().windows(2) {
+                let [one, other] = [0, 1].map(|end| root(&self.groups, pair[end].block));
+                self.groups[one.max(other)] = one.min(other);
+            }
+        }
+        for block in 0..self.groups.len() {
+            self.groups[block] = root(&self.groups, block);
+        }
+        for block in 0..self.groups.len() {
+            let has_partner = self.groups[block + 1..].contains(&block);
+            if self.groups[block] == block && has_partner {
+                self.balance_group(block);
+            }
+        }
+    }
+
+    fn balance_group(&mut self, group: usize) {
+        let mut common = None;
+        let (mut start, mut end) = (Sum::default(), Sum::default());
+        let members = || (0..self.groups.len()).filter(|&block| self.groups[block] == group);
+        for block in members() {
+            // One acceleration for all has no moment about the centre of mass.
+            let own = self.blocks[block].uniform_acceleration();
+            if own.is_none() || *common.get_or_insert(own) != own {
+                return;
+            }
+            start.add(&self.blocks[block].start_moments());
+            end.add(&self.blocks[block].end_moments());
+        }
+        let centre = end.centre();
+        let (mut gained, mut inertia) = (0.0, 0.0);
+        for block in members() {
+            gained -= start.angular_momentum(&self.blocks[block].start_moments());
+            let moments = self.blocks[block].end_moments();
+            gained += end.angular_momentum(&moments);
+            inertia += moments.inertia + moments.mass * (moments.centre - centre).norm_squared();
+        }
+        let spin = -gained / inertia;
+        for block in 0..self.groups.len() {
+            if self.groups[block] == group {
+                let lever = self.blocks[block].centre() - centre;
+                self.blocks[block].add_rigid_velocity(spin * perp(lever), spin);
+            }
+        }
+    }
+}
+
+fn root(groups: &[usize], mut block: usize) -> usize {
+    while groups[block] != block {
+        block = groups[block];
+    }
+    block
+}
+
+/// Mass, first moment and momentum of a group.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    mass: f64,
+    moment: Vec2,
+    momentum: Vec2,
+}
+
+impl Sum {
+    fn add(&mut self, moments: &Moments) {
+        self.mass += moments.mass;
+        self.moment += moments.mass * moments.centre;
+        self.momentum += moments.mass * moments.velocity;
+    }
+
+    fn centre(&self) -> Vec2 {
+        self.moment / self.mass
+    }
+
+    /// What a member has about the group's moving centre of mass.
+    fn angular_momentum(&self, member: &Moments) -> f64 {
+        let velocity = member.velocity - self.momentum / self.mass;
+        member.spin_momentum + member.mass * cross(member.centre - self.centre(), velocity)
+    }
+}

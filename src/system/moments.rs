@@ -1,0 +1,103 @@
+//! What a block weighs in the balance of momentum of bodies that touch.
+
+use super::Block;
+use crate::body::Frame;
+use crate::math::{Vec2, add_node_vec, node_vec, perp};
+
+/// Mass and momentum of a free block.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Moments {
+    /// Mass (kg).
+    pub mass: f64,
+    /// Centre of mass (m).
+    pub centre: Vec2,
+    /// Its velocity (m/s).
+    pub velocity: Vec2,
+    /// Angular momentum about the centre (N m s).
+    pub spin_momentum: f64,
+    /// Inertia about the centre (kg m²).
+    pub inertia: f64,
+}
+
+impl Block {
+    /// The acceleration that applied forces give a free block everywhere alike (m/s²); `None` if something holds, damps or
+    /// turns it.
+    pub fn uniform_acceleration(&self) -> Option<Vec2> {
+        match self {
+            Self::Flex(block) => {
+                let is_free = block.kind == Frame::Free && block.model.rayleigh().mass == 0.0;
+                block.uniform.filter(|_| is_free)
+            }
+            Self::Rigid(block) => {
+                let [x, y, torque] = block.force();
+                let mass = block.mass();
+                let is_free = block.moves_freely() && torque == 0.0;
+                is_free.then(|| Vec2::new(x / mass[0], y / mass[1]))
+            }
+        }
+    }
+
+    /// Moments of a free block at the beginning of the step.
+    pub fn start_moments(&self) -> Moments {
+        match self {
+            Self::Flex(block) => Moments {
+                mass: block.arms.mass,
+                centre: block.start_frame.centre,
+                velocity: block.start_frame.velocity,
+                spin_momentum: block.start_momentum,
+                inertia: block.arms.polar,
+            },
+            Self::Rigid(block) => {
+                let ([mass, _, inertia], start) = (block.mass(), block.start());
+                Moments {
+                    mass,
+                    centre: start.centre,
+                    velocity: start.velocity,
+                    spin_momentum: inertia * start.spin,
+                    inertia,
+                }
+            }
+        }
+    }
+
+    /// Moments of a free block at the end of the step.
+    pub fn end_moments(&self) -> Moments {
+        match self {
+            Self::Flex(block) => {
+                let centre = block.frame.centre;
+                Moments {
+                    mass: block.arms.mass,
+                    centre,
+                    velocity: block.frame.velocity,
+                    spin_momentum: block.angular_momentum(centre),
+                    inertia: block.inertia_of(&block.displacement),
+                }
+            }
+            Self::Rigid(block) => {
+                let ([mass, _, inertia], end) = (block.mass(), block.current());
+                Moments {
+                    mass,
+                    centre: end.centre,
+                    velocity: end.velocity,
+                    spin_momentum: inertia * end.spin,
+                    inertia,
+                }
+            }
+        }
+    }
+
+    /// Adds a rigid motion about the centre to the end velocity (m/s, rad/s).
+    pub fn add_rigid_velocity(&mut self, velocity: Vec2, spin: f64) {
+        match self {
+            Self::Flex(block) => {
+                let centre = block.frame.centre;
+                block.frame.velocity += velocity;
+                for node in 0..block.model.n_nodes() {
+                    let arm = node_vec(&block.position, node) - centre;
+                    add_node_vec(&mut block.velocity, node, velocity + spin * perp(arm));
+                }
+            }
+            Self::Rigid(block) => block.add_velocity(velocity, spin),
+        }
+    }
+}
