@@ -237,14 +237,17 @@ fn known_world() -> Known {
                 .0
         })
         .collect();
+    // Two metres long, 0.2 m aside.
+    let hang: Real = 3.96;
+    let hang = hang.sqrt();
     let hook = world.insert_body(RigidBodyBuilder::fixed().translation(Vector::new(10.0, 5.0)));
     let (bob, _) = world.insert(
         RigidBodyBuilder::dynamic()
-            .translation(Vector::new(10.2, 5.0 - (4.0 as Real - 0.04).sqrt()))
+            .translation(Vector::new(10.2, 5.0 - hang))
             .can_sleep(false),
         ColliderBuilder::ball(0.01),
     );
-    let arm = Vector::new(-0.2, (4.0 as Real - 0.04).sqrt());
+    let arm = Vector::new(-0.2, hang);
     let joint = RevoluteJointBuilder::new().local_anchor2(arm);
     world.insert_impulse_joint(hook, bob, joint);
     let welded = [-0.5, 0.5].map(|offset: Real| {
