@@ -663,7 +663,7 @@ fn step_lengths_that_are_negative_or_not_finite_are_refused() {
 #[test]
 fn step_lengths_beyond_reason_never_panic_and_never_leave_numbers_that_are_not_finite() {
     for dt in [
-        1e-30, 1e-12, 1e-9, 1e-7, 1e-3, 10.0, 1e3, 1e6, 1e18, 1e30, 1e38,
+        1e-30, 1e-12, 1e-9, 1.1e-8, 1e-7, 1e-3, 10.0, 1e3, 1e6, 1e18, 1e30, 1e38,
     ] {
         let mut scene = Scene::new();
         for _ in 0..5 {
@@ -1100,11 +1100,6 @@ fn numbers_beyond_all_measure_set_on_a_body_can_be_taken_back() {
                 let outcome = set(&mut scene.flex_bodies[block], huge).map_err(StepError::from);
                 let state = scene.state();
                 let is_refused = outcome.is_err() || (0..2).all(|_| scene.step().is_err());
-                if cfg!(feature = "f64") && huge < 1e100 {
-                    // Rapier's f64 holds this much: the body may be gone for good, but nothing is broken.
-                    scene.assert_flexible_state_is_finite();
-                    continue;
-                }
                 assert!(is_refused, "{name} = {huge:e} after {warm_up} steps");
                 assert_eq!(state, scene.state(), "{name} = {huge:e}");
                 let now = scene.world.bodies[scene.crate_body].position().translation;

@@ -15,8 +15,9 @@ pub fn to_rapier(v: Vec2) -> Vector {
     Vector::new(v.x as Real, v.y as Real)
 }
 
-/// Whether rapier's precision holds a number and its square, with room for the sums of its boxes.
+/// Whether a number is finite and not beyond use: rapier's `f32` holds its square, and in `f64` its products with forces
+/// stay finite.
 #[inline]
 pub fn is_held(value: f64) -> bool {
-    value.abs() <= (Real::MAX as f64).sqrt() / 16.0
+    value.abs() <= 1e18
 }

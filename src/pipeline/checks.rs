@@ -9,7 +9,7 @@ use crate::system::{Block, Step};
 
 /// Shortest step (s). Contact forces change velocities within a step, so accelerations grow as its inverse and the
 /// weights as its square: below this, sums of both keep no digits.
-const SHORTEST: f64 = 1e-9;
+const SHORTEST: f64 = 1e-8;
 
 /// Longest step (s): nothing a step resolves takes longer, and predictors grow as its square.
 const LONGEST: f64 = 1e4;

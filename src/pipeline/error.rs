@@ -26,7 +26,7 @@ pub enum StepError {
     Kkt(#[from] KktError),
     /// The step length is negative, not finite or out of range.
     #[error(
-        "the step length is {0} s: set `integration_parameters.dt` to zero or a positive number from 1e-9 s to 1e4 s"
+        "the step length is {0} s: set `integration_parameters.dt` to zero or a positive number from 1e-8 s to 1e4 s"
     )]
     StepLength(f64),
     /// Gravity is not finite or too large for rapier's precision.
