@@ -661,6 +661,40 @@ fn step_lengths_that_are_negative_or_not_finite_are_refused() {
 }
 
 #[test]
+fn step_lengths_beyond_reason_never_panic_and_never_leave_numbers_that_are_not_finite() {
+    for dt in [
+        1e-30, 1e-12, 1e-9, 1.1e-8, 1e-7, 1e-3, 10.0, 1e3, 1e6, 1e18, 1e30, 1e38,
+    ] {
+        let mut scene = Scene::new();
+        for _ in 0..5 {
+            scene.step().expect("a sound step");
+        }
+        let (state, dt_before) = (scene.state(), scene.world.integration_parameters.dt);
+        scene.world.integration_parameters.dt = dt as Real;
+        let mut is_refused = false;
+        for _ in 0..3 {
+            let outcome = scene.step();
+            is_refused = matches!(outcome, Err(StepError::StepLength(_)));
+            scene.assert_flexible_state_is_finite();
+        }
+        scene.world.integration_parameters.dt = dt_before;
+        if is_refused {
+            assert_eq!(state, scene.state(), "dt = {dt:e}");
+        }
+        for step in 0..30 {
+            let outcome = scene.step();
+            // A step of seconds lets bodies fall through floors, to wherever they then are.
+            let may_be_lost = dt > 1.0 && !is_refused;
+            assert!(
+                may_be_lost || outcome.is_ok(),
+                "dt = {dt:e}, step {step} after it: {outcome:?}"
+            );
+            scene.assert_flexible_state_is_finite();
+        }
+    }
+}
+
+#[test]
 fn setters_refuse_missing_nodes_and_numbers_that_are_not_finite() {
     let is_node = |error: &FlexBodyError| matches!(error, FlexBodyError::Node { node: 16, .. });
     let is_bad = |error: &FlexBodyError| matches!(error, FlexBodyError::NotFinite(_));
@@ -814,4 +848,265 @@ fn a_body_whose_surface_the_user_removed_stops_the_step() {
         StepError::Body(FlexBodyError::NoCarrier(scene.block))
     );
     assert_eq!(state, scene.state());
+}
+
+#[test]
+fn a_world_that_is_not_the_bodys_own_is_refused_even_if_its_handles_look_alike() {
+    // Both worlds were filled in the same order, so that the carriers have equal handles.
+    let mut scene = Scene::new();
+    let mut other = PhysicsWorld::new();
+    for x in [0.0, 3.0, 6.0] {
+        other.insert(
+            RigidBodyBuilder::dynamic().translation(Vector::new(x, 5.0)),
+            ColliderBuilder::ball(0.5),
+        );
+    }
+    let carrier = scene.flex_bodies[scene.block].rigid_body_handle();
+    assert!(other.bodies.contains(carrier), "the handles look alike");
+    let (state, n_bodies) = (scene.state(), other.bodies.len());
+    let outcome = scene
+        .flex
+        .step(&mut other, &mut scene.flex_bodies)
+        .map(|_| ());
+    assert_eq!(
+        outcome,
+        Err(StepError::Body(FlexBodyError::NoCarrier(scene.block)))
+    );
+    let removed = scene.flex_bodies.remove(scene.block, &mut other);
+    assert_eq!(removed.err(), Some(FlexBodyError::NoCarrier(scene.block)));
+    assert_eq!((state, n_bodies), (scene.state(), other.bodies.len()));
+    scene.assert_goes_on();
+}
+
+#[test]
+fn a_shape_the_user_put_in_place_of_the_surface_is_refused() {
+    let mut scene = Scene::new();
+    scene.step().expect("a sound step");
+    let surface = scene.flex_bodies[scene.block].collider_handle();
+    let collider = scene
+        .world
+        .colliders
+        .get_mut(surface)
+        .expect("the surface is there");
+    collider.set_shape(SharedShape::ball(0.5));
+    let error = scene.step().expect_err("the surface is a ball");
+    assert_eq!(
+        error,
+        StepError::Body(FlexBodyError::NoCarrier(scene.block))
+    );
+}
+
+#[test]
+fn numbers_that_are_not_finite_in_a_rigid_body_never_reach_a_flexible_one() {
+    type Spoil = fn(&mut PhysicsWorld, RigidBodyHandle, Real);
+    let spoils: [(&str, Spoil); 7] = [
+        ("linvel", |world, body, bad| {
+            world.bodies[body].set_linvel(Vector::new(bad, 0.0), true);
+        }),
+        ("angvel", |world, body, bad| {
+            world.bodies[body].set_angvel(bad, true);
+        }),
+        ("translation", |world, body, bad| {
+            world.bodies[body].set_translation(Vector::new(0.5, bad), true);
+        }),
+        ("force", |world, body, bad| {
+            world.bodies[body].add_force(Vector::new(0.0, bad), true);
+        }),
+        ("torque", |world, body, bad| {
+            world.bodies[body].add_torque(bad, true);
+        }),
+        ("shape", |world, body, bad| {
+            let collider = world.bodies[body].colliders()[0];
+            world.colliders[collider].set_shape(SharedShape::ball(bad));
+        }),
+        ("friction", |world, body, bad| {
+            let collider = world.bodies[body].colliders()[0];
+            world.colliders[collider].set_friction(bad);
+        }),
+    ];
+    for (name, spoil) in spoils {
+        for bad in [Real::NAN, Real::INFINITY] {
+            let mut scene = Scene::new();
+            for _ in 0..60 {
+                scene.step().expect("a box on a block");
+            }
+            assert!(
+                scene.flex.report().n_claimed() == 1,
+                "the box is on the block"
+            );
+            spoil(&mut scene.world, scene.crate_body, bad);
+            for step in 0..20 {
+                let outcome = scene.step();
+                if step == 0 {
+                    println!("{name} = {bad}: {outcome:?}");
+                }
+                scene.assert_flexible_state_is_finite();
+            }
+            // Whatever happened, taking the culprit out lets the world go on.
+            scene.world.remove_body(scene.crate_body);
+            scene.assert_goes_on();
+        }
+    }
+}
+
+#[test]
+fn gravity_that_is_not_finite_is_refused_and_leaves_no_trace() {
+    for warm_up in [0, 10] {
+        for bad in [Real::NAN, Real::INFINITY] {
+            let mut scene = Scene::new();
+            for _ in 0..warm_up {
+                scene.step().expect("a sound step");
+            }
+            let state = scene.state();
+            let gravity = scene.world.gravity;
+            scene.world.gravity = Vector::new(0.0, bad);
+            for _ in 0..2 {
+                let outcome = scene.step();
+                assert!(outcome.is_err(), "gravity {bad} after {warm_up} steps");
+                scene.assert_flexible_state_is_finite();
+            }
+            assert_eq!(state, scene.state(), "gravity {bad} after {warm_up} steps");
+            scene.world.gravity = gravity;
+            scene.assert_goes_on();
+        }
+    }
+}
+
+#[test]
+fn loads_beyond_all_measure_are_refused_and_leave_no_trace() {
+    for warm_up in [0, 10] {
+        let mut scene = Scene::new();
+        for _ in 0..warm_up {
+            scene.step().expect("a sound step");
+        }
+        let state = scene.state();
+        let body = &mut scene.flex_bodies[scene.block];
+        body.set_nodal_force(5, [f64::MAX, f64::MAX])
+            .expect("a finite force");
+        let error = scene.step().expect_err("the result overflows");
+        println!("{error}");
+        assert_eq!(state, scene.state(), "after {warm_up} steps");
+        let body = &mut scene.flex_bodies[scene.block];
+        body.set_nodal_force(5, [0.0; 2]).expect("a finite force");
+        scene.assert_goes_on();
+    }
+}
+
+#[test]
+fn a_failed_step_leaves_rapiers_queries_working() {
+    let mut scene = Scene::new();
+    for _ in 0..10 {
+        scene.step().expect("a sound step");
+    }
+    // A change that rapier must take over, in the very step that fails.
+    let newcomer = RigidBodyBuilder::dynamic().translation(Vector::new(8.0, 4.0));
+    let (_, ball) = scene.world.insert(newcomer, ColliderBuilder::ball(0.5));
+    let body = &mut scene.flex_bodies[scene.block];
+    body.set_nodal_force(5, [f64::MAX, f64::MAX])
+        .expect("a finite force");
+    scene.step().expect_err("the result overflows");
+    let down = |x: Real| Ray::new(Vector::new(x, 9.0), Vector::new(0.0, -1.0));
+    let hit = |scene: &Scene, x: Real| {
+        let filter = QueryFilter::default();
+        scene
+            .world
+            .cast_ray(&down(x), 20.0, true, filter)
+            .map(|(handle, _)| handle)
+    };
+    let surface = scene.flex_bodies[scene.block].collider_handle();
+    assert_eq!(hit(&scene, 0.1), Some(surface), "the block is still there");
+    let found = hit(&scene, 8.0);
+    assert!(found.is_some(), "the floor or the newcomer");
+    let body = &mut scene.flex_bodies[scene.block];
+    body.set_nodal_force(5, [0.0; 2]).expect("a finite force");
+    scene.step().expect("the world goes on");
+    assert_eq!(hit(&scene, 8.0), Some(ball));
+    scene.assert_goes_on();
+}
+
+#[test]
+fn a_carrier_the_user_moved_is_refused_until_it_is_put_back() {
+    let mut scene = Scene::new();
+    scene.step().expect("a sound step");
+    let carrier = scene.flex_bodies[scene.block].rigid_body_handle();
+    scene.world.bodies[carrier].set_translation(Vector::new(0.0, 1.0), true);
+    let state = scene.state();
+    let error = scene
+        .step()
+        .expect_err("the surface is not where the body is");
+    assert_eq!(
+        error,
+        StepError::Body(FlexBodyError::NoCarrier(scene.block))
+    );
+    assert_eq!(state, scene.state());
+    scene.world.bodies[carrier].set_translation(Vector::ZERO, true);
+    scene.assert_goes_on();
+}
+
+#[test]
+fn a_rigid_body_with_a_force_that_is_not_finite_is_named_and_everything_waits_for_its_cure() {
+    let mut scene = Scene::new();
+    for _ in 0..60 {
+        scene.step().expect("a box on a block");
+    }
+    let state = scene.state();
+    let crate_body = scene.crate_body;
+    scene.world.bodies[crate_body].add_force(Vector::new(0.0, Real::NAN), true);
+    for _ in 0..2 {
+        let error = scene.step().expect_err("the box is pushed by no number");
+        assert_eq!(error, StepError::RigidBody(crate_body));
+        assert!(error.to_string().contains("reset its forces"), "{error}");
+        assert_eq!(state, scene.state());
+    }
+    scene.world.bodies[crate_body].reset_forces(true);
+    scene.assert_goes_on();
+}
+
+#[test]
+fn a_rigid_body_that_rapier_disables_is_reported() {
+    let mut scene = Scene::new();
+    scene.step().expect("a sound step");
+    let crate_body = scene.crate_body;
+    scene.world.bodies[crate_body].set_linvel(Vector::new(Real::NAN, 0.0), true);
+    scene.step().expect("rapier takes the box out");
+    assert_eq!(scene.flex.report().quarantined_bodies(), [crate_body]);
+    scene.step().expect("a sound step");
+    assert!(scene.flex.report().quarantined_bodies().is_empty());
+}
+
+#[test]
+fn numbers_beyond_all_measure_set_on_a_body_can_be_taken_back() {
+    type Set = fn(&mut FlexBody, f64) -> Result<(), FlexBodyError>;
+    let setters: [(&str, Set); 3] = [
+        ("body force", |body, x| body.set_body_force([0.0, x])),
+        ("gravity scale", |body, x| {
+            body.set_gravity_scale(if x == 0.0 { 1.0 } else { x })
+        }),
+        ("velocities", |body, x| {
+            let velocities = vec![x; 2 * body.n_nodes()];
+            body.set_velocities(&velocities)
+        }),
+    ];
+    for (name, set) in setters {
+        for warm_up in [0, 10] {
+            for huge in [1e60, 1e200, f64::MAX] {
+                let mut scene = Scene::new();
+                for _ in 0..warm_up {
+                    scene.step().expect("a sound step");
+                }
+                let block = scene.block;
+                let rigid = scene.world.bodies[scene.crate_body].position().translation;
+                // Refused by the setter, by the step, or so large that the step's result is.
+                let outcome = set(&mut scene.flex_bodies[block], huge).map_err(StepError::from);
+                let state = scene.state();
+                let is_refused = outcome.is_err() || (0..2).all(|_| scene.step().is_err());
+                assert!(is_refused, "{name} = {huge:e} after {warm_up} steps");
+                assert_eq!(state, scene.state(), "{name} = {huge:e}");
+                let now = scene.world.bodies[scene.crate_body].position().translation;
+                assert_eq!(rigid, now, "{name} = {huge:e}");
+                set(&mut scene.flex_bodies[block], 0.0).expect("a sound number");
+                scene.assert_goes_on();
+            }
+        }
+    }
 }

@@ -6,7 +6,7 @@ use super::flex_body::FlexBody;
 use super::frame::{Frame, frame_of_pins};
 use crate::fe::mesh::Mesh;
 use crate::fe::model::{MassKind, Model, ModelDescription};
-use crate::math::{Vec2, perp, rotation, to_rapier};
+use crate::math::{Vec2, is_held, perp, rotation};
 use std::sync::Arc;
 
 impl FlexBodyBuilder {
@@ -93,7 +93,7 @@ impl FlexBodyBuilder {
                 });
             }
         }
-        // In rapier's precision a large number may be infinite.
+        // In rapier's precision a large number, or its square, may be infinite.
         let held = [
             ("translation.x", self.translation.x),
             ("translation.y", self.translation.y),
@@ -101,7 +101,7 @@ impl FlexBodyBuilder {
             ("restitution", self.contact.restitution),
         ];
         for (name, value) in held {
-            if !to_rapier(Vec2::new(value, 0.0)).x.is_finite() {
+            if !is_held(value) {
                 return Err(BuildError::Number {
                     name,
                     value,

@@ -4,6 +4,7 @@ use super::handle::FlexBodyHandle;
 use crate::fe::material::MaterialError;
 use crate::fe::mesh::MeshError;
 use crate::fe::model::ModelError;
+use crate::math::is_held;
 use thiserror::Error;
 
 /// Why a body cannot be built. Nothing was changed.
@@ -92,12 +93,26 @@ pub enum FlexBodyError {
     /// A node is not pinned.
     #[error("node {0} is not pinned: pin it in the builder before prescribing its displacement")]
     NotPinned(usize),
-    /// A value is not finite.
-    #[error("{0} holds a number that is not finite: nothing was changed")]
+    /// A value is not finite, or too large for rapier's precision.
+    #[error("{0} holds a number that is not finite or too large for rapier: nothing was changed")]
     NotFinite(&'static str),
     /// The world does not hold the body's carrier.
     #[error(
-        "the world given does not hold the carrier of {0:?}: use the world it was inserted into, and remove the body from its set first"
+        "the world given does not hold the carrier of {0:?} as it was left: use the world it was inserted into, leave the pose and shape of its carrier alone, and remove the body from its set first"
     )]
     NoCarrier(FlexBodyHandle),
+}
+
+/// Refuses numbers that are not finite.
+pub(super) fn check_finite(name: &'static str, values: &[f64]) -> Result<(), FlexBodyError> {
+    let is_finite = values.iter().all(|value| value.is_finite());
+    is_finite
+        .then_some(())
+        .ok_or(FlexBodyError::NotFinite(name))
+}
+
+/// Refuses numbers that rapier's precision cannot hold.
+pub(super) fn check_held(name: &'static str, values: &[f64]) -> Result<(), FlexBodyError> {
+    let is_held = values.iter().all(|&value| is_held(value));
+    is_held.then_some(()).ok_or(FlexBodyError::NotFinite(name))
 }

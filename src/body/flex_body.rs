@@ -1,24 +1,15 @@
 //! A flexible body: its model, its committed motion, its loads, and what the last step told about it.
 
 use super::contact_settings::ContactSettings;
-use super::error::FlexBodyError;
+use super::error::{FlexBodyError, check_finite, check_held};
 use super::frame::{Arms, Frame};
-use super::state::FlexState;
+use super::state::{BodyEnergy, FlexState};
 use crate::fe::mesh::Mesh;
 use crate::fe::model::{Model, ModelError};
 use crate::fe::recovery::Stress;
 use crate::math::{Vec2, cross, node_vec};
 use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
 use std::sync::Arc;
-
-/// Energy of a body (J).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BodyEnergy {
-    /// Kinetic energy.
-    pub kinetic: f64,
-    /// Elastic energy.
-    pub elastic: f64,
-}
 
 /// A flexible body.
 #[derive(Debug)]
@@ -86,7 +77,8 @@ impl FlexBody {
 
     /// Brings the split and the kinetic energy up to date with the nodal velocities.
     fn velocity_changed(&mut self) {
-        let near = self.state.frame.velocity;
+        // Not the old centre's: what was refused for its size would leave its rounding.
+        let near = node_vec(&self.state.velocity, 0);
         self.state.frame.velocity = self.arms.centre(self.frame, &self.state.velocity, near);
         self.state.split_velocity(&self.arms, self.frame);
         let velocity = &self.state.velocity;
@@ -330,7 +322,7 @@ impl FlexBody {
     /// Prescribes the displacement of a pinned node (m); directions that are not pinned are ignored.
     ///
     /// # Errors
-    /// If the node does not exist, is not pinned, or the displacement is not finite.
+    /// If the node does not exist, is not pinned, or rapier's precision cannot hold the displacement.
     pub fn set_pin_displacement(
         &mut self,
         node: usize,
@@ -340,7 +332,7 @@ impl FlexBody {
         if !(self.is_fixed[2 * node] || self.is_fixed[2 * node + 1]) {
             return Err(FlexBodyError::NotPinned(node));
         }
-        check_finite("the displacement", &displacement)?;
+        check_held("the displacement", &displacement)?;
         self.prescribed[2 * node..2 * node + 2].copy_from_slice(&displacement);
         Ok(())
     }
@@ -348,7 +340,7 @@ impl FlexBody {
     /// Sets all nodal velocities, interleaved (m/s); pinned directions stay at rest.
     ///
     /// # Errors
-    /// If the length is not two per node or a velocity is not finite.
+    /// If the length is not two per node or rapier's precision cannot hold a velocity.
     pub fn set_velocities(&mut self, velocities: &[f64]) -> Result<(), FlexBodyError> {
         if velocities.len() != self.state.velocity.len() {
             return Err(FlexBodyError::Length {
@@ -357,7 +349,7 @@ impl FlexBody {
                 n_nodes: self.n_nodes(),
             });
         }
-        check_finite("the velocities", velocities)?;
+        check_held("the velocities", velocities)?;
         for ((own, &new), &is_fixed) in self
             .state
             .velocity
@@ -416,6 +408,13 @@ impl FlexBody {
         }
     }
 
+    /// Takes back what [`FlexBody::start_with`] gave, if no step has been committed since.
+    pub(crate) fn forget_start(&mut self) {
+        if !self.is_started {
+            self.state.clear_accelerations();
+        }
+    }
+
     pub(crate) fn energy_reserve(&self) -> f64 {
         self.energy_reserve
     }
@@ -437,12 +436,4 @@ fn sum_of_nodes(dofs: &[f64]) -> Vec2 {
     dofs.chunks_exact(2)
         .map(|value| Vec2::new(value[0], value[1]))
         .sum()
-}
-
-fn check_finite(name: &'static str, values: &[f64]) -> Result<(), FlexBodyError> {
-    if values.iter().all(|value| value.is_finite()) {
-        Ok(())
-    } else {
-        Err(FlexBodyError::NotFinite(name))
-    }
 }

@@ -23,6 +23,15 @@ pub struct FrameMotion {
     pub spin_rate: f64,
 }
 
+/// Energy of a body (J).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyEnergy {
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Elastic energy.
+    pub elastic: f64,
+}
+
 /// The committed motion of a flexible body; nodal vectors are interleaved.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlexState {

@@ -82,14 +82,20 @@ impl FlexBodySet {
     }
 }
 
-/// Whether these sets hold the carrier of a body, with its surface where the body is: other worlds have equal handles.
+/// Whether these sets hold the carrier of a body, with its surface where the body is: other worlds have equal handles,
+/// and the user may have moved the carrier or given it another shape.
 pub(crate) fn is_carried(body: &FlexBody, bodies: &RigidBodySet, colliders: &ColliderSet) -> bool {
-    let Some(collider) = colliders.get(body.collider_handle()) else {
+    let (Some(carrier), Some(collider)) = (
+        bodies.get(body.rigid_body_handle()),
+        colliders.get(body.collider_handle()),
+    ) else {
         return false;
     };
+    let is_at_origin = *carrier.position() == Pose::IDENTITY
+        && collider.position_wrt_parent() == Some(&Pose::IDENTITY);
     let surface = collider.shape().as_polyline();
     let nodes = body.mesh().boundary().nodes();
-    bodies.contains(body.rigid_body_handle())
+    is_at_origin
         && collider.parent() == Some(body.rigid_body_handle())
         && surface.is_some_and(|polyline| {
             let vertices = polyline.vertices();

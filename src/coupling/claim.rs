@@ -9,6 +9,7 @@ use crate::math::{from_rapier, node_vec, to_rapier};
 use crate::rapier::math::{Real, Vector};
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
+use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
 
 /// Who may touch whom.
@@ -40,7 +41,7 @@ pub(crate) struct ClaimedFlex {
 /// The result of a claim, with its buffers.
 #[derive(Debug, Default)]
 pub(crate) struct Claims {
-    /// Flexible bodies, in the order of their slots.
+    /// Flexible bodies, in the order of their places.
     pub flex: Vec<ClaimedFlex>,
     /// Claimed rigid bodies, in the order they were reached.
     pub rigid: Vec<RigidBodyHandle>,
@@ -49,9 +50,10 @@ pub(crate) struct Claims {
     /// Component of every member: flexible bodies first, then rigid ones.
     parent: Vec<usize>,
     rigid_index: HashMap<RigidBodyHandle, usize>,
-    flex_of_collider: HashMap<ColliderHandle, usize>,
+    pub(super) flex_of_collider: HashMap<ColliderHandle, usize>,
     seen: HashSet<(ColliderHandle, ColliderHandle)>,
-    swept_hits: Vec<(usize, ColliderHandle)>,
+    /// What the swept boxes meet, by flexible body.
+    pub(super) swept_hits: Vec<(usize, ColliderHandle)>,
     neighbours: Vec<ColliderHandle>,
 }
 
@@ -89,8 +91,6 @@ impl Claims {
             let edge = length / nodes.len() as f64;
             let fall = from_rapier(sets.gravity).norm() * body.gravity_scale().abs() * dt * dt;
             let swept = loosened(swept, (0.5 * edge + fall) as Real);
-            self.flex_of_collider
-                .insert(body.collider_handle(), self.flex.len());
             let index = handle.into_raw_parts().0;
             self.flex.push(ClaimedFlex {
                 index,
@@ -100,10 +100,17 @@ impl Claims {
                 edge,
             });
         }
+        // The order of insertion is not physics.
+        self.flex.sort_unstable_by(|one, other| {
+            order_of_boxes(&one.swept, &other.swept).then(one.index.cmp(&other.index))
+        });
+        for (slot, flex) in self.flex.iter().enumerate() {
+            self.flex_of_collider.insert(flex.collider, slot);
+        }
     }
 
     /// Finds what the swept boxes meet, with rapier's tree, after the detection step has taken over the user's changes.
-    fn sweep(&mut self, sets: &RapierSets<'_>) {
+    pub fn sweep(&mut self, sets: &RapierSets<'_>) {
         self.swept_hits.clear();
         let dt = sets.integration_parameters.dt;
         let rigid = sets
@@ -146,12 +153,10 @@ impl Claims {
                     .for_each(|(handle, collider)| visit(handle, collider));
             }
         }
-        // The order of the tree is not that of the handles.
-        self.swept_hits
-            .sort_unstable_by_key(|(index, handle)| (*index, handle.into_raw_parts()));
+        self.swept_hits.sort_unstable_by_key(|(index, _)| *index);
     }
 
-    /// Walks the contact graph of the detection step.
+    /// Walks the contact graph from what the swept boxes met.
     pub fn walk(&mut self, sets: &RapierSets<'_>) {
         self.rigid.clear();
         self.rigid_index.clear();
@@ -159,7 +164,6 @@ impl Claims {
         self.seen.clear();
         self.parent.clear();
         self.parent.extend(0..self.flex.len());
-        self.sweep(sets);
         for flex in 0..self.flex.len() {
             self.collect_neighbours(sets, flex);
             for slot in 0..self.neighbours.len() {
@@ -199,7 +203,7 @@ impl Claims {
             self.neighbours.push(handle);
         }
         self.neighbours
-            .sort_unstable_by_key(|handle| handle.into_raw_parts());
+            .sort_unstable_by(|&one, &other| order_of_colliders(sets, one, other));
         self.neighbours.dedup();
         self.neighbours
             .retain(|&other| may_touch(sets, own.collider, other));
@@ -262,12 +266,11 @@ impl Claims {
             }
         }
         self.neighbours
-            .sort_unstable_by_key(|handle| handle.into_raw_parts());
+            .sort_unstable_by(|&one, &other| order_of_colliders(sets, one, other));
         self.neighbours.dedup();
         for slot in 0..self.neighbours.len() {
             let other = self.neighbours[slot];
-            let is_ordered = own.into_raw_parts() < other.into_raw_parts();
-            let ordered = if is_ordered {
+            let ordered = if order_of_colliders(sets, own, other).is_lt() {
                 (own, other)
             } else {
                 (other, own)
@@ -315,6 +318,38 @@ impl Claims {
         // The smaller index stays the root, so that components do not depend on the order of unions.
         self.parent[one.max(other)] = one.min(other);
     }
+}
+
+/// Order of two colliders by their places, which neither handles nor rapier's graphs change; by handle at the same place.
+fn order_of_colliders(
+    sets: &RapierSets<'_>,
+    one: ColliderHandle,
+    other: ColliderHandle,
+) -> Ordering {
+    let place = |handle| {
+        let collider: &Collider = sets.colliders.get(handle)?;
+        let pose = collider.position();
+        Some([pose.translation.x, pose.translation.y, pose.rotation.re])
+    };
+    order_of_numbers(
+        &place(one).unwrap_or_default(),
+        &place(other).unwrap_or_default(),
+    )
+    .then_with(|| one.into_raw_parts().cmp(&other.into_raw_parts()))
+}
+
+fn order_of_boxes(one: &Aabb, other: &Aabb) -> Ordering {
+    let corners = |aabb: &Aabb| [aabb.mins.x, aabb.mins.y, aabb.maxs.x, aabb.maxs.y];
+    order_of_numbers(&corners(one), &corners(other))
+}
+
+/// Lexicographic order.
+fn order_of_numbers(one: &[Real], other: &[Real]) -> Ordering {
+    let pairs = one.iter().zip(other);
+    pairs
+        .map(|(a, b)| a.total_cmp(b))
+        .find(|order| order.is_ne())
+        .unwrap_or(Ordering::Equal)
 }
 
 /// The dynamic rigid body of a collider, if the flexible stage can solve for it.
@@ -386,12 +421,18 @@ fn loosened(aabb: Aabb, margin: Real) -> Aabb {
     aabb.loosened(margin.max(0.0))
 }
 
+/// Pose of a collider on its body, up to date even where the user has moved the body since the last step.
+pub(super) fn placed_on(body: &RigidBody, collider: &Collider) -> Pose {
+    let offset = collider.position_wrt_parent().copied().unwrap_or_default();
+    *body.position() * offset
+}
+
 /// Box of a collider from where it is to where its velocity takes it.
 pub(crate) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) -> Aabb {
-    let aabb = collider.compute_aabb();
     let Some(body) = collider.parent().and_then(|parent| bodies.get(parent)) else {
-        return aabb;
+        return collider.compute_aabb();
     };
+    let aabb = collider.shape().compute_aabb(&placed_on(body, collider));
     if body.is_fixed() {
         return aabb;
     }

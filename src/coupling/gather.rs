@@ -2,16 +2,20 @@
 
 use super::candidates::{self, Names};
 use super::claim::{ClaimedPair, Claims, claimable_parent};
-use super::masters::{Masters, local_centre, read_motion};
+use super::masters::Masters;
+use super::reading::{
+    GatherError, at_rest, is_held_load, is_held_motion, law_of, load_of, offset_of, owner_of,
+    prescribed_block,
+};
 use super::sets::RapierSets;
 use super::shapes::{ShapeCache, pose_of};
 use crate::body::FlexBodySet;
-use crate::constraint::contact::{ContactLaw, Owner};
+use crate::constraint::contact::Owner;
 use crate::constraint::geometry::Pose2;
 use crate::kkt::{Island, KktError};
 use crate::math::{Vec2, from_rapier};
 use crate::rapier::prelude::*;
-use crate::system::{Block, FlexBlock, FlexLoad, RigidBlock, RigidLoad, RigidMotion, Step};
+use crate::system::{Block, FlexBlock, FlexLoad, RigidBlock, Step};
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
@@ -79,7 +83,8 @@ impl Gatherer {
     /// Fills `island` with one component.
     ///
     /// # Errors
-    /// If an effective matrix is not positive definite. The blocks taken must then be [given back](Self::give_back).
+    /// If an effective matrix is not positive definite or a rigid body is not finite. The blocks taken are then lost and
+    /// will be built anew.
     pub fn gather(
         &mut self,
         settings: &GatherSettings,
@@ -88,7 +93,7 @@ impl Gatherer {
         claims: &mut Claims,
         masters: &Masters,
         island: &mut Island,
-    ) -> Result<(), KktError> {
+    ) -> Result<(), GatherError> {
         let component = settings.component;
         island.clear();
         self.placed.clear();
@@ -103,12 +108,12 @@ impl Gatherer {
         for index in 0..claims.rigid.len() {
             let handle = claims.rigid[index];
             if claims.component_of_rigid(handle) == Some(component) {
-                self.add_claimed(handle, settings, sets, masters, island);
+                self.add_claimed(handle, settings, sets, masters, island)?;
             }
         }
         for slot in 0..claims.pairs.len() {
             let pair = claims.pairs[slot];
-            self.add_pair(pair, settings, sets, claims, island);
+            self.add_pair(pair, settings, sets, claims, island)?;
         }
         Ok(())
     }
@@ -189,16 +194,20 @@ impl Gatherer {
         sets: &RapierSets<'_>,
         masters: &Masters,
         island: &mut Island,
-    ) {
+    ) -> Result<(), GatherError> {
         let Some(body) = sets.bodies.get(handle) else {
-            return;
+            return Ok(());
         };
         let (motion, acceleration) = masters.motion(handle, body);
         let load = load_of(body, from_rapier(sets.gravity));
+        if !is_held_motion(&motion) || !is_held_load(&load) {
+            return Err(GatherError::RigidBody(handle));
+        }
         let Step { dt, weights } = settings.step;
         let block = RigidBlock::free(motion, acceleration, &load, weights, dt);
         self.push_rigid(block, Some(handle), island);
         self.bodies.push((island.blocks.len() - 1, handle));
+        Ok(())
     }
 
     fn push_rigid(
@@ -223,7 +232,7 @@ impl Gatherer {
         sets: &RapierSets<'_>,
         claims: &mut Claims,
         island: &mut Island,
-    ) {
+    ) -> Result<(), GatherError> {
         let component = settings.component;
         match pair {
             ClaimedPair::FlexRigid(flex, collider)
@@ -231,16 +240,16 @@ impl Gatherer {
             {
                 let own = claims.flex[flex];
                 let Some(block) = self.flex_blocks.get(&flex).copied() else {
-                    return;
+                    return Ok(());
                 };
                 let Some(placed) = self.place(collider, settings, sets, island) else {
-                    return;
+                    return Ok(());
                 };
                 let names = Names {
                     one: Owner::Flex(own.index),
                     other: owner_of(collider),
                 };
-                let law = law_of(sets.colliders, own.collider, collider);
+                let law = law_of(sets.colliders, own.collider, collider)?;
                 candidates::flex_rigid(
                     island,
                     block,
@@ -252,43 +261,44 @@ impl Gatherer {
                 );
             }
             ClaimedPair::FlexFlex(one, other) if claims.component_of_flex(one) == component => {
-                // The finer surface is the contactor; the lower slot if they are equal.
+                // The finer surface is the contactor; the first by place if they are equal.
                 let is_finer = claims.flex[other].edge < claims.flex[one].edge * (1.0 - 1e-9);
                 let (contactor, target) = if is_finer { (other, one) } else { (one, other) };
                 let blocks = [contactor, target].map(|flex| self.flex_blocks.get(&flex).copied());
                 let [Some(points), Some(surface)] = blocks else {
-                    return;
+                    return Ok(());
                 };
                 let (points_of, surface_of) = (claims.flex[contactor], claims.flex[target]);
                 let names = Names {
                     one: Owner::Flex(points_of.index),
                     other: Owner::Flex(surface_of.index),
                 };
-                let law = law_of(sets.colliders, points_of.collider, surface_of.collider);
+                let law = law_of(sets.colliders, points_of.collider, surface_of.collider)?;
                 let edge = points_of.edge.max(surface_of.edge);
                 candidates::flex_flex(island, points, surface, names, law, edge);
             }
             ClaimedPair::RigidRigid(one, other) => {
                 if self.component_of_pair([one, other], sets, claims) != Some(component) {
-                    return;
+                    return Ok(());
                 }
                 let Some(first) = self.place(one, settings, sets, island) else {
-                    return;
+                    return Ok(());
                 };
                 let Some(second) = self.place(other, settings, sets, island) else {
-                    return;
+                    return Ok(());
                 };
                 let names = Names {
                     one: owner_of(one),
                     other: owner_of(other),
                 };
-                let law = law_of(sets.colliders, one, other);
+                let law = law_of(sets.colliders, one, other)?;
                 let blocks = [first.block, second.block];
                 let parts = [first.parts, second.parts];
                 candidates::rigid_rigid(island, blocks, parts, names, law, settings.prediction);
             }
             _ => {}
         }
+        Ok(())
     }
 
     fn component_of_pair(
@@ -339,97 +349,5 @@ impl Gatherer {
         let placed = PlacedCollider { block, parts };
         self.placed.insert(handle, placed.clone());
         Some(placed)
-    }
-}
-
-fn owner_of(handle: ColliderHandle) -> Owner {
-    Owner::Collider(handle.into_raw_parts().0)
-}
-
-/// Pose of a collider about its body's centre of mass.
-fn offset_of(collider: &Collider, body: &RigidBody) -> Pose2 {
-    let mut pose = collider
-        .position_wrt_parent()
-        .map_or_else(Pose2::identity, pose_of);
-    pose.translation -= local_centre(body);
-    pose
-}
-
-fn at_rest(pose: &Pose2) -> RigidMotion {
-    RigidMotion {
-        centre: pose.translation,
-        angle: pose.sin.atan2(pose.cos),
-        ..RigidMotion::default()
-    }
-}
-
-/// A fixed or kinematic body, or one rapier keeps for itself: it moves as rapier says.
-fn prescribed_block(body: &RigidBody, dt: f64) -> RigidBlock {
-    let start = read_motion(body);
-    if body.is_fixed() {
-        let rest = RigidMotion {
-            velocity: Vec2::zeros(),
-            spin: 0.0,
-            ..start
-        };
-        return RigidBlock::prescribed(rest, rest);
-    }
-    let next = match body.body_type() {
-        RigidBodyType::KinematicPositionBased => *body.next_position(),
-        _ => body.predict_position_using_velocity(dt as crate::rapier::math::Real),
-    };
-    let next = pose_of(&next);
-    let centre = next.transform(local_centre(body));
-    let turned = (next.sin.atan2(next.cos) - start.angle + std::f64::consts::PI)
-        .rem_euclid(std::f64::consts::TAU)
-        - std::f64::consts::PI;
-    let end = RigidMotion {
-        centre,
-        angle: start.angle + turned,
-        velocity: (centre - start.centre) / dt,
-        spin: turned / dt,
-    };
-    RigidBlock::prescribed(start, end)
-}
-
-fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
-    let properties = body.mass_properties();
-    let inverse_mass = [
-        f64::from(properties.effective_inv_mass.x),
-        f64::from(properties.effective_inv_mass.y),
-        f64::from(properties.effective_world_inv_inertia),
-    ];
-    let mass = f64::from(body.mass());
-    let force = from_rapier(body.user_force()) + mass * f64::from(body.gravity_scale()) * gravity;
-    let (linear, angular) = (
-        f64::from(body.linear_damping()),
-        f64::from(body.angular_damping()),
-    );
-    RigidLoad {
-        inverse_mass,
-        force: [force.x, force.y, f64::from(body.user_torque())],
-        damping: [linear, linear, angular],
-    }
-}
-
-fn law_of(colliders: &ColliderSet, one: ColliderHandle, other: ColliderHandle) -> ContactLaw {
-    let (Some(one), Some(other)) = (colliders.get(one), colliders.get(other)) else {
-        return ContactLaw::default();
-    };
-    let friction = CoefficientCombineRule::combine(
-        one.friction(),
-        other.friction(),
-        one.friction_combine_rule(),
-        other.friction_combine_rule(),
-    );
-    let restitution = CoefficientCombineRule::combine(
-        one.restitution(),
-        other.restitution(),
-        one.restitution_combine_rule(),
-        other.restitution_combine_rule(),
-    );
-    ContactLaw {
-        friction: f64::from(friction).max(0.0),
-        restitution: f64::from(restitution).max(0.0),
     }
 }

@@ -8,12 +8,15 @@ mod claim;
 mod gather;
 mod hand_back;
 mod masters;
+mod nearby;
+mod reading;
 mod sets;
 mod shapes;
 
-pub(crate) use carrier::write_surface;
+pub(crate) use carrier::{is_carried, write_surface};
 pub(crate) use claim::Claims;
 pub(crate) use gather::{GatherSettings, Gatherer};
 pub(crate) use hand_back::{Landing, hand_back, land};
 pub(crate) use masters::Masters;
+pub(crate) use reading::{GatherError, is_held_motion};
 pub use sets::RapierSets;

@@ -58,4 +58,4 @@ pub fn add_node_vec(dofs: &mut [f64], node: usize, value: Vec2) {
 
 mod real;
 
-pub use real::{from_rapier, to_rapier};
+pub use real::{from_rapier, is_held, to_rapier};

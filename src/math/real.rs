@@ -14,3 +14,10 @@ pub fn from_rapier(v: Vector) -> Vec2 {
 pub fn to_rapier(v: Vec2) -> Vector {
     Vector::new(v.x as Real, v.y as Real)
 }
+
+/// Whether a number is finite and not beyond use: rapier's `f32` holds its square, and in `f64` its products with forces
+/// stay finite.
+#[inline]
+pub fn is_held(value: f64) -> bool {
+    value.abs() <= 1e18
+}

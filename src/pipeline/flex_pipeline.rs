@@ -1,45 +1,16 @@
 //! The pipeline: settings and buffers, no state of its own but the memory of contacts and claimed bodies.
 
+use super::error::StepError;
 use super::report::StepReport;
-use crate::body::{FlexBodyError, FlexBodyHandle, FlexBodySet};
+use crate::body::FlexBodySet;
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
     Claims, GatherSettings, Gatherer, Landing, Masters, RapierSets, hand_back, land, write_surface,
 };
-use crate::integrator::{Beta2, IntegratorError};
-use crate::kkt::{ImpactTreatment, Island, KktError, SolveSettings};
+use crate::integrator::Beta2;
+use crate::kkt::{ImpactTreatment, Island, SolveSettings};
 use crate::rapier::prelude::*;
-use crate::system::{Block, Step};
-use thiserror::Error;
-
-/// Why a step was not taken. Flexible bodies, rigid bodies and contacts are as they were before it.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum StepError {
-    /// A body or its carrier is not where it should be.
-    #[error(transparent)]
-    Body(#[from] FlexBodyError),
-    /// The integrator is unstable for a body's mesh at this step length.
-    #[error("flexible body {body:?}: {source}")]
-    Integrator {
-        /// The body.
-        body: FlexBodyHandle,
-        /// The critical step.
-        source: IntegratorError,
-    },
-    /// The contact problem could not be solved.
-    #[error(transparent)]
-    Kkt(#[from] KktError),
-    /// The step length is negative or not finite.
-    #[error(
-        "the step length is {0} s: set `integration_parameters.dt` to zero or a positive finite number"
-    )]
-    StepLength(f64),
-    /// The result is not finite.
-    #[error(
-        "flexible body {0:?} would move to a position that is not finite: look at its loads and velocities"
-    )]
-    NotFinite(FlexBodyHandle),
-}
+use crate::system::Step;
 
 /// Steps a rapier world together with its flexible bodies.
 ///
@@ -220,56 +191,42 @@ impl FlexPipeline {
             return Ok(&self.report);
         }
         let mut clock = Clock::start();
+        let dissipated = self.report.energy.dissipated;
         let step = self.check(&sets, flex_bodies)?;
         self.claims.look_ahead(&sets, flex_bodies);
+        let is_detected = step.dt == 0.0 || self.claims.needs_detection(&sets);
         clock.lap(&mut self.report.times.claim);
-        sets.detect();
-        clock.lap(&mut self.report.times.rapier);
-        if step.dt == 0.0 {
-            return Ok(&self.report);
+        if is_detected {
+            sets.detect();
+            self.report.note_quarantine(&sets);
+            clock.lap(&mut self.report.times.rapier);
+            if step.dt == 0.0 {
+                // The tree may be out to be optimized: a detection step without changes puts it back for queries.
+                sets.detect();
+                return Ok(&self.report);
+            }
+            self.claims.sweep(&sets);
         }
         self.claims.walk(&sets);
         self.gatherer.retain(&sets, flex_bodies);
         clock.lap(&mut self.report.times.claim);
-        self.solve_islands(step, &sets, flex_bodies, &mut clock)?;
+        if let Err(error) = self.solve_islands(step, &sets, flex_bodies, &mut clock) {
+            self.undo(flex_bodies, dissipated);
+            if is_detected {
+                // As above.
+                sets.detect();
+            }
+            return Err(error);
+        }
         hand_back(&mut self.landings, &mut sets);
         clock.lap(&mut self.report.times.hand_back);
         sets.step();
+        self.report.note_quarantine(&sets);
         clock.lap(&mut self.report.times.rapier);
         land(&self.landings, &mut sets, &mut self.masters);
         self.commit(&mut sets, flex_bodies);
         clock.lap(&mut self.report.times.hand_back);
         Ok(&self.report)
-    }
-
-    fn check(&self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> Result<Step, StepError> {
-        let dt = f64::from(sets.integration_parameters.dt);
-        if !(dt.is_finite() && dt >= 0.0) {
-            return Err(StepError::StepLength(dt));
-        }
-        for (handle, body) in flex_bodies.iter() {
-            let has_carrier = sets.bodies.contains(body.rigid_body_handle())
-                && sets.colliders.contains(body.collider_handle());
-            if !has_carrier {
-                return Err(FlexBodyError::NoCarrier(handle).into());
-            }
-            if !self.integrator.is_unconditionally_stable() {
-                self.integrator
-                    .require_implicit()
-                    .and_then(|()| {
-                        let frequency = body.model().largest_frequency();
-                        self.integrator.check_step(dt, frequency)
-                    })
-                    .map_err(|source| StepError::Integrator {
-                        body: handle,
-                        source,
-                    })?;
-            }
-        }
-        Ok(Step {
-            dt,
-            weights: self.integrator.weights(dt),
-        })
     }
 
     /// Solves every component; commits nothing.
@@ -293,8 +250,12 @@ impl FlexPipeline {
         let factorizations = self.gatherer.n_factorizations();
         for slot in 0..self.components.len() {
             let outcome = self.solve_island(self.components[slot], step, sets, flex_bodies, clock);
+            if outcome.is_err() {
+                // Buffers and blocks may hold numbers that are not finite: they are built anew.
+                self.island = Island::default();
+                return outcome;
+            }
             self.gatherer.give_back(&mut self.island);
-            outcome?;
         }
         self.report.n_islands = self.components.len();
         self.report.n_claimed = self.landings.len();
@@ -345,20 +306,6 @@ impl FlexPipeline {
             .filter_map(|&index| flex_bodies.at_index(index))
             .map(|(_, body)| body.energy_reserve())
             .sum()
-    }
-
-    fn check_finite(&self, flex_bodies: &FlexBodySet) -> Result<(), StepError> {
-        for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
-            if let (Block::Flex(block), Some(index)) = (block, index) {
-                // A sum of squares is finite only if every term is.
-                let balance = block.end_balance();
-                let is_finite = (balance.kinetic + balance.elastic).is_finite();
-                if let (false, Some((handle, _))) = (is_finite, flex_bodies.at_index(*index)) {
-                    return Err(StepError::NotFinite(handle));
-                }
-            }
-        }
-        Ok(())
     }
 
     /// Makes the solved motions the committed ones and writes the surfaces.

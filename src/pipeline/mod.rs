@@ -1,8 +1,11 @@
 //! The step: detect, claim, predict, constrain, solve, correct, hand back.
 
 mod accounts;
+mod checks;
+mod error;
 mod flex_pipeline;
 mod report;
 
-pub use flex_pipeline::{FlexPipeline, StepError};
+pub use error::StepError;
+pub use flex_pipeline::FlexPipeline;
 pub use report::{ContactReport, EnergyReport, Participant, StageTimes, StepReport};

@@ -1,7 +1,8 @@
 //! What a step tells about itself.
 
 use crate::body::FlexBodyHandle;
-use crate::rapier::prelude::ColliderHandle;
+use crate::coupling::RapierSets;
+use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
 
 /// One side of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,6 +96,8 @@ pub struct StepReport {
     pub(super) n_pivots: usize,
     pub(super) n_factorizations: u64,
     pub(super) times: StageTimes,
+    pub(super) quarantined_bodies: Vec<RigidBodyHandle>,
+    pub(super) quarantined_colliders: Vec<ColliderHandle>,
 }
 
 impl StepReport {
@@ -179,6 +182,17 @@ impl StepReport {
         &self.times
     }
 
+    /// Rigid bodies that rapier disabled because their motion was not finite, in either of its two steps; its own list
+    /// tells of the second only.
+    pub fn quarantined_bodies(&self) -> &[RigidBodyHandle] {
+        &self.quarantined_bodies
+    }
+
+    /// Colliders that rapier disabled because their shape or pose was not finite.
+    pub fn quarantined_colliders(&self) -> &[ColliderHandle] {
+        &self.quarantined_colliders
+    }
+
     /// Sum of the normal and tangential contact forces on a participant (N).
     pub fn force_on(&self, participant: Participant) -> [f64; 2] {
         let mut sum = [0.0; 2];
@@ -195,6 +209,15 @@ impl StepReport {
             sum[1] += sign * (contact.normal_force * ny + contact.tangential_force * nx);
         }
         sum
+    }
+
+    /// Adds what rapier's last step disabled.
+    pub(super) fn note_quarantine(&mut self, sets: &RapierSets<'_>) {
+        let quarantine = sets.physics_pipeline.quarantine();
+        self.quarantined_bodies
+            .extend_from_slice(quarantine.bodies());
+        self.quarantined_colliders
+            .extend_from_slice(quarantine.colliders());
     }
 
     pub(super) fn clear(&mut self) {

@@ -323,3 +323,93 @@ fn a_moving_platform_carries_a_flexible_block_with_it() -> Outcome {
     }
     Ok(())
 }
+
+#[test]
+fn a_fixed_body_that_comes_moves_or_goes_is_met_in_the_same_step() -> Outcome {
+    // Nothing here moves but the block, so no step needs rapier's detection step: what the user does must count all the same.
+    let mut scene = Scene::default();
+    let block = scene.insert(square().translation([0.0, 0.0]))?;
+    let bottom = |scene: &Scene| {
+        let positions = scene.flex_bodies[block].positions();
+        positions
+            .iter()
+            .skip(1)
+            .step_by(2)
+            .fold(f64::INFINITY, |low, y| low.min(*y))
+    };
+    scene.steps(10)?;
+    // A table under it, a little below.
+    let top = bottom(&scene) - 1e-3;
+    let table = RigidBodyBuilder::fixed().translation(vector(0.0, top - 0.25));
+    let (table, surface) = scene
+        .world
+        .insert(table, ColliderBuilder::cuboid(2.0, 0.25));
+    scene.steps(120)?;
+    assert!((bottom(&scene) - top).abs() < 1e-5, "it rests on the table");
+    // Moved down by a metre, the table lets it fall and catches it again.
+    scene.world.bodies[table].set_translation(vector(0.0, top - 1.25), true);
+    scene.step()?;
+    assert!(
+        scene.flex.report().contacts().is_empty(),
+        "the table is gone from where it was"
+    );
+    scene.steps(240)?;
+    assert!(
+        (bottom(&scene) - top + 1.0).abs() < 1e-5,
+        "it rests a metre lower"
+    );
+    // Disabled, it is not there; enabled in the way of the falling block, it is.
+    scene.world.bodies[table].set_enabled(false);
+    scene.step()?;
+    assert!(
+        scene.flex.report().contacts().is_empty(),
+        "the table is disabled"
+    );
+    scene.world.bodies[table].set_translation(vector(0.0, top - 2.25), true);
+    scene.world.bodies[table].set_enabled(true);
+    scene.steps(240)?;
+    assert!(
+        (bottom(&scene) - top + 2.0).abs() < 1e-5,
+        "it rests two metres lower"
+    );
+    // Another shape counts at once, and none lets it fall.
+    scene.world.colliders[surface].set_shape(SharedShape::cuboid(2.0, 0.125));
+    scene.steps(240)?;
+    assert!(
+        (bottom(&scene) - top + 2.125).abs() < 1e-5,
+        "it rests on a thinner table"
+    );
+    scene.world.remove_body(table);
+    scene.step()?;
+    assert!(
+        scene.flex.report().contacts().is_empty(),
+        "the table was removed"
+    );
+    Ok(())
+}
+
+#[test]
+fn a_box_inserted_or_teleported_onto_a_block_is_claimed_in_the_same_step() -> Outcome {
+    let mut scene = Scene::with_floor();
+    scene.insert(square().translation([-0.5, 1e-4]))?;
+    scene.steps(60)?;
+    assert_eq!(scene.step()?.n_claimed(), 0);
+    let crate_body = scene.insert_box(0.25, [0.0, 1.2505], 500.0);
+    assert_eq!(
+        scene.step()?.n_claimed(),
+        1,
+        "it has mass from its first step on"
+    );
+    scene.steps(60)?;
+    scene.world.bodies[crate_body].set_translation(vector(8.0, 0.25), true);
+    assert_eq!(scene.step()?.n_claimed(), 0);
+    scene.steps(10)?;
+    scene.world.bodies[crate_body].set_translation(vector(0.0, 1.2505), true);
+    assert_eq!(scene.step()?.n_claimed(), 1);
+    scene.steps(120)?;
+    assert!(
+        (scene.height(crate_body) - 1.25).abs() < 0.02,
+        "it rests on the block"
+    );
+    Ok(())
+}

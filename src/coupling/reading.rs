@@ -1,0 +1,148 @@
+//! Reading rapier: loads, prescribed motions and contact laws of rigid bodies, refused if they are not finite.
+
+use super::masters::{local_centre, read_motion};
+use super::shapes::pose_of;
+use crate::constraint::contact::{ContactLaw, Owner};
+use crate::constraint::geometry::Pose2;
+use crate::kkt::KktError;
+use crate::math::{Vec2, from_rapier, is_held};
+use crate::rapier::prelude::*;
+use crate::system::{RigidBlock, RigidLoad, RigidMotion};
+use thiserror::Error;
+
+/// Why an island cannot be gathered.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub(crate) enum GatherError {
+    /// An effective matrix is not positive definite.
+    #[error(transparent)]
+    Kkt(#[from] KktError),
+    /// A rigid body moves, weighs or is loaded by what is not finite.
+    #[error("{0:?} is not finite")]
+    RigidBody(RigidBodyHandle),
+    /// A collider's friction or restitution is not finite.
+    #[error("a coefficient of {0:?} is not finite")]
+    Coefficient(ColliderHandle),
+}
+
+/// The name of a collider in contact keys.
+pub(super) fn owner_of(handle: ColliderHandle) -> Owner {
+    Owner::Collider(handle.into_raw_parts().0)
+}
+
+/// Pose of a collider about its body's centre of mass.
+pub(super) fn offset_of(collider: &Collider, body: &RigidBody) -> Pose2 {
+    let mut pose = collider
+        .position_wrt_parent()
+        .map_or_else(Pose2::identity, pose_of);
+    pose.translation -= local_centre(body);
+    pose
+}
+
+/// A body that stays where it is.
+pub(super) fn at_rest(pose: &Pose2) -> RigidMotion {
+    RigidMotion {
+        centre: pose.translation,
+        angle: pose.sin.atan2(pose.cos),
+        ..RigidMotion::default()
+    }
+}
+
+/// A fixed or kinematic body, or one rapier keeps for itself: it moves as rapier says.
+pub(super) fn prescribed_block(body: &RigidBody, dt: f64) -> RigidBlock {
+    let start = read_motion(body);
+    if body.is_fixed() {
+        let rest = RigidMotion {
+            velocity: Vec2::zeros(),
+            spin: 0.0,
+            ..start
+        };
+        return RigidBlock::prescribed(rest, rest);
+    }
+    let next = match body.body_type() {
+        RigidBodyType::KinematicPositionBased => *body.next_position(),
+        _ => body.predict_position_using_velocity(dt as crate::rapier::math::Real),
+    };
+    let next = pose_of(&next);
+    let centre = next.transform(local_centre(body));
+    let turned = (next.sin.atan2(next.cos) - start.angle + std::f64::consts::PI)
+        .rem_euclid(std::f64::consts::TAU)
+        - std::f64::consts::PI;
+    let end = RigidMotion {
+        centre,
+        angle: start.angle + turned,
+        velocity: (centre - start.centre) / dt,
+        spin: turned / dt,
+    };
+    RigidBlock::prescribed(start, end)
+}
+
+/// Mass, forces and damping of a dynamic body.
+pub(super) fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
+    let properties = body.mass_properties();
+    let inverse_mass = [
+        f64::from(properties.effective_inv_mass.x),
+        f64::from(properties.effective_inv_mass.y),
+        f64::from(properties.effective_world_inv_inertia),
+    ];
+    let mass = f64::from(body.mass());
+    let force = from_rapier(body.user_force()) + mass * f64::from(body.gravity_scale()) * gravity;
+    let (linear, angular) = (
+        f64::from(body.linear_damping()),
+        f64::from(body.angular_damping()),
+    );
+    RigidLoad {
+        inverse_mass,
+        force: [force.x, force.y, f64::from(body.user_torque())],
+        damping: [linear, linear, angular],
+    }
+}
+
+/// Friction and restitution of a pair, combined by rapier's rules.
+pub(super) fn law_of(
+    colliders: &ColliderSet,
+    one: ColliderHandle,
+    other: ColliderHandle,
+) -> Result<ContactLaw, GatherError> {
+    let (Some(first), Some(second)) = (colliders.get(one), colliders.get(other)) else {
+        return Ok(ContactLaw::default());
+    };
+    for (handle, collider) in [(one, first), (other, second)] {
+        if !(collider.friction().is_finite() && collider.restitution().is_finite()) {
+            return Err(GatherError::Coefficient(handle));
+        }
+    }
+    let friction = CoefficientCombineRule::combine(
+        first.friction(),
+        second.friction(),
+        first.friction_combine_rule(),
+        second.friction_combine_rule(),
+    );
+    let restitution = CoefficientCombineRule::combine(
+        first.restitution(),
+        second.restitution(),
+        first.restitution_combine_rule(),
+        second.restitution_combine_rule(),
+    );
+    Ok(ContactLaw {
+        friction: f64::from(friction).max(0.0),
+        restitution: f64::from(restitution).max(0.0),
+    })
+}
+
+/// Whether a motion is finite and rapier's precision holds it.
+pub(crate) fn is_held_motion(motion: &RigidMotion) -> bool {
+    let RigidMotion {
+        centre,
+        angle,
+        velocity,
+        spin,
+    } = *motion;
+    let all = [centre.x, centre.y, angle, velocity.x, velocity.y, spin];
+    all.into_iter().all(is_held)
+}
+
+/// Whether all numbers of a load are finite.
+pub(super) fn is_held_load(load: &RigidLoad) -> bool {
+    let all = [load.inverse_mass, load.force, load.damping];
+    all.into_iter().flatten().all(f64::is_finite)
+}

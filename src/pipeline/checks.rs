@@ -1,0 +1,91 @@
+//! What is refused before a step and what is refused of its result, and how a failed step leaves no trace.
+
+use super::error::StepError;
+use super::flex_pipeline::FlexPipeline;
+use crate::body::{FlexBodyError, FlexBodySet};
+use crate::coupling::{RapierSets, is_carried, is_held_motion};
+use crate::math::{from_rapier, is_held};
+use crate::system::{Block, Step};
+
+/// Shortest step (s). Contact forces change velocities within a step, so accelerations grow as its inverse and the
+/// weights as its square: below this, sums of both keep no digits.
+const SHORTEST: f64 = 1e-8;
+
+/// Longest step (s): nothing a step resolves takes longer, and predictors grow as its square.
+const LONGEST: f64 = 1e4;
+
+impl FlexPipeline {
+    /// Refuses what cannot be stepped, before anything is touched.
+    pub(super) fn check(
+        &self,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) -> Result<Step, StepError> {
+        let dt = f64::from(sets.integration_parameters.dt);
+        if dt != 0.0 && !(SHORTEST..=LONGEST).contains(&dt) {
+            return Err(StepError::StepLength(dt));
+        }
+        let gravity = from_rapier(sets.gravity);
+        if !is_held(gravity.x) || !is_held(gravity.y) {
+            return Err(StepError::Gravity(gravity.into()));
+        }
+        for (handle, body) in flex_bodies.iter() {
+            if !is_carried(body, sets.bodies, sets.colliders) {
+                return Err(FlexBodyError::NoCarrier(handle).into());
+            }
+            if !self.integrator().is_unconditionally_stable() {
+                self.integrator()
+                    .require_implicit()
+                    .and_then(|()| {
+                        let frequency = body.model().largest_frequency();
+                        self.integrator().check_step(dt, frequency)
+                    })
+                    .map_err(|source| StepError::Integrator {
+                        body: handle,
+                        source,
+                    })?;
+            }
+        }
+        Ok(Step {
+            dt,
+            weights: self.integrator().weights(dt),
+        })
+    }
+
+    /// Refuses a solved island whose motion rapier cannot hold.
+    pub(super) fn check_finite(&self, flex_bodies: &FlexBodySet) -> Result<(), StepError> {
+        for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
+            if let (Block::Flex(block), Some(index)) = (block, index) {
+                // A sum of squares is finite only if every term is.
+                let balance = block.end_balance();
+                let mut motion = block.positions().iter().chain(block.velocities());
+                let is_finite = (balance.kinetic + balance.elastic).is_finite()
+                    && motion.all(|&value| is_held(value));
+                if let (false, Some((handle, _))) = (is_finite, flex_bodies.at_index(*index)) {
+                    return Err(StepError::NotFinite(handle));
+                }
+            }
+        }
+        for &(block, handle) in &self.gatherer.bodies {
+            if let Block::Rigid(block) = &self.island.blocks[block]
+                && !(is_held_motion(block.current())
+                    && block.smooth_end.into_iter().all(f64::is_finite))
+            {
+                return Err(StepError::RigidBody(handle));
+            }
+        }
+        Ok(())
+    }
+
+    /// Leaves no trace of a step that failed, before which energy of `dissipated` was lost (J).
+    pub(super) fn undo(&mut self, flex_bodies: &mut FlexBodySet, dissipated: f64) {
+        self.landings.clear();
+        self.reserves.clear();
+        self.memory.discard_notes();
+        self.report.clear();
+        self.report.energy.dissipated = dissipated;
+        for (_, body) in flex_bodies.iter_mut() {
+            body.forget_start();
+        }
+    }
+}
