@@ -11,6 +11,7 @@ mod energy;
 mod impact;
 mod island;
 mod momentum;
+mod multipliers;
 mod position;
 mod velocity;
 

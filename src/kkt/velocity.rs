@@ -8,7 +8,7 @@
 
 use super::delassus::{RowDirection, assemble};
 use super::island::{Island, KktError, SolveSettings};
-use super::position::prepare;
+use super::multipliers::prepare;
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
 use crate::system::{Block, Response};

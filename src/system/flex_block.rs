@@ -53,7 +53,7 @@ pub struct FlexBlock {
     /// The pinned dofs, ascending.
     pub(super) fixed_dofs: Vec<usize>,
     /// Largest coordinate of the reference placement (m).
-    extent: f64,
+    pub(super) extent: f64,
     pub(super) effective: BlockMatrix,
     pub(super) factor: BlockCholesky,
     pub(super) factored_for: Option<Weights>,

@@ -15,11 +15,15 @@ use crate::body::Frame;
 use crate::integrator::Weights;
 use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
 
+/// Turn in a step (rad) up to which the inertial terms of the displacements are no matter for the iterations.
+const AT_REST: f64 = 1e-6;
+
 impl FlexBlock {
     /// Solves for the end of the step under the contact forces given, in the frame and with the inertial terms of the
     /// current iterate.
     ///
-    /// Returns how far the frame's angle moved (rad).
+    /// Returns how far the frame's angle moved (rad), or that part of it that matters: a frame that hardly spins turns only
+    /// the displacements.
     pub fn solve(&mut self) -> f64 {
         let rayleigh = self.model.rayleigh();
         let Weights { b0, b1 } = self.step.weights;
@@ -143,7 +147,7 @@ impl FlexBlock {
         self.contact_moment += cross(lever, force);
     }
 
-    /// Applies the increments of the iterate; returns how far the frame's angle moved (rad).
+    /// Applies the increments of the iterate; see [`FlexBlock::solve`].
     fn correct(&mut self) -> f64 {
         let Weights { b0, b1 } = self.step.weights;
         if self.kind == Frame::Fixed {
@@ -164,7 +168,15 @@ impl FlexBlock {
             return 0.0;
         }
         self.balance_angular_momentum();
-        (self.frame.angle - angle).abs()
+        let turned = (self.frame.angle - angle).abs();
+        if self.step.dt * self.frame.spin.abs() > AT_REST {
+            return turned;
+        }
+        let reach = self
+            .displacement
+            .iter()
+            .fold(0.0f64, |reach, u| reach.max(u.abs()));
+        turned * (reach / self.extent).min(1.0)
     }
 
     /// Goes back to the beginning and drops what makes the step non-linear: the inertial terms of the displacement in a
