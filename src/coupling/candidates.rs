@@ -349,9 +349,10 @@ pub(super) fn rigid_rigid(
                 let part_names = [(a - first_parts[0]) as u32, (b - first_parts[1]) as u32];
                 let key = ContactKey {
                     contactor: owners[point],
-                    point: contact.id,
+                    // The owners say who carries the point, in whatever order the pair comes.
+                    point: contact.id & !(1 << 31),
                     target: owners[face],
-                    part: (part_names[0] << 16) | part_names[1],
+                    part: (part_names[point] << 16) | part_names[face],
                 };
                 let blocks = [one, other];
                 let ends = match contact.face {

@@ -101,11 +101,6 @@ impl ActiveContact {
         }
     }
 
-    /// Whether the contact acted in this step or, through stored accelerations, from the last one.
-    pub(super) fn acts(&self) -> bool {
-        self.is_closed() || self.remembered.normal > 0.0
-    }
-
     /// Whether the contact carries or would carry a force.
     pub fn is_closed(&self) -> bool {
         self.multiplier[0] > 0.0
@@ -159,6 +154,8 @@ pub struct Island {
     pub(super) statuses: Vec<Status>,
     pub(super) wrenches: Vec<[f64; 3]>,
     pub(super) groups: Vec<usize>,
+    /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.
+    pub(super) pressed_before: Vec<[usize; 2]>,
     pub(super) solver: Solver,
 }
 

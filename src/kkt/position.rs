@@ -143,12 +143,14 @@ impl Island {
 
     /// Opens the working set with what pressed in the last step.
     fn remember_contacts(&mut self, memory: &ContactMemory) {
+        self.pressed_before.clear();
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for (index, candidate) in self.candidates.iter().enumerate() {
             let remembered = memory.recall(&candidate.key);
             if remembered.normal <= 0.0 {
                 continue;
             }
+            self.pressed_before.push(candidate.pair.blocks());
             if let Some(kinematics) = candidate.evaluate(&scene, &remembered) {
                 self.is_working[index] = true;
                 let friction = candidate.law.friction;
