@@ -51,6 +51,7 @@ impl Island {
         }
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {
+                block.place_velocities();
                 block.measure_elastic_energy();
             }
         }

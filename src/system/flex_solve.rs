@@ -156,7 +156,6 @@ impl FlexBlock {
                 self.displacement[dof] = self.displacement_q[dof] + b0 * increment;
                 self.rate[dof] = self.rate_q[dof] + b1 * increment;
                 self.position[dof] = rest[dof] + self.displacement[dof];
-                self.velocity[dof] = self.rate[dof];
             }
             return 0.0;
         }
@@ -165,6 +164,7 @@ impl FlexBlock {
         self.advance(turn);
         if self.is_linear {
             self.torque = turn * self.inertia;
+            self.place();
             return 0.0;
         }
         self.balance_angular_momentum();
@@ -203,23 +203,6 @@ impl FlexBlock {
         self.place();
     }
 
-    /// `A⁻¹ Rᵀ π` for the gathered impulses, written over `local`.
-    pub(super) fn respond_to_impulse(&mut self) {
-        if self.kind == Frame::Fixed {
-            self.local.copy_from_slice(&self.impulse);
-        } else {
-            let back = self.turn.transpose();
-            for node in 0..self.model.n_nodes() {
-                set_node_vec(&mut self.local, node, back * node_vec(&self.impulse, node));
-            }
-        }
-        for &dof in &self.fixed_dofs {
-            self.local[dof] = 0.0;
-        }
-        self.factor.solve_in_place(&mut self.local);
-        self.n_solves += 1;
-    }
-
     /// Applies the increments of a frame that moves; `increment` holds `δ_u`.
     ///
     /// The centre follows the balance of momentum, which (C.5) holds too, but to the rounding of stiff elastic forces.
@@ -246,10 +229,9 @@ impl FlexBlock {
         self.frame.angle = before.angle + 0.5 * self.step.dt * b1 * turn;
         self.frame.spin = before.spin + b1 * turn;
         self.frame.spin_rate = b1 * turn / self.step.dt;
-        self.place();
     }
 
-    /// World positions and velocities of the iterate.
+    /// World positions of the iterate.
     pub(super) fn place(&mut self) {
         if self.kind == Frame::Fixed {
             for ((x, rest), u) in self
@@ -260,15 +242,26 @@ impl FlexBlock {
             {
                 *x = rest + u;
             }
-            self.velocity.copy_from_slice(&self.rate);
             return;
         }
         self.turn = rotation(self.frame.angle);
         let (frame, turn) = (&self.frame, self.turn);
         for node in 0..self.model.n_nodes() {
             let arm = node_vec(&self.arms.reference, node) + node_vec(&self.displacement, node);
-            let own = node_vec(&self.rate, node) + frame.spin * perp(arm);
             set_node_vec(&mut self.position, node, frame.centre + turn * arm);
+        }
+    }
+
+    /// World velocities of the last iterate: nothing asks for them before.
+    pub fn place_velocities(&mut self) {
+        if self.kind == Frame::Fixed {
+            self.velocity.copy_from_slice(&self.rate);
+            return;
+        }
+        let (frame, turn) = (&self.frame, self.turn);
+        for node in 0..self.model.n_nodes() {
+            let arm = node_vec(&self.arms.reference, node) + node_vec(&self.displacement, node);
+            let own = node_vec(&self.rate, node) + frame.spin * perp(arm);
             set_node_vec(&mut self.velocity, node, frame.velocity + turn * own);
         }
     }

@@ -5,6 +5,7 @@
 
 mod compliance;
 mod flex_block;
+mod flex_impulse;
 mod flex_momentum;
 mod flex_motion;
 mod flex_solve;
