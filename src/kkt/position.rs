@@ -139,7 +139,7 @@ impl Island {
             Block::Flex(block) => size.max(block.extent()),
             Block::Rigid(block) => size.max(block.start().centre.amax()),
         });
-        1e-11 * (1.0 + size)
+        2e-12 * (1.0 + size)
     }
 
     /// Opens the working set with what pressed in the last step.
