@@ -49,7 +49,7 @@ pub struct SolveSettings {
 pub struct ActiveContact {
     /// Index of the candidate.
     pub candidate: usize,
-    /// The row that the forces act along, with the gap at the last iterate.
+    /// The row that the forces act along, with the gap beyond the allowance at the last iterate.
     pub kinematics: Kinematics,
     /// Geometry at the last iterate.
     pub(super) measured: Kinematics,
@@ -74,6 +74,9 @@ pub struct ActiveContact {
     pub unresolved: f64,
     /// Approach velocity at the beginning of the step, `n·v` (m/s).
     pub approach: f64,
+    /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and
+    /// by. The solver's gap counts from here.
+    pub allowance: f64,
     /// What the contact was in the last step.
     pub remembered: Remembered,
 }
@@ -99,6 +102,11 @@ impl ActiveContact {
         } else {
             1.0
         }
+    }
+
+    /// The gap (m).
+    pub fn gap(&self) -> f64 {
+        self.kinematics.gap + self.allowance
     }
 
     /// Whether the contact carries or would carry a force.

@@ -22,6 +22,12 @@ const GAPS_KEPT_FROM: usize = 12;
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
 
+/// Rate at which bodies that were put into each other part (1/s): a third of the overlap in a step of 1/60 s.
+const PARTING_RATE: f64 = 24.0;
+
+/// Multiple of the tolerance from which an overlap counts as put there.
+const OVERLAPPED: f64 = 1e7;
+
 /// Iterations in which the working set still forms.
 const SETTLING: usize = 6;
 
@@ -42,10 +48,11 @@ impl Island {
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
         let tolerance = self.gap_tolerance();
+        let kept = (-PARTING_RATE * settings.dt).exp();
         self.contacts.clear();
         self.is_working.clear();
         self.is_working.resize(self.candidates.len(), false);
-        self.remember_contacts(memory);
+        self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
         if !self.iterate(settings, memory, tolerance, summary)? {
             self.linear_step(settings, memory, tolerance, summary)?;
         }
@@ -67,6 +74,7 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) -> Result<bool, KktError> {
+        let kept = (-PARTING_RATE * settings.dt).exp();
         let mut peak = 0.0f64;
         for iteration in 0..settings.max_newton {
             summary.n_newton = iteration + 1;
@@ -78,7 +86,7 @@ impl Island {
             if is_guess && !misleads {
                 error = self.measure(false);
             }
-            let has_more = !misleads && self.add_violated(tolerance, memory);
+            let has_more = !misleads && self.add_violated(tolerance, kept, memory);
             if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
                 return Ok(true);
             }
@@ -110,6 +118,7 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
+        let kept = (-PARTING_RATE * settings.dt).exp();
         summary.is_linearized = true;
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {
@@ -118,11 +127,11 @@ impl Island {
         }
         self.contacts.clear();
         self.is_working.fill(false);
-        self.remember_contacts(memory);
+        self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
         for round in 0..LINEAR_ROUNDS {
             self.correct();
             self.measure(round > 0);
-            self.add_violated(tolerance, memory);
+            self.add_violated(tolerance, kept, memory);
             if round == 0 {
                 self.refresh_rows();
             }
@@ -143,7 +152,7 @@ impl Island {
     }
 
     /// Opens the working set with what pressed in the last step.
-    fn remember_contacts(&mut self, memory: &ContactMemory) {
+    fn remember_contacts(&mut self, slop: f64, kept: f64, memory: &ContactMemory) {
         self.pressed_before.clear();
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for (index, candidate) in self.candidates.iter().enumerate() {
@@ -155,8 +164,10 @@ impl Island {
             if let Some(kinematics) = candidate.evaluate(&scene, &remembered) {
                 self.is_working[index] = true;
                 let friction = candidate.law.friction;
-                let contact =
-                    ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
+                let blocks = &self.blocks;
+                let mut contact =
+                    ActiveContact::new(index, kinematics, remembered, friction, blocks);
+                contact.allow_overlap(kept, slop, blocks);
                 self.contacts.push(contact);
             }
         }
@@ -209,7 +220,7 @@ impl Island {
             contact.kinematics.gap = match (found, contact.known) {
                 (Some(found), _) => {
                     contact.measured = found;
-                    found.gap
+                    found.gap - contact.allowance
                 }
                 (None, Some((gap, from))) => gap + along.dot(&(at - from)),
                 (None, None) => contact.kinematics.gap,
@@ -245,7 +256,7 @@ impl Island {
     }
 
     /// Adds candidates that overlap now; returns whether there were any.
-    fn add_violated(&mut self, tolerance: f64, memory: &ContactMemory) -> bool {
+    fn add_violated(&mut self, tolerance: f64, kept: f64, memory: &ContactMemory) -> bool {
         let before = self.contacts.len();
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for (index, candidate) in self.candidates.iter().enumerate() {
@@ -253,13 +264,16 @@ impl Island {
                 continue;
             }
             let remembered = memory.recall(&candidate.key);
-            if let Some(kinematics) = candidate.evaluate(&scene, &remembered)
-                && kinematics.gap < -tolerance
-            {
+            let found = candidate.evaluate(&scene, &remembered);
+            let Some(kinematics) = found.filter(|found| found.gap < -tolerance) else {
+                continue;
+            };
+            let friction = candidate.law.friction;
+            let mut contact =
+                ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
+            contact.allow_overlap(kept, OVERLAPPED * tolerance, &self.blocks);
+            if contact.kinematics.gap < -tolerance {
                 self.is_working[index] = true;
-                let friction = candidate.law.friction;
-                let contact =
-                    ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
                 self.contacts.push(contact);
             }
         }
@@ -269,7 +283,7 @@ impl Island {
     fn gap_violation(&self) -> f64 {
         self.contacts
             .iter()
-            .fold(0.0, |worst, contact| worst.max(-contact.kinematics.gap))
+            .fold(0.0, |worst, contact| worst.max(-contact.gap()))
     }
 }
 
@@ -284,6 +298,18 @@ fn moved(kinematics: &Kinematics, blocks: &[Block]) -> Vec2 {
 }
 
 impl ActiveContact {
+    /// Where the step began with an overlap beyond `slop`, leaves the share `kept` of it for now.
+    fn allow_overlap(&mut self, kept: f64, slop: f64, blocks: &[Block]) {
+        let began =
+            self.kinematics.gap - self.kinematics.normal.dot(&moved(&self.kinematics, blocks));
+        if began < -slop {
+            self.allowance = kept * began;
+            self.kinematics.gap -= self.allowance;
+            self.measured.gap = self.kinematics.gap;
+            self.known = self.known.map(|(gap, at)| (gap - self.allowance, at));
+        }
+    }
+
     fn new(
         candidate: usize,
         kinematics: Kinematics,
@@ -319,6 +345,7 @@ impl ActiveContact {
             multiplier: [remembered.normal, remembered.tangent],
             impulse: [0.0; 2],
             status: [normal, tangential],
+            allowance: 0.0,
             known: Some((kinematics.gap, moved(&kinematics, blocks))),
             slip: 0.0,
             unresolved: 0.0,

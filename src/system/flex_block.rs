@@ -191,6 +191,11 @@ impl FlexBlock {
         self.frame.centre
     }
 
+    /// Centre of mass at the beginning of the step, if the body moves freely (m).
+    pub fn start_centre(&self) -> Option<Vec2> {
+        (self.kind == Frame::Free).then_some(self.start_frame.centre)
+    }
+
     pub(super) fn n_dofs(&self) -> usize {
         self.local.len()
     }
