@@ -8,6 +8,7 @@
 
 mod delassus;
 mod energy;
+mod fallback;
 mod impact;
 mod island;
 mod momentum;
