@@ -73,7 +73,14 @@ impl Island {
     }
 
     /// Leaves every member where the step began, at rest.
+    ///
+    /// Not if loads beyond all measure are to blame: then the step is to be refused.
     fn hold(&mut self, summary: &mut IslandSummary) {
+        let is_overloaded =
+            |block: &Block| matches!(block, Block::Flex(block) if block.is_overloaded());
+        if self.blocks.iter().any(is_overloaded) {
+            return;
+        }
         summary.is_held = true;
         self.contacts.clear();
         self.pressed_before.clear();

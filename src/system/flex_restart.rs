@@ -1,6 +1,7 @@
 //! Ways back to the beginning of a step whose iterations have failed.
 
 use super::flex_block::FlexBlock;
+use crate::math::is_held;
 
 impl FlexBlock {
     /// Puts the iterate back to the beginning of the step.
@@ -51,6 +52,15 @@ impl FlexBlock {
         self.shift = -start.acceleration;
         self.torque = 0.0;
         self.place();
+    }
+
+    /// Whether the loads alone would send the body beyond what can be held: that is no matter of contact.
+    pub fn is_overloaded(&self) -> bool {
+        let most = self
+            .force
+            .iter()
+            .fold(0.0f64, |most, force| most.max(force.abs()));
+        !is_held(self.step.dt * most / self.arms.mass)
     }
 
     /// Largest velocity component of a node at the beginning and at the end (m/s).
