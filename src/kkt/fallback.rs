@@ -54,10 +54,11 @@ impl Island {
             if let Block::Flex(block) = block {
                 let [start, end] = block.fastest();
                 // Faster than across the body in a step, whatever it met.
-                before = before.max(start).max(block.extent() / dt);
+                before = before.max(start).max(block.size() / dt);
                 after = after.max(end);
             } else if let Block::Rigid(block) = block {
-                before = before.max(block.start().velocity.norm());
+                let moved = (block.drift().centre - block.start().centre).norm();
+                before = before.max(moved / dt);
             }
         }
         if after > FLUNG * before {

@@ -63,10 +63,13 @@ impl FlexBlock {
         !is_held(self.step.dt * most / self.arms.mass)
     }
 
-    /// Largest velocity component of a node at the beginning and at the end (m/s).
+    /// Largest velocity component of a node at the beginning, and in and at the end of the step (m/s).
     pub fn fastest(&self) -> [f64; 2] {
         let largest = |velocity: &[f64]| velocity.iter().fold(0.0f64, |most, v| most.max(v.abs()));
-        [largest(&self.start_velocity), largest(&self.velocity)]
+        let moved = self.position.iter().zip(&self.start_position);
+        let moved = moved.fold(0.0f64, |most, (end, start)| most.max((end - start).abs()));
+        let end = largest(&self.velocity).max(moved / self.step.dt);
+        [largest(&self.start_velocity), end]
     }
 
     /// How far a node has moved beyond what its own velocity would have done, relative to the body (-).
@@ -80,6 +83,6 @@ impl FlexBlock {
             moved = moved.max((end - self.start_position[dof]).abs());
             drift = drift.max((dt * self.start_velocity[dof]).abs());
         }
-        (moved - drift) / self.extent
+        (moved - drift) / self.size
     }
 }

@@ -176,7 +176,7 @@ impl FlexBlock {
             .displacement
             .iter()
             .fold(0.0f64, |reach, u| reach.max(u.abs()));
-        turned * (reach / self.extent).min(1.0)
+        turned * (reach / self.size).min(1.0)
     }
 
     /// Applies the increments of a frame that moves; `increment` holds `δ_u`.
