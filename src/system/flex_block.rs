@@ -97,6 +97,9 @@ pub struct FlexBlock {
     pub(super) increment: Vec<f64>,
     pub(super) contact_force: Vec<f64>,
     pub(super) has_contact_force: bool,
+    /// The contact forces of the last solve, and the frame's angle in the last one from the beginning.
+    pub(super) solved_force: Vec<f64>,
+    pub(super) solved_angle: Option<f64>,
     /// Resultant of the contact forces (N).
     pub(super) contact_total: Vec2,
     /// Moment of the contact forces about the centre, by the levers they were given with (N m).
@@ -167,6 +170,8 @@ impl FlexBlock {
             increment: zeros(),
             contact_force: zeros(),
             has_contact_force: false,
+            solved_force: zeros(),
+            solved_angle: None,
             contact_total: Vec2::zeros(),
             contact_moment: 0.0,
             impulses: [Impulses::new(n), Impulses::new(n)],
@@ -258,6 +263,7 @@ impl FlexBlock {
         self.displacement.copy_from_slice(&state.displacement);
         self.rate.copy_from_slice(&state.rate);
         self.is_linear = false;
+        self.solved_angle = None;
         self.inertia = self.arms.polar;
         self.predict_frame();
         self.clear_contact_force();

@@ -15,6 +15,7 @@ impl FlexBlock {
         }
         self.frame = self.frame_q;
         self.inertia = self.arms.polar;
+        self.solved_angle = None;
         self.clear_contact_force();
         self.place();
     }

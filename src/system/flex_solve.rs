@@ -18,6 +18,9 @@ use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set
 /// Turn in a step (rad) up to which the inertial terms of the displacements are no matter for the iterations.
 const AT_REST: f64 = 1e-6;
 
+/// Turn (rad, of the part that matters) since the last whole solve up to which its frame still counts as the same.
+const SAME_ANGLE: f64 = 1e-11;
+
 impl FlexBlock {
     /// Solves for the end of the step under the contact forces given, in the frame and with the inertial terms of the
     /// current iterate.
@@ -25,6 +28,44 @@ impl FlexBlock {
     /// Returns how far the frame's angle moved (rad), or that part of it that matters: a frame that hardly spins turns only
     /// the displacements.
     pub fn solve(&mut self) -> f64 {
+        if self.may_add() {
+            self.solve_difference();
+        } else {
+            self.solve_anew();
+        }
+        self.solved_force.copy_from_slice(&self.contact_force);
+        self.correct()
+    }
+
+    /// Whether only contact forces have changed since the last solve.
+    fn may_add(&self) -> bool {
+        let Some(angle) = self.solved_angle.filter(|_| !self.is_linear) else {
+            return false;
+        };
+        let is_at_rest = self.step.dt * self.frame.spin.abs() <= AT_REST;
+        let turned = (self.frame.angle - angle).abs() * (self.reach() / self.size).min(1.0);
+        self.kind == Frame::Fixed || is_at_rest && turned <= SAME_ANGLE
+    }
+
+    /// Adds the response to the change of the contact forces: a right-hand side that is zero inside the body.
+    fn solve_difference(&mut self) {
+        let back = self.turn.transpose();
+        for node in 0..self.model.n_nodes() {
+            let change = node_vec(&self.contact_force, node) - node_vec(&self.solved_force, node);
+            set_node_vec(&mut self.local, node, back * change);
+        }
+        for &dof in &self.fixed_dofs {
+            self.local[dof] = 0.0;
+        }
+        self.factor.solve_in_place(&mut self.local);
+        self.n_solves += 1;
+        for (increment, solved) in self.increment.iter_mut().zip(&self.local) {
+            *increment += solved;
+        }
+    }
+
+    fn solve_anew(&mut self) {
+        self.solved_angle = Some(self.frame.angle);
         let rayleigh = self.model.rayleigh();
         let Weights { b0, b1 } = self.step.weights;
         let (s, alpha) = (b0 + rayleigh.stiffness * b1, rayleigh.mass);
@@ -46,7 +87,6 @@ impl FlexBlock {
         for (increment, solved) in self.increment.iter_mut().zip(&self.local) {
             *increment += solved;
         }
-        self.correct()
     }
 
     /// Writes applied and contact forces, in the frame, over `local`.
@@ -172,11 +212,13 @@ impl FlexBlock {
         if self.step.dt * self.frame.spin.abs() > AT_REST {
             return turned;
         }
-        let reach = self
-            .displacement
-            .iter()
-            .fold(0.0f64, |reach, u| reach.max(u.abs()));
-        turned * (reach / self.size).min(1.0)
+        turned * (self.reach() / self.size).min(1.0)
+    }
+
+    /// Largest displacement in the frame (m).
+    fn reach(&self) -> f64 {
+        let all = self.displacement.iter();
+        all.fold(0.0f64, |reach, u| reach.max(u.abs()))
     }
 
     /// Applies the increments of a frame that moves; `increment` holds `δ_u`.
