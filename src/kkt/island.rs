@@ -32,10 +32,12 @@ pub enum KktError {
 pub struct SolveSettings {
     /// Step length (s).
     pub dt: f64,
-    /// Beta-2 weight `b0` (s²).
+    /// What a multiplier moves, over `A⁻¹` (s²): the Beta-2 weight `b0`, or `dt²` for the forward increment.
     pub b0: f64,
     /// Beta-2 weight `b1` (s).
     pub b1: f64,
+    /// Whether `β0 = 0`, so that multipliers act at the forward increment.
+    pub is_explicit: bool,
     /// What is done on impact.
     pub impact: ImpactTreatment,
     /// Approach velocity below which restitution is ignored (m/s).
@@ -65,6 +67,8 @@ pub struct ActiveContact {
     pub is_hard: bool,
     /// Whether some grip carries no inertia.
     pub is_massless: bool,
+    /// Whether a flexible body of it steps by central difference.
+    pub is_explicit: bool,
     /// Gap and relative motion `Σ w u` at the last measurement, from which gaps are extrapolated where the
     /// geometry has no answer or keeps changing.
     pub(super) known: Option<(f64, Vec2)>,
@@ -94,7 +98,9 @@ impl ActiveContact {
     /// How far the velocity stage holds the contact's relative velocity, 0 to 1 (-): masses that meet would ring at every
     /// mesh's highest frequency; a massless surface only where the step is longer than the impact.
     pub(super) fn holds_velocity(&self) -> f64 {
-        if self.is_massless {
+        if self.is_explicit {
+            0.0
+        } else if self.is_massless {
             self.unresolved
         } else {
             1.0
@@ -133,6 +139,8 @@ pub struct IslandSummary {
     pub work: f64,
     /// Energy taken out by the energy stage (J).
     pub limited: f64,
+    /// Kinetic energy of the half step of forward contacts that belongs to this instant and is not in the velocities (J).
+    pub pending: f64,
 }
 
 /// A set of blocks and candidates, and the buffers to solve them.
@@ -189,7 +197,10 @@ impl Island {
         self.solve_positions(settings, memory, &mut summary)?;
         let before = self.start_energy();
         let allowance = self.external_work();
-        if settings.impact == ImpactTreatment::Stabilized {
+        let is_stabilized = settings.impact == ImpactTreatment::Stabilized && !settings.is_explicit;
+        if settings.is_explicit {
+            self.solve_forward(settings, &mut summary)?;
+        } else if is_stabilized {
             self.solve_velocities(settings)?;
             self.balance_angular_momentum();
         } else {
@@ -198,7 +209,7 @@ impl Island {
         summary.work = self.actual_work(settings);
         summary.start_energy = before;
         summary.end_energy = self.end_energy();
-        if settings.impact == ImpactTreatment::Stabilized {
+        if is_stabilized {
             self.limit_energy(settings, allowance, reserve, &mut summary);
         }
         self.publish_forces(settings.dt);

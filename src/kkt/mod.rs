@@ -8,6 +8,7 @@
 
 mod delassus;
 mod energy;
+mod forward;
 mod impact;
 mod island;
 mod momentum;

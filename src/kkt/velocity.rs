@@ -28,9 +28,17 @@ impl Island {
                     self.unresolved_share(&self.contacts[index].kinematics);
             }
         }
+        if !self.impact_rows(settings)? {
+            return Ok(());
+        }
+        self.settle_accelerations(settings)
+    }
+
+    /// Solves and applies the impact law at the contacts that hold velocities; returns whether there are any.
+    pub(super) fn impact_rows(&mut self, settings: &SolveSettings) -> Result<bool, KktError> {
         self.velocity_rows(settings);
         if self.rows.is_empty() {
-            return Ok(());
+            return Ok(false);
         }
         self.solve_rows()?;
         for (row, direction) in self.rows.iter().enumerate() {
@@ -39,7 +47,7 @@ impl Island {
             contact.impulse[usize::from(!is_normal)] = self.multipliers[row];
         }
         self.apply_rows(Response::Velocity, 1.0);
-        self.settle_accelerations(settings)
+        Ok(true)
     }
 
     /// Velocities and accelerations feel soft multipliers as (C.5) says, hard ones not at all.
@@ -74,7 +82,7 @@ impl Island {
         self.set_soft_forces();
     }
 
-    fn set_soft_forces(&mut self) {
+    pub(super) fn set_soft_forces(&mut self) {
         for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
             if let Block::Rigid(block) = block
                 && !block.is_prescribed()
@@ -177,7 +185,7 @@ impl Island {
         }
     }
 
-    fn solve_rows(&mut self) -> Result<(), KktError> {
+    pub(super) fn solve_rows(&mut self) -> Result<(), KktError> {
         self.multipliers.clear();
         self.multipliers.resize(self.rows.len(), 0.0);
         self.statuses.clear();

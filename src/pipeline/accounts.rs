@@ -52,7 +52,7 @@ impl FlexPipeline {
         report.n_linearized += usize::from(summary.is_linearized);
         report.n_pivots += summary.n_pivots;
         report.energy_limited += summary.limited;
-        report.energy.kinetic += summary.end_energy[0];
+        report.energy.kinetic += summary.end_energy[0] + summary.pending;
         report.energy.elastic += summary.end_energy[1];
         let gain: f64 =
             summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();

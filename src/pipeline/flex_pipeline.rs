@@ -42,6 +42,7 @@ pub struct FlexPipeline {
     impact: ImpactTreatment,
     restitution_threshold: f64,
     max_newton: usize,
+    pub(super) insists: bool,
     claims: Claims,
     pub(super) gatherer: Gatherer,
     masters: Masters,
@@ -67,6 +68,7 @@ impl FlexPipeline {
             impact: ImpactTreatment::default(),
             restitution_threshold: 0.5,
             max_newton: 20,
+            insists: false,
             claims: Claims::default(),
             gatherer: Gatherer::default(),
             masters: Masters::default(),
@@ -80,6 +82,10 @@ impl FlexPipeline {
     }
 
     /// Chooses the member of the Beta-2 family.
+    ///
+    /// An explicit one (`β0 = 0`, [`Beta2::central_difference`]) needs a lumped mass; contact forces then are multipliers at
+    /// the forward increment, and the [treatment of impacts](Self::with_impact) does not matter. Steps longer than the
+    /// critical one of a body are refused, see [`Self::insisting`].
     pub fn with_integrator(mut self, integrator: Beta2) -> Self {
         self.integrator = integrator;
         self
@@ -88,6 +94,15 @@ impl FlexPipeline {
     /// Chooses what is done on impact.
     pub fn with_impact(mut self, impact: ImpactTreatment) -> Self {
         self.impact = impact;
+        self
+    }
+
+    /// Takes steps longer than the critical one of a conditionally stable integrator instead of refusing them.
+    ///
+    /// The critical step is that of a safe bound, so a step a little longer may be stable; one much longer makes the highest
+    /// frequencies grow until numbers are no longer finite.
+    pub fn insisting(mut self) -> Self {
+        self.insists = true;
         self
     }
 
@@ -285,8 +300,13 @@ impl FlexPipeline {
         clock.lap(&mut self.report.times.gather);
         let settings = SolveSettings {
             dt: step.dt,
-            b0: step.weights.b0,
+            b0: if step.is_explicit() {
+                step.dt * step.dt
+            } else {
+                step.weights.b0
+            },
             b1: step.weights.b1,
+            is_explicit: step.is_explicit(),
             impact: self.impact,
             restitution_threshold: self.restitution_threshold,
             max_newton: self.max_newton,

@@ -21,6 +21,10 @@ impl FlexBlock {
     ///
     /// Returns how far the frame's angle moved (rad).
     pub fn solve(&mut self) -> f64 {
+        if self.is_explicit() {
+            self.solve_explicitly();
+            return 0.0;
+        }
         let rayleigh = self.model.rayleigh();
         let Weights { b0, b1 } = self.step.weights;
         let (s, alpha) = (b0 + rayleigh.stiffness * b1, rayleigh.mass);
@@ -127,6 +131,7 @@ impl FlexBlock {
 
     /// Clears the contact forces of the iterate.
     pub fn clear_contact_force(&mut self) {
+        self.clear_late_force();
         if self.has_contact_force {
             self.contact_force.fill(0.0);
             self.has_contact_force = false;
@@ -173,6 +178,9 @@ impl FlexBlock {
     ///
     /// Such a step is first order and stable; it is taken where Newton's iterations do not converge.
     pub fn linearize(&mut self) {
+        if self.is_explicit() {
+            return;
+        }
         let dt = self.step.dt;
         let half = 0.5 * dt * dt;
         for dof in 0..self.start_acceleration.len() {
@@ -268,6 +276,10 @@ impl FlexBlock {
 
     /// Makes [`super::Block::compliance`] known from `node`.
     pub fn prepare_compliance(&mut self, node: usize) {
+        if self.is_explicit() {
+            self.prepare_explicitly(node);
+            return;
+        }
         if self
             .compliance
             .prepare(node, &self.is_fixed, &mut self.factor)
@@ -286,6 +298,9 @@ impl FlexBlock {
         (from, from_lever): (usize, Vec2),
         of: Response,
     ) -> Mat2 {
+        if self.is_explicit() {
+            return self.explicit_compliance(at, from, of);
+        }
         let local = self.compliance.get(at, from);
         if self.kind == Frame::Fixed {
             return local;

@@ -4,10 +4,12 @@
 //! the multipliers. [`FlexBlock`] has two dofs a node, [`RigidBlock`] three.
 
 mod compliance;
+mod explicit_block;
 mod flex_block;
 mod flex_momentum;
 mod flex_motion;
 mod flex_solve;
+mod massless_surface;
 mod moments;
 mod rigid_block;
 
@@ -140,6 +142,11 @@ impl Block {
             (Self::Rigid(block), Point::Arm(_)) => block.smooth_acceleration(grip.lever),
             _ => mismatch(),
         }
+    }
+
+    /// Whether the block is a flexible one that steps by central difference.
+    pub fn is_explicit(&self) -> bool {
+        matches!(self, Self::Flex(block) if block.is_explicit())
     }
 
     /// Whether a point carries no inertia, so that contact there is a quasi-static spring.

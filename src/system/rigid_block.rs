@@ -192,7 +192,12 @@ impl RigidBlock {
 
     /// Moves the iterate away from the free motion by what a wrench does.
     pub fn set_position_increment(&mut self, wrench: [f64; 3]) {
-        let b0 = self.weights.b0;
+        // With β0 = 0 the multiplier is an impulse at the forward increment.
+        let b0 = if self.weights.b0 > 0.0 {
+            self.weights.b0
+        } else {
+            self.dt * self.dt
+        };
         let step: [f64; 3] = std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]);
         self.current = self.free;
         self.current.centre += Vec2::new(step[0], step[1]);
