@@ -6,7 +6,7 @@ use crate::constraint::contact::{
     Candidate, ContactMemory, Kinematics, PlacedPart, Remembered, Scene,
 };
 use crate::linalg::cholesky::CholeskyError;
-use crate::linalg::complementarity::{ComplementarityError, RowKind, Solver, Status};
+use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
 use thiserror::Error;
@@ -40,6 +40,8 @@ pub struct SolveSettings {
     pub is_explicit: bool,
     /// What is done on impact.
     pub impact: ImpactTreatment,
+    /// The solver that contact problems are given to first.
+    pub solver: Method,
     /// Approach velocity below which restitution is ignored (m/s).
     pub restitution_threshold: f64,
     /// Most Newton iterations.
@@ -194,6 +196,7 @@ impl Island {
         reserve: &mut f64,
     ) -> Result<IslandSummary, KktError> {
         let mut summary = IslandSummary::default();
+        self.solver.set_first(settings.solver);
         self.solve_positions(settings, memory, &mut summary)?;
         let before = self.start_energy();
         let allowance = self.external_work();

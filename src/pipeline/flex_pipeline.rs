@@ -9,6 +9,7 @@ use crate::coupling::{
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ImpactTreatment, Island, SolveSettings};
+use crate::linalg::complementarity::Method;
 use crate::rapier::prelude::*;
 use crate::system::Step;
 
@@ -40,6 +41,7 @@ use crate::system::Step;
 pub struct FlexPipeline {
     integrator: Beta2,
     impact: ImpactTreatment,
+    solver: Method,
     restitution_threshold: f64,
     max_newton: usize,
     pub(super) insists: bool,
@@ -66,6 +68,7 @@ impl FlexPipeline {
         Self {
             integrator: Beta2::default(),
             impact: ImpactTreatment::default(),
+            solver: Method::ActiveSet,
             restitution_threshold: 0.5,
             max_newton: 20,
             insists: false,
@@ -94,6 +97,13 @@ impl FlexPipeline {
     /// Chooses what is done on impact.
     pub fn with_impact(mut self, impact: ImpactTreatment) -> Self {
         self.impact = impact;
+        self
+    }
+
+    /// Chooses the solver of the contact problems: the active set, a direct method, by default;
+    /// [`Method::GaussSeidel`] for the modified Gauss–Seidel method of Carpenter, Taylor and Katona.
+    pub fn with_contact_solver(mut self, method: Method) -> Self {
+        self.solver = method;
         self
     }
 
@@ -308,6 +318,7 @@ impl FlexPipeline {
             b1: step.weights.b1,
             is_explicit: step.is_explicit(),
             impact: self.impact,
+            solver: self.solver,
             restitution_threshold: self.restitution_threshold,
             max_newton: self.max_newton,
         };
