@@ -149,32 +149,35 @@ fn b2_the_bouncing_bar_keeps_its_energy_over_ten_periods() {
         );
         let mass = scene.body(body).mass();
         let at_start = mass * 0.1 * 0.05;
-        let (mut energy, mut most, mut overlap) = (0.0, 0.0f64, 0.0f64);
+        let (mut energy, mut most, mut overlap) = ([0.0; 2], 0.0f64, 0.0f64);
         for _ in 0..(10.0 * 16.0 / 3.0 / scene.dt()).round() as usize {
             let report = scene.step();
             overlap = overlap.max(report.gap_violation());
-            energy = (report.energy().total() - mass * 0.1 * 0.5 * LENGTH) / at_start;
-            most = most.max(energy);
+            let swinging = report.energy().total() - mass * 0.1 * 0.5 * LENGTH;
+            energy = [swinging, swinging - report.energy().swing].map(|e| e / at_start);
+            most = most.max(energy[1]);
         }
-        println!("kept {is_kept}: energy {energy}, most {most}, overlap {overlap}");
+        println!("kept {is_kept}: energy {energy:?}, most {most}, overlap {overlap}");
         (energy, most, overlap)
     };
-    let (energy, most, overlap) = run(false);
-    assert!(energy > 0.985 && most < 1.002 && overlap < 1e-9);
+    let ([swinging, conserved], most, overlap) = run(false);
+    assert!(swinging > 0.985 && overlap < 1e-9, "{swinging}");
+    // What a leapfrog conserves: some switches late in the run have no weight between 0 and 1 that keeps it.
+    assert!((conserved - 1.0).abs() < 0.005 && most < 1.005, "{conserved}");
     // A node with mass is stopped at every impact: it is known to lose, and must not gain.
-    let (energy, most, _) = run(true);
-    assert!(energy > 0.2 && energy < 0.9 && most < 1.002, "{energy} {most}");
+    let ([_, conserved], most, _) = run(true);
+    assert!(conserved > 0.2 && conserved < 0.9 && most < 1.002, "{conserved} {most}");
 }
 
 /// A plate that spins, deforms and vibrates; `fixed` holds its lower edge instead.
 fn plate(is_fixed: bool, inertia: ContactInertia) -> FlexBodyBuilder {
-    let velocities = (0..7 * 5)
+    let velocities = (0..13 * 9)
         .map(|node| {
-            let (x, y) = ((node % 7) as f64 / 6.0, (node / 7) as f64 / 8.0);
+            let (x, y) = ((node % 13) as f64 / 12.0, (node / 13) as f64 / 16.0);
             [0.3 * y * y, 0.2 * (3.0 * x).sin() * y]
         })
         .collect();
-    let plate = FlexBodyBuilder::rectangle([1.0, 0.5], [6, 4])
+    let plate = FlexBodyBuilder::rectangle([1.0, 0.5], [12, 8])
         .material(LinearElastic::plane_stress(1e4, 0.3).density(10.0))
         .contact_inertia(inertia)
         .velocities(velocities);
@@ -204,8 +207,8 @@ fn the_step_is_of_second_order() {
         (false, ContactInertia::Redistributed),
     ] {
         let at = |dt: f64| positions(plate(is_fixed, inertia.clone()), dt);
-        let steps = [11, 12, 13].map(|power| 0.5f64.powi(power));
-        let exact = at(0.5f64.powi(16));
+        let steps = [12, 13, 14].map(|power| 0.5f64.powi(power));
+        let exact = at(0.5f64.powi(17));
         let errors = steps.map(|dt| {
             let off = at(dt).iter().zip(&exact).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
             off.sqrt()
@@ -220,7 +223,7 @@ fn the_step_is_of_second_order() {
 #[test]
 fn a_spinning_body_keeps_momentum_and_energy() {
     for inertia in [ContactInertia::Kept, ContactInertia::Redistributed] {
-        let dt = 1.0 / 2048.0;
+        let dt = 1.0 / 4096.0;
         let mut scene = explicit(Scene::in_free_space(dt));
         let body = scene.flexible(plate(false, inertia).linvel([0.3, -0.2]));
         let about = [0.0, 0.0];
@@ -228,7 +231,7 @@ fn a_spinning_body_keeps_momentum_and_energy() {
         let angular = scene.body(body).angular_momentum(about);
         let start = scene.step().energy().total();
         let mut off = 0.0f64;
-        for _ in 0..8000 {
+        for _ in 0..16000 {
             off = off.max((scene.step().energy().total() / start - 1.0).abs());
         }
         let body = scene.body(body);
@@ -247,7 +250,7 @@ fn a_spinning_body_keeps_momentum_and_energy() {
 #[test]
 fn a_body_and_a_rigid_box_that_collide_keep_momentum() {
     for inertia in [ContactInertia::Kept, ContactInertia::Redistributed] {
-        let mut scene = explicit(Scene::in_free_space(1.0 / 2048.0));
+        let mut scene = explicit(Scene::in_free_space(1.0 / 4096.0));
         let body = scene.flexible(plate(false, inertia.clone()).translation([-0.5, 0.0]).friction(0.4));
         let shape = ColliderBuilder::cuboid(real(0.3), real(0.2)).density(real(10.0)).friction(real(0.4));
         let at = RigidBodyBuilder::dynamic()
@@ -260,7 +263,7 @@ fn a_body_and_a_rigid_box_that_collide_keep_momentum() {
         let kinetic = scene.body(body).energy().kinetic + 0.5 * mass;
         let mut touched = 0;
         let mut most = 0.0f64;
-        for _ in 0..3000 {
+        for _ in 0..6000 {
             let report = scene.step();
             touched += usize::from(!report.contacts().is_empty());
             if !report.contacts().is_empty() {
@@ -276,5 +279,120 @@ fn a_body_and_a_rigid_box_that_collide_keep_momentum() {
         println!("{inertia:?}: touched in {touched} steps, energy at most {most}");
         assert!(touched > 5);
         assert!(most < 1.01, "energy {most}");
+    }
+}
+
+fn rubber(side: usize) -> FlexBodyBuilder {
+    FlexBodyBuilder::rectangle([1.0, 1.0], [side, side])
+        .material(LinearElastic::plane_stress(1e5, 0.3).density(1000.0).rayleigh(2e-4).rayleigh_mass(1.0))
+}
+
+/// A step well below the critical one of [`rubber`] with 6 cells a side (s).
+const SHORT: f64 = 1.0 / 2048.0;
+
+/// The sum of the contact forces is the weight once vibrations have died out, whoever carries it: nodes without mass, nodes
+/// with mass, and a rigid box on top.
+#[test]
+fn a_resting_body_and_a_box_on_it_press_with_their_weight() {
+    for inertia in [ContactInertia::Redistributed, ContactInertia::Kept] {
+        let mut scene = explicit(Scene::new(SHORT));
+        let ground = scene.ground(0.5);
+        let body = scene.flexible(rubber(6).contact_inertia(inertia).friction(0.5));
+        let shape = ColliderBuilder::cuboid(real(0.3), real(0.1)).density(real(500.0));
+        let (rigid, top) = scene.rigid(RigidBodyBuilder::dynamic().translation(vec2(0.5, 1.1)), shape);
+        let on_top = G * scene.mass(rigid);
+        let weight = G * scene.body(body).mass() + on_top;
+        scene.steps(16384);
+        let below = -scene.force_on_collider(ground)[1] / weight;
+        let above = scene.force_on_collider(top)[1] / on_top;
+        println!("below {below}, above {above}, kinetic {}", scene.report().energy().kinetic);
+        // Mass damping leaves exp(-4) of the slowest rigid motion and nothing measurable of vibrations.
+        assert!((below - 1.0).abs() < 1e-4, "{below}");
+        assert!((above - 1.0).abs() < by_precision(1e-3, 1e-4), "{above}");
+        assert!(scene.report().energy().kinetic < 1e-6 * weight);
+    }
+}
+
+/// Coulomb: on ground of friction 0.3 a block that slides at 2 m/s stops after `v² / 2 μ g`; the block is stiff enough to slide
+/// as one. Damping would drag it: none here.
+#[test]
+fn a_sliding_block_stops_where_friction_stops_it() {
+    for inertia in [ContactInertia::Redistributed, ContactInertia::Kept] {
+        let mut scene = explicit(Scene::new(SHORT));
+        scene.ground(0.3);
+        let body = scene.flexible(
+            FlexBodyBuilder::rectangle([1.0, 0.5], [8, 4])
+                .material(LinearElastic::plane_stress(2e5, 0.3).density(1000.0).rayleigh(3e-4))
+                .contact_inertia(inertia)
+                .friction(0.3)
+                .linvel([2.0, 0.0]),
+        );
+        let start = scene.body(body).centre_of_mass()[0];
+        scene.steps((1.5 / SHORT) as usize);
+        let slid = scene.body(body).centre_of_mass()[0] - start;
+        let exact = 4.0 / (2.0 * 0.3 * G);
+        println!("slid {slid} of {exact}");
+        // It bounces by micrometres at first and leans by its own height over length when it stops.
+        assert!((slid / exact - 1.0).abs() < 0.02, "slid {slid} of {exact}");
+        let rested = scene.body(body).centre_of_mass()[0];
+        scene.steps((0.5 / SHORT) as usize);
+        let crept = scene.body(body).centre_of_mass()[0] - rested;
+        assert!(crept.abs() < 1e-4, "crept {crept}");
+    }
+}
+
+/// The state is that of full steps: a new step length begins where the old one ended, and costs no accuracy.
+#[test]
+fn the_step_may_change_at_any_time() {
+    let mut scene = explicit(Scene::in_free_space(1.0 / 4096.0));
+    let body = scene.flexible(plate(false, ContactInertia::Redistributed));
+    let start = scene.step().energy().total();
+    let mut off = 0.0f64;
+    for n in 0..8000 {
+        scene.world.integration_parameters.dt = real(if n % 7 < 3 { 1.0 / 4096.0 } else { 1.0 / 8192.0 });
+        off = off.max((scene.step().energy().total() / start - 1.0).abs());
+    }
+    println!("energy off by {off}, factorizations {}", scene.report().n_factorizations());
+    assert!(off < 0.01, "energy off by {off}");
+    assert!(scene.body(body).angle() > 2.0);
+}
+
+#[test]
+fn a_step_beyond_the_critical_one_is_refused_unless_the_user_insists() {
+    let mut scene = explicit(Scene::in_free_space(step_of(1.1)));
+    let body = scene.flexible(bar().linvel([0.0, 1.0]));
+    let frequency = scene.body(body).explicit_frequency();
+    // The bar's last frequency is 2 c / h.
+    assert!((frequency * step_of(1.0) / 2.0 - 1.0).abs() < 0.01);
+    let error = scene.try_step().expect_err("the step is too long");
+    let StepError::Integrator { source: IntegratorError::Unstable { critical, .. }, .. } = &error else {
+        panic!("{error}");
+    };
+    assert!((critical / step_of(1.0) - 1.0).abs() < 0.01);
+    assert!(error.to_string().contains("critical step"), "{error}");
+    scene.flex = std::mem::take(&mut scene.flex).insisting();
+    assert!(scene.try_step().is_ok());
+}
+
+#[test]
+fn a_consistent_mass_is_refused_with_the_cure() {
+    let mut scene = explicit(Scene::in_free_space(1e-4));
+    scene.flexible(rubber(4).mass_kind(MassKind::Consistent));
+    let error = scene.try_step().expect_err("the mass couples the accelerations");
+    assert!(error.to_string().contains("MassKind::Lumped"), "{error}");
+}
+
+/// Only the block of the massless nodes is ever factorized, and that once.
+#[test]
+fn the_mesh_is_never_factorized() {
+    for (inertia, expected) in [(ContactInertia::Kept, 0), (ContactInertia::Redistributed, 1)] {
+        let mut scene = explicit(Scene::new(SHORT));
+        scene.ground(0.5);
+        scene.flexible(rubber(6).contact_inertia(inertia));
+        let mut found = 0;
+        for _ in 0..100 {
+            found += scene.step().n_factorizations();
+        }
+        assert_eq!(found, expected);
     }
 }

@@ -40,10 +40,102 @@ impl Island {
                 block.add_impulse(wrench.map(|value| settings.dt * value));
             }
         }
+        self.weigh_switches(settings);
         self.impact_rows(settings)?;
         self.balance_angular_momentum();
+        summary.swing = self.blocks.iter().map(|block| block.swing()[1]).sum();
         summary.pending = self.pending_energy(settings)?;
         Ok(())
+    }
+
+    /// Weighs the forces of quasi-static contacts that open or close in this step.
+    ///
+    /// While contacts stay what they are, a linear body keeps `H = T + V - dt²/8 a·M a` exactly (`a` smooth accelerations at full
+    /// steps), which swings about the energy. A contact that acts for a part of the step only breaks that: the trapezoid gives it
+    /// `dt/2 p` whenever it closed. What was given is taken back in the part, from none to all of it, that keeps `H`.
+    fn weigh_switches(&mut self, settings: &SolveSettings) {
+        let is_smooth = |contact: &ActiveContact| contact.kinematics.is_quasi_static();
+        let keeps_energy = self.blocks.iter().all(|block| match block {
+            Block::Flex(block) => !block.is_damped(),
+            Block::Rigid(_) => true,
+        });
+        if !keeps_energy || !self.contacts.iter().all(is_smooth) || !self.gather_switches(settings) {
+            return;
+        }
+        let gain = self.shadow_gain(settings);
+        let now = self.kinetic_energy();
+        self.add_switches(-1.0);
+        let without = self.kinetic_energy();
+        self.add_switches(2.0);
+        let twice = self.kinetic_energy();
+        let curvature = 0.5 * (without + twice) - now;
+        let slope = 0.5 * (without - twice);
+        let part = part_to_take([curvature, slope, gain]);
+        self.add_switches(-1.0 - part);
+    }
+
+    /// Gathers what contacts that have opened or closed gave to the velocities; returns whether there are any.
+    fn gather_switches(&mut self, settings: &SolveSettings) -> bool {
+        self.wrenches.clear();
+        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.clear_impulse();
+            }
+        }
+        let mut has_switched = false;
+        for contact in &self.contacts {
+            let before = [contact.remembered.normal, contact.remembered.tangent];
+            let is_closed = contact.is_closed();
+            if is_closed == (before[0] > 0.0) {
+                continue;
+            }
+            has_switched = true;
+            let (weight, force) = if is_closed {
+                (settings.b1, contact.multiplier)
+            } else {
+                (settings.dt - settings.b1, before)
+            };
+            Self::spread(
+                &mut self.blocks,
+                &contact.kinematics,
+                force.map(|force| weight * force),
+                Some(&mut self.wrenches),
+                |block, node, impulse, lever| block.gather_impulse(node, impulse, lever),
+            );
+        }
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.respond_to_surface_impulse();
+            }
+        }
+        has_switched
+    }
+
+    fn add_switches(&mut self, scale: f64) {
+        for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
+            match block {
+                Block::Flex(block) => block.add_surface_response(scale),
+                Block::Rigid(block) => block.add_impulse(wrench.map(|value| scale * value)),
+            }
+        }
+    }
+
+    /// Gain of `H` over the step beyond the work of loads, of prescribed bodies and of friction (J).
+    fn shadow_gain(&mut self, settings: &SolveSettings) -> f64 {
+        let mut gain = -self.actual_work(settings);
+        for contact in &self.contacts {
+            let drag = 0.5 * (contact.multiplier[1] + contact.remembered.tangent);
+            gain -= drag * contact.slip;
+        }
+        for (end, start) in self.end_energy().iter().zip(self.start_energy()) {
+            gain += end - start;
+        }
+        for block in &self.blocks {
+            let [start, end] = block.swing();
+            gain -= end - start;
+        }
+        gain
     }
 
     fn gather_wrenches(&mut self, counts: impl Fn(&ActiveContact) -> bool) {
@@ -124,6 +216,16 @@ impl Island {
         }
         Ok(gain)
     }
+}
+
+/// The `z` in [0, 1] that makes `curvature z² + slope z + gain` zero, or as small as can be.
+fn part_to_take([curvature, slope, gain]: [f64; 3]) -> f64 {
+    let value = |z: f64| ((curvature * z + slope) * z + gain).abs();
+    let root = (slope * slope - 4.0 * curvature * gain).max(0.0).sqrt();
+    let sum = -0.5 * (slope + root.copysign(slope));
+    let candidates = [sum / curvature, gain / sum, 0.0, 1.0];
+    let inside = candidates.into_iter().filter(|z| (0.0..=1.0).contains(z));
+    inside.fold(0.0, |best, z| if value(z) < value(best) { z } else { best })
 }
 
 /// Relative motion over the next step without multipliers (m).

@@ -141,6 +141,8 @@ pub struct IslandSummary {
     pub work: f64,
     /// Energy taken out by the energy stage (J).
     pub limited: f64,
+    /// `dt²/8 a·M a` at the end of an explicit step (J).
+    pub swing: f64,
     /// Kinetic energy of the half step of forward contacts that belongs to this instant and is not in the velocities (J).
     pub pending: f64,
 }

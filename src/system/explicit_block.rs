@@ -23,6 +23,7 @@ use super::compliance::Compliance;
 use super::flex_block::{FlexBlock, Response};
 use super::massless_surface::MasslessSurface;
 use crate::body::{FlexState, Frame};
+use crate::fe::material::Rayleigh;
 use crate::fe::model::{MassMatrix, Model};
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
 use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
@@ -45,6 +46,8 @@ pub(super) struct Explicit {
     late_force: Vec<f64>,
     late_start: Vec<f64>,
     has_late_force: bool,
+    /// `dt²/8 a·M a` at the beginning and at the end (J).
+    swing: [f64; 2],
     /// Whether `internal` is that of `position`.
     is_known: bool,
     is_new: bool,
@@ -152,7 +155,8 @@ impl FlexBlock {
         } else {
             0.0
         };
-        let (twist, explicit) = (self.frame_correction(), &mut self.explicit);
+        let twist = self.frame_correction(&self.explicit.internal);
+        let explicit = &mut self.explicit;
         let late = if is_drag_known {
             &explicit.late_start
         } else {
@@ -176,10 +180,14 @@ impl FlexBlock {
         for &dof in &self.fixed_dofs {
             explicit.acceleration[dof] = 0.0;
         }
+        let acceleration = &explicit.acceleration;
+        let squared = self.model.mass().inner(acceleration, acceleration);
+        let slot = usize::from(!is_drag_known);
+        explicit.swing[slot] = 0.125 * self.step.dt * self.step.dt * squared;
     }
 
-    /// Angular acceleration `τ / Σ m X·(X + u)` that takes the moment out of the internal forces (rad/s²).
-    fn frame_correction(&self) -> f64 {
+    /// Angular acceleration `τ / Σ m X·(X + u)` that takes the moment out of internal forces (rad/s²).
+    fn frame_correction(&self, internal: &[f64]) -> f64 {
         if self.kind == Frame::Fixed {
             return 0.0;
         }
@@ -187,7 +195,7 @@ impl FlexBlock {
         for node in 0..self.model.n_nodes() {
             let u = node_vec(&self.displacement, node);
             let arm = node_vec(&self.arms.reference, node) + u;
-            moment += cross(arm, node_vec(&self.explicit.internal, node));
+            moment += cross(arm, node_vec(internal, node));
             inertia += node_vec(&self.arms.mass_moment, node).dot(&u);
         }
         moment / inertia
@@ -334,6 +342,81 @@ impl FlexBlock {
         self.frame.velocity =
             self.arms
                 .centre(self.kind, &self.velocity, self.start_frame.velocity);
+    }
+
+    /// Writes the velocities that the gathered impulses give over `local` (m/s): those at massless nodes reach the masses
+    /// through the stiffness, as forces there do.
+    pub fn respond_to_surface_impulse(&mut self) {
+        if !self.has_impulse() {
+            return;
+        }
+        self.scratch.fill(0.0);
+        self.relax_impulse();
+        let stiffness = self.model.stiffness();
+        stiffness.multiply(&self.scratch, &mut self.local);
+        let twist = self.frame_correction(&self.local);
+        let MassMatrix::Lumped(mass) = self.model.mass() else {
+            return;
+        };
+        for (node, &mass) in mass.iter().enumerate() {
+            let own = node_vec(&self.impulse, node) - self.turn * node_vec(&self.local, node);
+            let arm = self.turn * node_vec(&self.arms.reference, node);
+            let change = if mass > 0.0 {
+                own / mass + twist * perp(arm)
+            } else {
+                Vec2::zeros()
+            };
+            set_node_vec(&mut self.local, node, change);
+        }
+        for &dof in &self.fixed_dofs {
+            self.local[dof] = 0.0;
+        }
+    }
+
+    /// Writes what the impulses at massless nodes would displace those, as forces, over `scratch`.
+    fn relax_impulse(&mut self) {
+        let (surface, back) = (&mut self.explicit.surface, self.turn.transpose());
+        for (slot, &node) in surface.nodes.iter().enumerate() {
+            let mut impulse = back * node_vec(&self.impulse, node);
+            for axis in 0..2 {
+                if self.is_fixed[2 * node + axis] {
+                    impulse[axis] = 0.0;
+                }
+            }
+            set_node_vec(&mut surface.local, slot, impulse);
+        }
+        if surface.nodes.is_empty() {
+            return;
+        }
+        self.factor.solve_in_place(&mut surface.local);
+        self.n_solves += 1;
+        for (slot, &node) in surface.nodes.iter().enumerate() {
+            set_node_vec(&mut self.scratch, node, node_vec(&surface.local, slot));
+        }
+    }
+
+    /// Adds that response to the end velocity.
+    pub fn add_surface_response(&mut self, scale: f64) {
+        if !self.has_impulse() {
+            return;
+        }
+        for (velocity, response) in self.velocity.iter_mut().zip(&self.local) {
+            *velocity += scale * response;
+        }
+        if self.kind == Frame::Free {
+            self.frame.velocity += scale * self.impulse_total / self.arms.mass;
+        }
+    }
+
+    /// Whether the material damps.
+    pub fn is_damped(&self) -> bool {
+        let Rayleigh { mass, stiffness } = self.model.rayleigh();
+        mass > 0.0 || stiffness > 0.0
+    }
+
+    /// `dt²/8 a·M a` at the beginning and at the end of the step (J).
+    pub(super) fn swing(&self) -> [f64; 2] {
+        self.explicit.swing
     }
 
     /// Smooth acceleration of a node at the end of the step (m/s²).

@@ -149,6 +149,14 @@ impl Block {
         matches!(self, Self::Flex(block) if block.is_explicit())
     }
 
+    /// `dt²/8 a·M a` of an explicit block, with its smooth accelerations at the beginning and at the end of the step (J).
+    pub fn swing(&self) -> [f64; 2] {
+        match self {
+            Self::Flex(block) => block.swing(),
+            Self::Rigid(block) => block.swing(),
+        }
+    }
+
     /// Whether a point carries no inertia, so that contact there is a quasi-static spring.
     pub fn is_massless(&self, point: Point) -> bool {
         match (self, point) {

@@ -274,6 +274,15 @@ impl RigidBlock {
             + self.force[2] * (self.current.angle - self.start.angle)
     }
 
+    /// See [`super::Block::swing`].
+    pub(super) fn swing(&self) -> [f64; 2] {
+        [&self.smooth_start, &self.smooth_end].map(|acceleration| {
+            let terms = self.mass.iter().zip(acceleration);
+            let squared: f64 = terms.map(|(mass, a)| mass * a * a).sum();
+            0.125 * self.dt * self.dt * squared
+        })
+    }
+
     /// Kinetic energy of a motion of this body (J).
     pub fn kinetic_energy(&self, motion: &RigidMotion) -> f64 {
         0.5 * (self.mass[0] * motion.velocity.x * motion.velocity.x
