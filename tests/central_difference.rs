@@ -47,8 +47,10 @@ struct Impact {
     plateau: f64,
     /// Time of the last contact force (s).
     release: f64,
-    /// Least and largest energy, and that at the end, over that at the beginning.
+    /// Least and largest energy, and that at the end, over that at the beginning, without the swing of a leapfrog.
     energy: [f64; 3],
+    /// Largest energy with the swing.
+    swinging: f64,
     /// Error of the sum of the forces times the step against the change of momentum, relative.
     impulse: f64,
     overlap: f64,
@@ -78,12 +80,15 @@ fn impact_of_a_bar(is_kept: bool, solver: Method) -> Impact {
         plateau: 0.0,
         release: 0.0,
         energy: [1.0; 3],
+        swinging: 1.0,
         impulse: 0.0,
         overlap: 0.0,
     };
     for n in 1..=500 {
         let report = scene.step();
-        let energy = report.energy().total() / at_start;
+        let swinging = report.energy().total() / at_start;
+        let energy = swinging - report.energy().swing / at_start;
+        impact.swinging = impact.swinging.max(swinging);
         impact.overlap = impact.overlap.max(report.gap_violation());
         impact.energy[0] = impact.energy[0].min(energy);
         impact.energy[1] = impact.energy[1].max(energy);
@@ -105,22 +110,26 @@ fn impact_of_a_bar(is_kept: bool, solver: Method) -> Impact {
     impact
 }
 
-/// The bars of the brief are 1 % for the plateau and two steps for the release. Energy: the node at the end is stopped with
-/// `m v0²/2`, m = 1/200 of the bar, at closing and again at release; without its mass only the fraction of a step at
-/// which the gap closes costs something.
+/// The bars are those of the benchmark: 1 % for the plateau, two steps for the release.
 #[test]
 fn b1_the_bar_meets_the_wall_with_the_exact_pressure() {
-    for (is_kept, least) in [(false, 0.998), (true, 0.99)] {
+    // A node with mass loses `m v0²/2` at closing, m = 1/200 of the bar, and once more what it vibrates with when it lets go;
+    // while it is held it accelerates without moving, and that swing is none.
+    for (is_kept, least) in [(false, 0.9999), (true, 0.985)] {
         let found = impact_of_a_bar(is_kept, Method::ActiveSet);
         println!("kept {is_kept}: {found:?}");
         assert!(found.plateau < 0.01, "{found:?}");
         let late = found.release - (0.5 + 2.0 * LENGTH / WAVE_SPEED);
         assert!(late.abs() <= 2.0 * step_of(0.9), "{found:?}");
-        // Kinetic and elastic energy of a leapfrog swap by (ω dt)²/4 of a front.
-        assert!(found.energy[0] > least && found.energy[1] < 1.001, "{found:?}");
+        assert!(
+            found.energy[0] > least && found.energy[1] < 1.0001,
+            "{found:?}"
+        );
+        // Two fronts of a few cells swing, of 100.
+        assert!(found.swinging < 1.005, "{found:?}");
         assert!(found.overlap < 1e-9, "{found:?}");
-        // Velocities and forces share one quadrature; half a step of the last spring force is missing when it opens.
-        assert!(found.impulse < 1e-3, "{found:?}");
+        // What release takes back of the last half step is in no report: 1/2 of a step of 222 at most.
+        assert!(found.impulse < 1.0 / 444.0, "{found:?}");
     }
 }
 
@@ -131,8 +140,14 @@ fn gauss_seidel_gives_what_the_direct_solver_gives() {
         let direct = impact_of_a_bar(is_kept, Method::ActiveSet);
         let swept = impact_of_a_bar(is_kept, Method::GaussSeidel);
         assert_eq!(direct.release, swept.release);
-        assert!((direct.plateau - swept.plateau).abs() < 1e-9, "{direct:?} {swept:?}");
-        assert!((direct.energy[2] - swept.energy[2]).abs() < 1e-9, "{direct:?} {swept:?}");
+        assert!(
+            (direct.plateau - swept.plateau).abs() < 1e-9,
+            "{direct:?} {swept:?}"
+        );
+        assert!(
+            (direct.energy[2] - swept.energy[2]).abs() < 1e-9,
+            "{direct:?} {swept:?}"
+        );
     }
 }
 
@@ -163,10 +178,16 @@ fn b2_the_bouncing_bar_keeps_its_energy_over_ten_periods() {
     let ([swinging, conserved], most, overlap) = run(false);
     assert!(swinging > 0.985 && overlap < 1e-9, "{swinging}");
     // What a leapfrog conserves: some switches late in the run have no weight between 0 and 1 that keeps it.
-    assert!((conserved - 1.0).abs() < 0.005 && most < 1.005, "{conserved}");
+    assert!(
+        (conserved - 1.0).abs() < 0.005 && most < 1.005,
+        "{conserved}"
+    );
     // A node with mass is stopped at every impact: it is known to lose, and must not gain.
     let ([_, conserved], most, _) = run(true);
-    assert!(conserved > 0.2 && conserved < 0.9 && most < 1.002, "{conserved} {most}");
+    assert!(
+        conserved > 0.1 && conserved < 0.5 && most < 1.002,
+        "{conserved} {most}"
+    );
 }
 
 /// A plate that spins, deforms and vibrates; `fixed` holds its lower edge instead.
@@ -210,7 +231,11 @@ fn the_step_is_of_second_order() {
         let steps = [12, 13, 14].map(|power| 0.5f64.powi(power));
         let exact = at(0.5f64.powi(17));
         let errors = steps.map(|dt| {
-            let off = at(dt).iter().zip(&exact).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            let off = at(dt)
+                .iter()
+                .zip(&exact)
+                .map(|(a, b)| (a - b).powi(2))
+                .sum::<f64>();
             off.sqrt()
         });
         let order = order(&steps, &errors);
@@ -251,8 +276,14 @@ fn a_spinning_body_keeps_momentum_and_energy() {
 fn a_body_and_a_rigid_box_that_collide_keep_momentum() {
     for inertia in [ContactInertia::Kept, ContactInertia::Redistributed] {
         let mut scene = explicit(Scene::in_free_space(1.0 / 4096.0));
-        let body = scene.flexible(plate(false, inertia.clone()).translation([-0.5, 0.0]).friction(0.4));
-        let shape = ColliderBuilder::cuboid(real(0.3), real(0.2)).density(real(10.0)).friction(real(0.4));
+        let body = scene.flexible(
+            plate(false, inertia.clone())
+                .translation([-0.5, 0.0])
+                .friction(0.4),
+        );
+        let shape = ColliderBuilder::cuboid(real(0.3), real(0.2))
+            .density(real(10.0))
+            .friction(real(0.4));
         let at = RigidBodyBuilder::dynamic()
             .translation(vec2(0.15, -0.5))
             .linvel(vec2(0.0, 1.0));
@@ -271,8 +302,15 @@ fn a_body_and_a_rigid_box_that_collide_keep_momentum() {
                 // Rapier's precision of the box's mass and motion is what is left when it is claimed.
                 let close = by_precision(1e-6, 1e-11);
                 assert!((momentum[0] - start[0]).abs() < close, "{momentum:?}");
-                assert!((momentum[1] - start[1] - mass).abs() < close, "{momentum:?}");
-                assert!((report.angular_momentum() - angular).abs() < by_precision(1e-5, 1e-10), "{} {angular}", report.angular_momentum());
+                assert!(
+                    (momentum[1] - start[1] - mass).abs() < close,
+                    "{momentum:?}"
+                );
+                assert!(
+                    (report.angular_momentum() - angular).abs() < by_precision(1e-5, 1e-10),
+                    "{} {angular}",
+                    report.angular_momentum()
+                );
                 most = most.max(report.energy().total() / kinetic);
             }
         }
@@ -283,11 +321,15 @@ fn a_body_and_a_rigid_box_that_collide_keep_momentum() {
 }
 
 fn rubber(side: usize) -> FlexBodyBuilder {
-    FlexBodyBuilder::rectangle([1.0, 1.0], [side, side])
-        .material(LinearElastic::plane_stress(1e5, 0.3).density(1000.0).rayleigh(2e-4).rayleigh_mass(1.0))
+    FlexBodyBuilder::rectangle([1.0, 1.0], [side, side]).material(
+        LinearElastic::plane_stress(1e5, 0.3)
+            .density(1000.0)
+            .rayleigh(2e-4)
+            .rayleigh_mass(10.0),
+    )
 }
 
-/// A step well below the critical one of [`rubber`] with 6 cells a side (s).
+/// A step well below the critical one of [`rubber`] with 10 cells a side (s).
 const SHORT: f64 = 1.0 / 2048.0;
 
 /// The sum of the contact forces is the weight once vibrations have died out, whoever carries it: nodes without mass, nodes
@@ -297,18 +339,24 @@ fn a_resting_body_and_a_box_on_it_press_with_their_weight() {
     for inertia in [ContactInertia::Redistributed, ContactInertia::Kept] {
         let mut scene = explicit(Scene::new(SHORT));
         let ground = scene.ground(0.5);
-        let body = scene.flexible(rubber(6).contact_inertia(inertia).friction(0.5));
+        let body = scene.flexible(rubber(10).contact_inertia(inertia).friction(0.5));
         let shape = ColliderBuilder::cuboid(real(0.3), real(0.1)).density(real(500.0));
-        let (rigid, top) = scene.rigid(RigidBodyBuilder::dynamic().translation(vec2(0.5, 1.1)), shape);
+        let (rigid, top) = scene.rigid(
+            RigidBodyBuilder::dynamic().translation(vec2(0.5, 1.1)),
+            shape,
+        );
         let on_top = G * scene.mass(rigid);
         let weight = G * scene.body(body).mass() + on_top;
         scene.steps(16384);
         let below = -scene.force_on_collider(ground)[1] / weight;
         let above = scene.force_on_collider(top)[1] / on_top;
-        println!("below {below}, above {above}, kinetic {}", scene.report().energy().kinetic);
-        // Mass damping leaves exp(-4) of the slowest rigid motion and nothing measurable of vibrations.
-        assert!((below - 1.0).abs() < 1e-4, "{below}");
-        assert!((above - 1.0).abs() < by_precision(1e-3, 1e-4), "{above}");
+        println!(
+            "below {below}, above {above}, kinetic {}",
+            scene.report().energy().kinetic
+        );
+        // Damping has left exp(-40) of every motion; rapier's precision of the box is what remains.
+        assert!((below - 1.0).abs() < by_precision(1e-6, 1e-9), "{below}");
+        assert!((above - 1.0).abs() < by_precision(1e-6, 1e-9), "{above}");
         assert!(scene.report().energy().kinetic < 1e-6 * weight);
     }
 }
@@ -317,25 +365,30 @@ fn a_resting_body_and_a_box_on_it_press_with_their_weight() {
 /// as one. Damping would drag it: none here.
 #[test]
 fn a_sliding_block_stops_where_friction_stops_it() {
+    let dt = 1.0 / 8192.0;
     for inertia in [ContactInertia::Redistributed, ContactInertia::Kept] {
-        let mut scene = explicit(Scene::new(SHORT));
+        let mut scene = explicit(Scene::new(dt));
         scene.ground(0.3);
         let body = scene.flexible(
-            FlexBodyBuilder::rectangle([1.0, 0.5], [8, 4])
-                .material(LinearElastic::plane_stress(2e5, 0.3).density(1000.0).rayleigh(3e-4))
+            FlexBodyBuilder::rectangle([1.0, 0.5], [12, 6])
+                .material(
+                    LinearElastic::plane_stress(1e7, 0.3)
+                        .density(1000.0)
+                        .rayleigh(5e-5),
+                )
                 .contact_inertia(inertia)
                 .friction(0.3)
                 .linvel([2.0, 0.0]),
         );
         let start = scene.body(body).centre_of_mass()[0];
-        scene.steps((1.5 / SHORT) as usize);
+        scene.steps((1.5 / dt) as usize);
         let slid = scene.body(body).centre_of_mass()[0] - start;
         let exact = 4.0 / (2.0 * 0.3 * G);
         println!("slid {slid} of {exact}");
         // It bounces by micrometres at first and leans by its own height over length when it stops.
         assert!((slid / exact - 1.0).abs() < 0.02, "slid {slid} of {exact}");
         let rested = scene.body(body).centre_of_mass()[0];
-        scene.steps((0.5 / SHORT) as usize);
+        scene.steps((0.5 / dt) as usize);
         let crept = scene.body(body).centre_of_mass()[0] - rested;
         assert!(crept.abs() < 1e-4, "crept {crept}");
     }
@@ -349,10 +402,17 @@ fn the_step_may_change_at_any_time() {
     let start = scene.step().energy().total();
     let mut off = 0.0f64;
     for n in 0..8000 {
-        scene.world.integration_parameters.dt = real(if n % 7 < 3 { 1.0 / 4096.0 } else { 1.0 / 8192.0 });
+        scene.world.integration_parameters.dt = real(if n % 7 < 3 {
+            1.0 / 4096.0
+        } else {
+            1.0 / 8192.0
+        });
         off = off.max((scene.step().energy().total() / start - 1.0).abs());
     }
-    println!("energy off by {off}, factorizations {}", scene.report().n_factorizations());
+    println!(
+        "energy off by {off}, factorizations {}",
+        scene.report().n_factorizations()
+    );
     assert!(off < 0.01, "energy off by {off}");
     assert!(scene.body(body).angle() > 2.0);
 }
@@ -365,7 +425,11 @@ fn a_step_beyond_the_critical_one_is_refused_unless_the_user_insists() {
     // The bar's last frequency is 2 c / h.
     assert!((frequency * step_of(1.0) / 2.0 - 1.0).abs() < 0.01);
     let error = scene.try_step().expect_err("the step is too long");
-    let StepError::Integrator { source: IntegratorError::Unstable { critical, .. }, .. } = &error else {
+    let StepError::Integrator {
+        source: IntegratorError::Unstable { critical, .. },
+        ..
+    } = &error
+    else {
         panic!("{error}");
     };
     assert!((critical / step_of(1.0) - 1.0).abs() < 0.01);
@@ -378,17 +442,22 @@ fn a_step_beyond_the_critical_one_is_refused_unless_the_user_insists() {
 fn a_consistent_mass_is_refused_with_the_cure() {
     let mut scene = explicit(Scene::in_free_space(1e-4));
     scene.flexible(rubber(4).mass_kind(MassKind::Consistent));
-    let error = scene.try_step().expect_err("the mass couples the accelerations");
+    let error = scene
+        .try_step()
+        .expect_err("the mass couples the accelerations");
     assert!(error.to_string().contains("MassKind::Lumped"), "{error}");
 }
 
 /// Only the block of the massless nodes is ever factorized, and that once.
 #[test]
 fn the_mesh_is_never_factorized() {
-    for (inertia, expected) in [(ContactInertia::Kept, 0), (ContactInertia::Redistributed, 1)] {
+    for (inertia, expected) in [
+        (ContactInertia::Kept, 0),
+        (ContactInertia::Redistributed, 1),
+    ] {
         let mut scene = explicit(Scene::new(SHORT));
         scene.ground(0.5);
-        scene.flexible(rubber(6).contact_inertia(inertia));
+        scene.flexible(rubber(10).contact_inertia(inertia));
         let mut found = 0;
         for _ in 0..100 {
             found += scene.step().n_factorizations();

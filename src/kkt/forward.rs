@@ -59,7 +59,8 @@ impl Island {
             Block::Flex(block) => !block.is_damped(),
             Block::Rigid(_) => true,
         });
-        if !keeps_energy || !self.contacts.iter().all(is_smooth) || !self.gather_switches(settings) {
+        if !keeps_energy || !self.contacts.iter().all(is_smooth) || !self.gather_switches(settings)
+        {
             return;
         }
         let gain = self.shadow_gain(settings);
@@ -72,6 +73,12 @@ impl Island {
         let slope = 0.5 * (without - twice);
         let part = part_to_take([curvature, slope, gain]);
         self.add_switches(-1.0 - part);
+        // What a contact that has closed really gave is its mean force over the step.
+        for contact in &mut self.contacts {
+            if contact.is_closed() && contact.remembered.normal <= 0.0 {
+                contact.impulse = contact.multiplier.map(|force| -part * settings.b1 * force);
+            }
+        }
     }
 
     /// Gathers what contacts that have opened or closed gave to the velocities; returns whether there are any.

@@ -46,6 +46,8 @@ pub(super) struct Explicit {
     late_force: Vec<f64>,
     late_start: Vec<f64>,
     has_late_force: bool,
+    /// `dt/2 M⁻¹` times the impulsive forces of the last step: what its velocities lack at a contact that stays (m/s).
+    kick: Vec<f64>,
     /// `dt²/8 a·M a` at the beginning and at the end (J).
     swing: [f64; 2],
     /// Whether `internal` is that of `position`.
@@ -68,6 +70,7 @@ impl FlexBlock {
             internal: zeros(),
             late_force: zeros(),
             late_start: zeros(),
+            kick: zeros(),
             ..Explicit::default()
         };
         let factor = BlockCholesky::analyze(&stiffness);
@@ -133,6 +136,7 @@ impl FlexBlock {
     fn measure_internal_force(&mut self) {
         let beta = self.model.rayleigh().stiffness;
         self.explicit.late_start.fill(0.0);
+        self.explicit.kick.fill(0.0);
         for (sum, (u, rate)) in self
             .scratch
             .iter_mut()
@@ -171,7 +175,9 @@ impl FlexBlock {
             }
             let force = node_vec(&self.force, node) + node_vec(late, node)
                 - self.turn * node_vec(&explicit.internal, node);
-            let mut acceleration = force / mass - alpha * node_vec(&self.velocity, node);
+            // A resting contact has no velocity to drag: its missing half kick counts.
+            let velocity = node_vec(&self.velocity, node) + node_vec(&explicit.kick, node);
+            let mut acceleration = force / mass - alpha * velocity;
             if self.kind != Frame::Fixed {
                 acceleration += twist * perp(self.turn * node_vec(&self.arms.reference, node));
             }
@@ -255,8 +261,7 @@ impl FlexBlock {
                     self.displacement[dof] = (self.scratch[dof] + lag * before) / (1.0 + lag);
                 }
             }
-            let arm =
-                node_vec(&self.arms.reference, node) + node_vec(&self.displacement, node);
+            let arm = node_vec(&self.arms.reference, node) + node_vec(&self.displacement, node);
             let position = self.frame.centre + self.turn * arm;
             set_node_vec(&mut self.position, node, position);
         }
@@ -335,9 +340,11 @@ impl FlexBlock {
                 *velocity = (self.position[dof] - self.start_position[dof]) / dt;
                 continue;
             }
-            *velocity += b1 * explicit.acceleration[dof] + dt / mass * self.contact_force[dof];
-            *velocity /= 1.0 + b1 * alpha;
-            explicit.acceleration[dof] -= alpha * *velocity;
+            let kick = 0.5 * dt / mass * self.contact_force[dof];
+            let smooth = explicit.acceleration[dof] - alpha * kick;
+            *velocity = (*velocity + b1 * smooth + 2.0 * kick) / (1.0 + b1 * alpha);
+            explicit.acceleration[dof] -= alpha * (*velocity + kick);
+            explicit.kick[dof] = kick;
         }
         self.frame.velocity =
             self.arms

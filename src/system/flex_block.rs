@@ -273,7 +273,12 @@ impl FlexBlock {
 
     fn predict_operators(&mut self, state: &FlexState) {
         let start = [&state.displacement[..], &state.rate, &state.acceleration];
-        Beta2::predict(self.step.dt, start, &mut self.displacement_q, &mut self.rate_q);
+        Beta2::predict(
+            self.step.dt,
+            start,
+            &mut self.displacement_q,
+            &mut self.rate_q,
+        );
         // The iterate starts from where the body is: the operators of unresolved modes are large and cancel in the solve.
         self.displacement.copy_from_slice(&state.displacement);
         self.rate.copy_from_slice(&state.rate);

@@ -301,12 +301,8 @@ impl Solver {
             Method::ActiveSet => return self.trial.iter().any(|&multiplier| multiplier != 0.0),
             Method::GaussSeidel => {
                 self.trial.copy_from_slice(&self.best.multipliers);
-                outcome.n_sweeps += gauss_seidel::sweep(
-                    problem,
-                    gauss_seidel::RELAXATION,
-                    &mut self.trial,
-                    effort,
-                );
+                outcome.n_sweeps +=
+                    gauss_seidel::sweep(problem, gauss_seidel::RELAXATION, &mut self.trial, effort);
             }
             Method::Lemke => {
                 let n_pivots = &mut outcome.n_lemke_pivots;
