@@ -32,6 +32,9 @@ impl Island {
         settings: &SolveSettings,
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
+        if !settings.insists {
+            self.check_partners(settings)?;
+        }
         self.gather_wrenches(|contact| contact.kinematics.is_quasi_static());
         self.set_soft_forces();
         self.gather_wrenches(ActiveContact::is_forward);

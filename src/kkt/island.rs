@@ -22,6 +22,16 @@ pub enum KktError {
         /// What the factorization found.
         source: CholeskyError,
     },
+    /// A rigid body is too light for the springs that an explicit body meets it with.
+    #[error(
+        "a rigid body is so light that on the surface of an explicit flexible body it vibrates faster than the step of {dt} s resolves: shorten the step below {critical} s, make the body heavier, keep the inertia of the surface (`ContactInertia::Kept`), or choose beta0 > 0"
+    )]
+    LightPartner {
+        /// The step asked for (s).
+        dt: f64,
+        /// The longest stable step (s).
+        critical: f64,
+    },
     /// The contact problem holds numbers that are not finite.
     #[error(transparent)]
     Contact(#[from] ComplementarityError),
@@ -38,6 +48,8 @@ pub struct SolveSettings {
     pub b1: f64,
     /// Whether `β0 = 0`, so that multipliers act at the forward increment.
     pub is_explicit: bool,
+    /// Whether steps that are too long for a partner are taken all the same.
+    pub insists: bool,
     /// What is done on impact.
     pub impact: ImpactTreatment,
     /// The solver that contact problems are given to first.

@@ -109,7 +109,7 @@ impl FlexPipeline {
 
     /// Takes steps longer than the critical one of a conditionally stable integrator instead of refusing them.
     ///
-    /// The critical step is that of a safe bound, so a step a little longer may be stable; one much longer makes the highest
+    /// The critical step of a body is that of a safe bound, so a step a little longer may be stable; one much longer makes the highest
     /// frequencies grow until numbers are no longer finite.
     pub fn insisting(mut self) -> Self {
         self.insists = true;
@@ -317,6 +317,7 @@ impl FlexPipeline {
             },
             b1: step.weights.b1,
             is_explicit: step.is_explicit(),
+            insists: self.insists,
             impact: self.impact,
             solver: self.solver,
             restitution_threshold: self.restitution_threshold,

@@ -23,7 +23,6 @@ use super::compliance::Compliance;
 use super::flex_block::{FlexBlock, Response};
 use super::massless_surface::MasslessSurface;
 use crate::body::{FlexState, Frame};
-use crate::fe::material::Rayleigh;
 use crate::fe::model::{MassMatrix, Model};
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
 use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
@@ -32,27 +31,27 @@ use std::sync::Arc;
 /// What an explicit block has beside an implicit one; empty in the latter.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Explicit {
-    pub is_on: bool,
-    surface: MasslessSurface,
+    pub(super) is_on: bool,
+    pub(super) surface: MasslessSurface,
     /// `M⁻¹ (R - Q)` in world axes: at the beginning of the step, then at its end (m/s²).
-    acceleration: Vec<f64>,
+    pub(super) acceleration: Vec<f64>,
     /// `x*` (m).
-    free_position: Vec<f64>,
-    start_displacement: Vec<f64>,
+    pub(super) free_position: Vec<f64>,
+    pub(super) start_displacement: Vec<f64>,
     /// `K u` and `K (u + β u̇)` in the body's frame, as last measured (N).
-    elastic: Vec<f64>,
-    internal: Vec<f64>,
+    pub(super) elastic: Vec<f64>,
+    pub(super) internal: Vec<f64>,
     /// Forces of quasi-static contacts on masses, of the iterate and of the end of the last step (N).
-    late_force: Vec<f64>,
-    late_start: Vec<f64>,
-    has_late_force: bool,
+    pub(super) late_force: Vec<f64>,
+    pub(super) late_start: Vec<f64>,
+    pub(super) has_late_force: bool,
     /// `dt/2 M⁻¹` times the impulsive forces of the last step: what its velocities lack at a contact that stays (m/s).
-    kick: Vec<f64>,
+    pub(super) kick: Vec<f64>,
     /// `dt²/8 a·M a` at the beginning and at the end (J).
-    swing: [f64; 2],
+    pub(super) swing: [f64; 2],
     /// Whether `internal` is that of `position`.
-    is_known: bool,
-    is_new: bool,
+    pub(super) is_known: bool,
+    pub(super) is_new: bool,
 }
 
 impl FlexBlock {
@@ -153,7 +152,7 @@ impl FlexBlock {
     }
 
     /// Writes `M⁻¹ (R - Q)`, and with `is_drag_known` less `α v`; zero without mass and where the body is pinned.
-    fn accelerate(&mut self, is_drag_known: bool) {
+    pub(super) fn accelerate(&mut self, is_drag_known: bool) {
         let alpha = if is_drag_known {
             self.model.rayleigh().mass
         } else {
@@ -193,7 +192,7 @@ impl FlexBlock {
     }
 
     /// Angular acceleration `τ / Σ m X·(X + u)` that takes the moment out of internal forces (rad/s²).
-    fn frame_correction(&self, internal: &[f64]) -> f64 {
+    pub(super) fn frame_correction(&self, internal: &[f64]) -> f64 {
         if self.kind == Frame::Fixed {
             return 0.0;
         }
@@ -238,7 +237,7 @@ impl FlexBlock {
     }
 
     /// Ratio `β / dt` of the damping term (-).
-    fn lag(&self) -> f64 {
+    pub(super) fn lag(&self) -> f64 {
         self.model.rayleigh().stiffness / self.step.dt
     }
 
@@ -299,157 +298,6 @@ impl FlexBlock {
         }
     }
 
-    /// Measures the internal forces at the end of the step, and from them the elastic energy and the velocities.
-    pub(super) fn finish_explicitly(&mut self) {
-        let (lag, dt) = (self.lag(), self.step.dt);
-        let stiffness = self.model.stiffness();
-        stiffness.multiply(&self.displacement, &mut self.scratch);
-        let explicit = &mut self.explicit;
-        let mut twice = 0.0;
-        for (dof, &elastic) in self.scratch.iter().enumerate() {
-            twice += self.displacement[dof] * elastic;
-            explicit.internal[dof] = (1.0 + lag) * elastic - lag * explicit.elastic[dof];
-            explicit.elastic[dof] = elastic;
-            self.rate[dof] = (self.displacement[dof] - explicit.start_displacement[dof]) / dt;
-        }
-        self.end_elastic = 0.5 * twice;
-        // Before the end takes the place of the beginning.
-        let early = dt - self.step.weights.b1;
-        for (velocity, acceleration) in self.velocity.iter_mut().zip(&explicit.acceleration) {
-            *velocity += early * acceleration;
-        }
-        self.accelerate(false);
-        self.end_velocities();
-        let explicit = &mut self.explicit;
-        explicit.late_start.copy_from_slice(&explicit.late_force);
-        explicit.is_known = true;
-        explicit.is_new = false;
-    }
-
-    /// Adds the end's acceleration and the impulses of contacts; `velocity` holds the rest.
-    fn end_velocities(&mut self) {
-        let (dt, b1) = (self.step.dt, self.step.weights.b1);
-        let alpha = self.model.rayleigh().mass;
-        let explicit = &mut self.explicit;
-        let MassMatrix::Lumped(mass) = self.model.mass() else {
-            return;
-        };
-        for (dof, velocity) in self.velocity.iter_mut().enumerate() {
-            let mass = mass[dof / 2];
-            if mass <= 0.0 || self.is_fixed[dof] {
-                *velocity = (self.position[dof] - self.start_position[dof]) / dt;
-                continue;
-            }
-            let kick = 0.5 * dt / mass * self.contact_force[dof];
-            let smooth = explicit.acceleration[dof] - alpha * kick;
-            *velocity = (*velocity + b1 * smooth + 2.0 * kick) / (1.0 + b1 * alpha);
-            explicit.acceleration[dof] -= alpha * (*velocity + kick);
-            explicit.kick[dof] = kick;
-        }
-        self.frame.velocity =
-            self.arms
-                .centre(self.kind, &self.velocity, self.start_frame.velocity);
-    }
-
-    /// Writes the velocities that the gathered impulses give over `local` (m/s): those at massless nodes reach the masses
-    /// through the stiffness, as forces there do.
-    pub fn respond_to_surface_impulse(&mut self) {
-        if !self.has_impulse() {
-            return;
-        }
-        self.scratch.fill(0.0);
-        self.relax_impulse();
-        let stiffness = self.model.stiffness();
-        stiffness.multiply(&self.scratch, &mut self.local);
-        let twist = self.frame_correction(&self.local);
-        let MassMatrix::Lumped(mass) = self.model.mass() else {
-            return;
-        };
-        for (node, &mass) in mass.iter().enumerate() {
-            let own = node_vec(&self.impulse, node) - self.turn * node_vec(&self.local, node);
-            let arm = self.turn * node_vec(&self.arms.reference, node);
-            let change = if mass > 0.0 {
-                own / mass + twist * perp(arm)
-            } else {
-                Vec2::zeros()
-            };
-            set_node_vec(&mut self.local, node, change);
-        }
-        for &dof in &self.fixed_dofs {
-            self.local[dof] = 0.0;
-        }
-    }
-
-    /// Writes what the impulses at massless nodes would displace those, as forces, over `scratch`.
-    fn relax_impulse(&mut self) {
-        let (surface, back) = (&mut self.explicit.surface, self.turn.transpose());
-        for (slot, &node) in surface.nodes.iter().enumerate() {
-            let mut impulse = back * node_vec(&self.impulse, node);
-            for axis in 0..2 {
-                if self.is_fixed[2 * node + axis] {
-                    impulse[axis] = 0.0;
-                }
-            }
-            set_node_vec(&mut surface.local, slot, impulse);
-        }
-        if surface.nodes.is_empty() {
-            return;
-        }
-        self.factor.solve_in_place(&mut surface.local);
-        self.n_solves += 1;
-        for (slot, &node) in surface.nodes.iter().enumerate() {
-            set_node_vec(&mut self.scratch, node, node_vec(&surface.local, slot));
-        }
-    }
-
-    /// Adds that response to the end velocity.
-    pub fn add_surface_response(&mut self, scale: f64) {
-        if !self.has_impulse() {
-            return;
-        }
-        for (velocity, response) in self.velocity.iter_mut().zip(&self.local) {
-            *velocity += scale * response;
-        }
-        if self.kind == Frame::Free {
-            self.frame.velocity += scale * self.impulse_total / self.arms.mass;
-        }
-    }
-
-    /// Whether the material damps.
-    pub fn is_damped(&self) -> bool {
-        let Rayleigh { mass, stiffness } = self.model.rayleigh();
-        mass > 0.0 || stiffness > 0.0
-    }
-
-    /// `dt²/8 a·M a` at the beginning and at the end of the step (J).
-    pub(super) fn swing(&self) -> [f64; 2] {
-        self.explicit.swing
-    }
-
-    /// Smooth acceleration of a node at the end of the step (m/s²).
-    pub(super) fn explicit_acceleration(&self, node: usize) -> Vec2 {
-        node_vec(&self.explicit.acceleration, node)
-    }
-
-    /// Adds a contact force at a node (N). In an explicit step a force on a mass is an impulse at the forward increment;
-    /// if `is_late`, that of a quasi-static contact, it accelerates the mass from the end of the step on.
-    pub fn add_stage_force(&mut self, node: usize, force: Vec2, lever: Vec2, is_late: bool) {
-        if is_late && !self.is_massless(node) {
-            add_node_vec(&mut self.explicit.late_force, node, force);
-            self.explicit.has_late_force = true;
-        } else {
-            self.add_contact_force(node, force, lever);
-        }
-    }
-
-    /// Clears the forces of the iterate on masses by quasi-static contacts.
-    pub(super) fn clear_late_force(&mut self) {
-        if self.explicit.has_late_force {
-            self.explicit.late_force.fill(0.0);
-            self.explicit.has_late_force = false;
-        }
-    }
-
     pub(super) fn prepare_explicitly(&mut self, node: usize) {
         let surface = &mut self.explicit.surface;
         if surface.prepare(node, &self.is_fixed, &mut self.factor) {
@@ -470,25 +318,5 @@ impl FlexBlock {
         let weight = self.step.dt * self.step.dt * (1.0 + self.lag());
         let flexibility = self.explicit.surface.flexibility(at, from);
         self.turn * (flexibility / weight) * self.turn.transpose()
-    }
-
-    /// Writes the end of the step over the committed state.
-    pub(super) fn commit_explicitly(&self, state: &mut FlexState) {
-        state.kinetic_energy = self.kinetic_energy();
-        state.elastic_energy = self.end_elastic;
-        state.position.copy_from_slice(&self.position);
-        state.velocity.copy_from_slice(&self.velocity);
-        state.displacement.copy_from_slice(&self.displacement);
-        state.frame = self.frame;
-        state.torque = 0.0;
-        let back = self.turn.transpose();
-        for node in 0..self.model.n_nodes() {
-            let acceleration = back * node_vec(&self.explicit.acceleration, node);
-            set_node_vec(&mut state.acceleration, node, acceleration);
-        }
-        let (shift, spin_rate) = self.arms.split(self.kind, &mut state.acceleration);
-        state.frame.acceleration = self.turn * shift;
-        state.frame.spin_rate = spin_rate;
-        state.split_velocity(&self.arms, self.kind);
     }
 }

@@ -5,6 +5,7 @@
 
 mod compliance;
 mod explicit_block;
+mod explicit_motion;
 mod flex_block;
 mod flex_momentum;
 mod flex_motion;
