@@ -88,11 +88,7 @@ impl Island {
     fn gather_switches(&mut self, settings: &SolveSettings) -> bool {
         self.wrenches.clear();
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.clear_impulse();
-            }
-        }
+        self.clear_impulses();
         let mut has_switched = false;
         for contact in &self.contacts {
             let before = [contact.remembered.normal, contact.remembered.tangent];
@@ -111,7 +107,9 @@ impl Island {
                 &contact.kinematics,
                 force.map(|force| weight * force),
                 Some(&mut self.wrenches),
-                |block, node, impulse, lever| block.gather_impulse(node, impulse, lever),
+                |block, node, impulse, lever| {
+                    block.gather_impulse(Response::Velocity, node, impulse, lever);
+                },
             );
         }
         for block in &mut self.blocks {

@@ -65,7 +65,7 @@ pub struct SolveSettings {
 pub struct ActiveContact {
     /// Index of the candidate.
     pub candidate: usize,
-    /// The row that the forces act along, with the gap at the last iterate.
+    /// The row that the forces act along, with the gap beyond the allowance at the last iterate.
     pub kinematics: Kinematics,
     /// Geometry at the last iterate.
     pub(super) measured: Kinematics,
@@ -92,6 +92,9 @@ pub struct ActiveContact {
     pub unresolved: f64,
     /// Approach velocity at the beginning of the step, `n·v` (m/s).
     pub approach: f64,
+    /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and
+    /// by. The solver's gap counts from here.
+    pub allowance: f64,
     /// What the contact was in the last step.
     pub remembered: Remembered,
 }
@@ -121,9 +124,9 @@ impl ActiveContact {
         }
     }
 
-    /// Whether the contact acted in this step or, through stored accelerations, from the last one.
-    pub(super) fn acts(&self) -> bool {
-        self.is_closed() || self.remembered.normal > 0.0
+    /// The gap (m).
+    pub fn gap(&self) -> f64 {
+        self.kinematics.gap + self.allowance
     }
 
     /// Whether the contact carries or would carry a force.
@@ -183,6 +186,8 @@ pub struct Island {
     pub(super) statuses: Vec<Status>,
     pub(super) wrenches: Vec<[f64; 3]>,
     pub(super) groups: Vec<usize>,
+    /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.
+    pub(super) pressed_before: Vec<[usize; 2]>,
     pub(super) solver: Solver,
 }
 

@@ -12,6 +12,7 @@ mod forward;
 mod impact;
 mod island;
 mod momentum;
+mod multipliers;
 mod partner;
 mod position;
 mod velocity;

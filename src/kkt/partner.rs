@@ -5,7 +5,7 @@
 
 use super::delassus::compliance;
 use super::island::{Island, KktError, SolveSettings};
-use super::position::prepare;
+use super::multipliers::prepare;
 use crate::system::{Block, Response};
 
 /// `(ω dt)²` at which central difference becomes unstable.

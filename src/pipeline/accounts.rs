@@ -94,7 +94,7 @@ impl FlexPipeline {
         Some(ContactReport {
             position: contact.kinematics.position.into(),
             normal: contact.kinematics.normal.into(),
-            gap: contact.kinematics.gap,
+            gap: contact.gap(),
             normal_force,
             tangential_force,
             sticks: contact.status[1] == Status::Stick,

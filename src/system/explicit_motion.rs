@@ -59,10 +59,10 @@ impl FlexBlock {
                 .centre(self.kind, &self.velocity, self.start_frame.velocity);
     }
 
-    /// Writes the velocities that the gathered impulses give over `local` (m/s): those at massless nodes reach the masses
+    /// Writes the velocities that the gathered impulses give (m/s): those at massless nodes reach the masses
     /// through the stiffness, as forces there do.
     pub fn respond_to_surface_impulse(&mut self) {
-        if !self.has_impulse() {
+        if !self.impulses[0].is_used {
             return;
         }
         self.scratch.fill(0.0);
@@ -73,18 +73,19 @@ impl FlexBlock {
         let MassMatrix::Lumped(mass) = self.model.mass() else {
             return;
         };
+        let impulses = &mut self.impulses[0];
         for (node, &mass) in mass.iter().enumerate() {
-            let own = node_vec(&self.impulse, node) - self.turn * node_vec(&self.local, node);
+            let own = node_vec(&impulses.nodal, node) - self.turn * node_vec(&self.local, node);
             let arm = self.turn * node_vec(&self.arms.reference, node);
             let change = if mass > 0.0 {
                 own / mass + twist * perp(arm)
             } else {
                 Vec2::zeros()
             };
-            set_node_vec(&mut self.local, node, change);
+            set_node_vec(&mut impulses.response, node, change);
         }
         for &dof in &self.fixed_dofs {
-            self.local[dof] = 0.0;
+            impulses.response[dof] = 0.0;
         }
     }
 
@@ -92,7 +93,7 @@ impl FlexBlock {
     fn relax_impulse(&mut self) {
         let (surface, back) = (&mut self.explicit.surface, self.turn.transpose());
         for (slot, &node) in surface.nodes.iter().enumerate() {
-            let mut impulse = back * node_vec(&self.impulse, node);
+            let mut impulse = back * node_vec(&self.impulses[0].nodal, node);
             for axis in 0..2 {
                 if self.is_fixed[2 * node + axis] {
                     impulse[axis] = 0.0;
@@ -112,14 +113,14 @@ impl FlexBlock {
 
     /// Adds that response to the end velocity.
     pub fn add_surface_response(&mut self, scale: f64) {
-        if !self.has_impulse() {
+        if !self.impulses[0].is_used {
             return;
         }
-        for (velocity, response) in self.velocity.iter_mut().zip(&self.local) {
+        for (velocity, response) in self.velocity.iter_mut().zip(&self.impulses[0].response) {
             *velocity += scale * response;
         }
         if self.kind == Frame::Free {
-            self.frame.velocity += scale * self.impulse_total / self.arms.mass;
+            self.frame.velocity += scale * self.impulses[0].total / self.arms.mass;
         }
     }
 

@@ -7,6 +7,7 @@ mod compliance;
 mod explicit_block;
 mod explicit_motion;
 mod flex_block;
+mod flex_impulse;
 mod flex_momentum;
 mod flex_motion;
 mod flex_solve;
