@@ -81,8 +81,8 @@ pub struct ActiveContact {
     pub is_hard: bool,
     /// Whether some grip carries no inertia.
     pub is_massless: bool,
-    /// Whether a flexible body of it steps by central difference.
-    pub is_explicit: bool,
+    /// Whether its multiplier alone decides its velocity: no impulse of the velocity stage follows.
+    pub is_settled: bool,
     /// Gap and relative motion `Σ w u` at the last measurement, from which gaps are extrapolated where the
     /// geometry has no answer or keeps changing.
     pub(super) known: Option<(f64, Vec2)>,
@@ -115,7 +115,7 @@ impl ActiveContact {
     /// How far the velocity stage holds the contact's relative velocity, 0 to 1 (-): masses that meet would ring at every
     /// mesh's highest frequency; a massless surface only where the step is longer than the impact.
     pub(super) fn holds_velocity(&self) -> f64 {
-        if self.is_explicit {
+        if self.is_settled {
             0.0
         } else if self.is_massless {
             self.unresolved
@@ -219,19 +219,12 @@ impl Island {
         self.solve_positions(settings, memory, &mut summary)?;
         let before = self.start_energy();
         let allowance = self.external_work();
-        let is_stabilized = settings.impact == ImpactTreatment::Stabilized && !settings.is_explicit;
-        if settings.is_explicit {
-            self.solve_forward(settings, &mut summary)?;
-        } else if is_stabilized {
-            self.solve_velocities(settings)?;
-            self.balance_angular_momentum();
-        } else {
-            self.keep_plain_forces();
-        }
+        let treatment = settings.treatment();
+        treatment.finish(self, settings, &mut summary)?;
         summary.work = self.actual_work(settings);
         summary.start_energy = before;
         summary.end_energy = self.end_energy();
-        if is_stabilized {
+        if treatment.limits_energy() {
             self.limit_energy(settings, allowance, reserve, &mut summary);
         }
         self.publish_forces(settings.dt);

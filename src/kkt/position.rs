@@ -340,7 +340,7 @@ impl ActiveContact {
         Self {
             candidate,
             is_hard: kinematics.is_rigid(blocks),
-            is_explicit: kinematics.is_explicit(blocks),
+            is_settled: kinematics.is_explicit(blocks),
             is_massless: kinematics.is_massless(blocks),
             kinematics,
             measured: kinematics,

@@ -59,7 +59,7 @@ impl Island {
     }
 
     /// Velocities and accelerations feel soft multipliers as (C.5) says, hard ones not at all.
-    fn take_out_hard_forces(&mut self) {
+    pub(super) fn take_out_hard_forces(&mut self) {
         self.wrenches.clear();
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         for contact in &self.contacts {
