@@ -8,8 +8,9 @@
 //! - of rigid bodies only: the position stage has moved positions, and velocities obey the impact law as in an implicit
 //!   step.
 //!
-//! No energy stage follows: an explicit step within its stability limit resolves every vibration, and a forward multiplier
-//! stops the node that touches without adding energy.
+//! No energy stage follows: an explicit step within its stability limit resolves every vibration, a forward multiplier stops the
+//! node that touches without adding energy, and the force of a quasi-static contact that opens or closes is weighed so that the
+//! energy of the leapfrog stays what it is.
 
 use super::delassus::{RowDirection, assemble};
 use super::island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
@@ -58,10 +59,13 @@ impl Island {
     /// `dt/2 p` whenever it closed. What was given is taken back in the part, from none to all of it, that keeps `H`.
     fn weigh_switches(&mut self, settings: &SolveSettings) {
         let is_smooth = |contact: &ActiveContact| contact.kinematics.is_quasi_static();
-        let keeps_energy = self.blocks.iter().all(|block| match block {
-            Block::Flex(block) => !block.is_damped(),
-            Block::Rigid(_) => true,
-        });
+        // Other members than central difference, β1 > 1/2, damp.
+        let is_leapfrog = 2.0 * settings.b1 == settings.dt;
+        let keeps_energy = is_leapfrog
+            && self.blocks.iter().all(|block| match block {
+                Block::Flex(block) => !block.is_damped(),
+                Block::Rigid(_) => true,
+            });
         if !keeps_energy || !self.contacts.iter().all(is_smooth) || !self.gather_switches(settings)
         {
             return;

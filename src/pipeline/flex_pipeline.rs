@@ -110,7 +110,8 @@ impl FlexPipeline {
     /// Takes steps longer than the critical one of a conditionally stable integrator instead of refusing them.
     ///
     /// The critical step of a body is that of a safe bound, so a step a little longer may be stable; one much longer makes the highest
-    /// frequencies grow until numbers are no longer finite.
+    /// frequencies grow until numbers are no longer finite. The same goes for rigid bodies that are light on the surface of an
+    /// explicit body.
     pub fn insisting(mut self) -> Self {
         self.insists = true;
         self

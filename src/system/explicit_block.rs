@@ -16,8 +16,8 @@
 //! of `½ u·K u` is `R K u` less `τ m R J X / Σ m X·(X + u)`, `τ = Σ (X + u) × K u`: the resultant and the moment of
 //! these forces vanish, so momentum and angular momentum are kept to rounding.
 //!
-//! **Damping** takes `u̇` from the half step before, `(u' - u) / dt`, which keeps the step explicit and lowers the critical
-//! step to `2 (√(1 + ζ²) - ζ) / ω`.
+//! **Damping** takes `u̇` from the half step before, `(u' - u) / dt`, which keeps the step explicit, is of first order
+//! for the damping forces, and lowers the critical step to `2 (√(1 + ζ²) - ζ) / ω`.
 
 use super::compliance::Compliance;
 use super::flex_block::{FlexBlock, Response};
