@@ -146,6 +146,8 @@ pub struct IslandSummary {
     pub residual: f64,
     /// Whether Newton's iterations failed and a linearised step was taken.
     pub is_linearized: bool,
+    /// Whether even that threw a body about, so that the island stayed where it was, at rest.
+    pub is_held: bool,
     /// Largest overlap left at a candidate (m).
     pub gap_violation: f64,
     /// Energy at the beginning: kinetic, elastic (J).
@@ -186,6 +188,8 @@ pub struct Island {
     pub(super) statuses: Vec<Status>,
     pub(super) wrenches: Vec<[f64; 3]>,
     pub(super) groups: Vec<usize>,
+    /// Whether overlaps that the step began with are left alone.
+    pub(super) ignores_overlaps: bool,
     /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.
     pub(super) pressed_before: Vec<[usize; 2]>,
     pub(super) solver: Solver,
@@ -216,7 +220,7 @@ impl Island {
     ) -> Result<IslandSummary, KktError> {
         let mut summary = IslandSummary::default();
         self.solver.set_first(settings.solver);
-        self.solve_positions(settings, memory, &mut summary)?;
+        self.solve_positions(settings, memory, &mut summary);
         let before = self.start_energy();
         let allowance = self.external_work();
         let treatment = settings.treatment();
@@ -226,6 +230,7 @@ impl Island {
         summary.end_energy = self.end_energy();
         if treatment.limits_energy() {
             self.limit_energy(settings, allowance, reserve, &mut summary);
+            self.hold_if_flung(settings.dt, &mut summary);
         }
         self.publish_forces(settings.dt);
         Ok(summary)

@@ -8,6 +8,7 @@
 
 mod delassus;
 mod energy;
+mod fallback;
 mod forward;
 mod impact;
 mod island;

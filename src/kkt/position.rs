@@ -4,7 +4,7 @@
 //! under the multipliers it has, beginning with those of the last step; measures gaps and slips there; and, unless they
 //! hold, finds new multipliers from `b = g / b0 - W p`. A contact at rest so costs one solve.
 
-use super::island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
+use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
 use crate::constraint::contact::{ContactMemory, Kinematics, Remembered};
 use crate::linalg::complementarity::Status;
 use crate::math::Vec2;
@@ -23,7 +23,7 @@ const GAPS_KEPT_FROM: usize = 12;
 const NEAR: f64 = 1e5;
 
 /// Rate at which bodies that were put into each other part (1/s): a third of the overlap in a step of 1/60 s.
-const PARTING_RATE: f64 = 24.0;
+pub(super) const PARTING_RATE: f64 = 24.0;
 
 /// Multiple of the tolerance from which an overlap counts as put there.
 const OVERLAPPED: f64 = 1e7;
@@ -37,24 +37,18 @@ const DIVERGENCE: f64 = 1e2;
 /// Multiple of the tolerance that still counts when the iterations are used up.
 const ACCEPTABLE: f64 = 1e5;
 
-/// Solves for the working set of a linearised step.
-const LINEAR_ROUNDS: usize = 3;
-
 impl Island {
     pub(super) fn solve_positions(
         &mut self,
         settings: &SolveSettings,
         memory: &ContactMemory,
         summary: &mut IslandSummary,
-    ) -> Result<(), KktError> {
+    ) {
         let tolerance = self.gap_tolerance();
-        let kept = (-PARTING_RATE * settings.dt).exp();
-        self.contacts.clear();
-        self.is_working.clear();
-        self.is_working.resize(self.candidates.len(), false);
-        self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
-        if !self.iterate(settings, memory, tolerance, summary)? {
-            self.linear_step(settings, memory, tolerance, summary)?;
+        self.ignores_overlaps = false;
+        self.open_working_set(settings, tolerance, memory);
+        if !self.iterate(settings, memory, tolerance, summary) {
+            self.fall_back(settings, memory, tolerance, summary);
         }
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {
@@ -63,17 +57,30 @@ impl Island {
             }
         }
         summary.gap_violation = self.gap_violation();
-        Ok(())
+    }
+
+    /// Empties the working set but for what pressed in the last step.
+    pub(super) fn open_working_set(
+        &mut self,
+        settings: &SolveSettings,
+        tolerance: f64,
+        memory: &ContactMemory,
+    ) {
+        let kept = (-PARTING_RATE * settings.dt).exp();
+        self.contacts.clear();
+        self.is_working.clear();
+        self.is_working.resize(self.candidates.len(), false);
+        self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
     }
 
     /// Newton's iterations; returns whether they converged.
-    fn iterate(
+    pub(super) fn iterate(
         &mut self,
         settings: &SolveSettings,
         memory: &ContactMemory,
         tolerance: f64,
         summary: &mut IslandSummary,
-    ) -> Result<bool, KktError> {
+    ) -> bool {
         let kept = (-PARTING_RATE * settings.dt).exp();
         let mut peak = 0.0f64;
         for iteration in 0..settings.max_newton {
@@ -88,58 +95,29 @@ impl Island {
             }
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
             if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
-                return Ok(true);
+                return true;
             }
             if iteration < SETTLING {
                 peak = peak.max(turned).max(error);
             }
             let is_diverging = turned.max(error) > DIVERGENCE * peak;
             if is_diverging || !(turned + error).is_finite() {
-                return Ok(false);
+                return false;
             }
             if iteration + 1 < settings.max_newton {
                 let refreshes = iteration < ROWS_KEPT_FROM && !misleads;
                 if refreshes {
                     self.refresh_rows();
                 }
-                self.solve_multipliers(settings, refreshes, tolerance, summary)?;
+                let solved = self.solve_multipliers(settings, refreshes, tolerance, summary);
+                if solved.is_err() {
+                    return false;
+                }
             } else if turned.max(error) <= ACCEPTABLE * tolerance && !has_more {
-                return Ok(true);
+                return true;
             }
         }
-        Ok(false)
-    }
-
-    /// The step that is taken when Newton's iterations fail: every block linearised, three rounds for the working set.
-    fn linear_step(
-        &mut self,
-        settings: &SolveSettings,
-        memory: &ContactMemory,
-        tolerance: f64,
-        summary: &mut IslandSummary,
-    ) -> Result<(), KktError> {
-        let kept = (-PARTING_RATE * settings.dt).exp();
-        summary.is_linearized = true;
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.linearize();
-            }
-        }
-        self.contacts.clear();
-        self.is_working.fill(false);
-        self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
-        for round in 0..LINEAR_ROUNDS {
-            self.correct();
-            self.measure(round > 0);
-            self.add_violated(tolerance, kept, memory);
-            if round == 0 {
-                self.refresh_rows();
-            }
-            self.solve_multipliers(settings, round == 0, tolerance, summary)?;
-        }
-        self.correct();
-        self.measure(true);
-        Ok(())
+        false
     }
 
     /// Round-off of a gap: positions of this size, and their predictions, are no better known.
@@ -162,19 +140,22 @@ impl Island {
             }
             self.pressed_before.push(candidate.pair.blocks());
             if let Some(kinematics) = candidate.evaluate(&scene, &remembered) {
-                self.is_working[index] = true;
                 let friction = candidate.law.friction;
                 let blocks = &self.blocks;
                 let mut contact =
                     ActiveContact::new(index, kinematics, remembered, friction, blocks);
-                contact.allow_overlap(kept, slop, blocks);
+                let is_overlap = contact.allow_overlap(kept, slop, blocks);
+                if is_overlap && self.ignores_overlaps {
+                    continue;
+                }
+                self.is_working[index] = true;
                 self.contacts.push(contact);
             }
         }
     }
 
     /// Moves all blocks by the multipliers; returns the largest turn of a frame (rad).
-    fn correct(&mut self) -> f64 {
+    pub(super) fn correct(&mut self) -> f64 {
         self.wrenches.clear();
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         for block in &mut self.blocks {
@@ -208,7 +189,7 @@ impl Island {
     ///
     /// The forces keep acting along the rows they have: gaps are true, and Newton's matrix is that of the rows. With
     /// `extrapolates` gaps follow the rows too, which always converges.
-    fn measure(&mut self, extrapolates: bool) -> f64 {
+    pub(super) fn measure(&mut self, extrapolates: bool) -> f64 {
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         let mut error = 0.0f64;
         for contact in &mut self.contacts {
@@ -247,7 +228,7 @@ impl Island {
     }
 
     /// Makes the measured geometry the rows that forces act along.
-    fn refresh_rows(&mut self) {
+    pub(super) fn refresh_rows(&mut self) {
         for contact in &mut self.contacts {
             let gap = contact.kinematics.gap;
             contact.applied = contact.kinematics;
@@ -258,7 +239,12 @@ impl Island {
     }
 
     /// Adds candidates that overlap now; returns whether there were any.
-    fn add_violated(&mut self, tolerance: f64, kept: f64, memory: &ContactMemory) -> bool {
+    pub(super) fn add_violated(
+        &mut self,
+        tolerance: f64,
+        kept: f64,
+        memory: &ContactMemory,
+    ) -> bool {
         let before = self.contacts.len();
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for (index, candidate) in self.candidates.iter().enumerate() {
@@ -273,8 +259,9 @@ impl Island {
             let friction = candidate.law.friction;
             let mut contact =
                 ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
-            contact.allow_overlap(kept, OVERLAPPED * tolerance, &self.blocks);
-            if contact.kinematics.gap < -tolerance {
+            let is_overlap = contact.allow_overlap(kept, OVERLAPPED * tolerance, &self.blocks);
+            let is_met = !(is_overlap && self.ignores_overlaps);
+            if is_met && contact.kinematics.gap < -tolerance {
                 self.is_working[index] = true;
                 self.contacts.push(contact);
             }
@@ -301,7 +288,9 @@ fn moved(kinematics: &Kinematics, blocks: &[Block]) -> Vec2 {
 
 impl ActiveContact {
     /// Where the step began with an overlap beyond `slop`, leaves the share `kept` of it for now.
-    fn allow_overlap(&mut self, kept: f64, slop: f64, blocks: &[Block]) {
+    ///
+    /// Returns whether it did.
+    fn allow_overlap(&mut self, kept: f64, slop: f64, blocks: &[Block]) -> bool {
         let began =
             self.kinematics.gap - self.kinematics.normal.dot(&moved(&self.kinematics, blocks));
         if began < -slop {
@@ -310,6 +299,7 @@ impl ActiveContact {
             self.measured.gap = self.kinematics.gap;
             self.known = self.known.map(|(gap, at)| (gap - self.allowance, at));
         }
+        began < -slop
     }
 
     fn new(

@@ -236,6 +236,23 @@ impl FlexBlock {
         self.place_surface();
     }
 
+    /// Goes back to where the step began.
+    pub(super) fn restart_explicitly(&mut self) {
+        self.position.copy_from_slice(&self.start_position);
+        self.displacement
+            .copy_from_slice(&self.explicit.start_displacement);
+        self.frame = self.start_frame;
+        self.turn = rotation(self.frame.angle);
+    }
+
+    /// Ends the step where it began, with no velocity but what the forces there give in half a step.
+    pub(super) fn hold_explicitly(&mut self) {
+        self.clear_contact_force();
+        self.restart_explicitly();
+        self.velocity.fill(0.0);
+        self.explicit.acceleration.fill(0.0);
+    }
+
     /// Ratio `β / dt` of the damping term (-).
     pub(super) fn lag(&self) -> f64 {
         self.model.rayleigh().stiffness / self.step.dt

@@ -62,7 +62,9 @@ pub struct FlexBlock {
     /// The pinned dofs, ascending.
     pub(super) fixed_dofs: Vec<usize>,
     /// Largest coordinate of the reference placement (m).
-    pub(super) extent: f64,
+    extent: f64,
+    /// Largest side of the reference placement's box (m).
+    pub(super) size: f64,
     pub(super) effective: BlockMatrix,
     pub(super) factor: BlockCholesky,
     pub(super) factored_for: Option<Weights>,
@@ -154,6 +156,7 @@ impl FlexBlock {
             fixed_dofs: (0..n).filter(|&dof| is_fixed[dof]).collect(),
             is_fixed,
             extent,
+            size: size_of(model.rest_positions()),
             factor,
             effective,
             factored_for: None,
@@ -206,6 +209,11 @@ impl FlexBlock {
     /// Size of the coordinates that round-off is relative to (m).
     pub fn extent(&self) -> f64 {
         self.extent.max(self.frame.centre.amax())
+    }
+
+    /// Largest side of the body at rest (m).
+    pub fn size(&self) -> f64 {
+        self.size
     }
 
     /// What the frame turns about, at the iterate (m).
@@ -402,6 +410,18 @@ impl FlexBlock {
         self.factored_for = Some(weights);
         Ok(())
     }
+}
+
+/// Largest side of the box around nodal positions (m).
+fn size_of(dofs: &[f64]) -> f64 {
+    let side = |axis: usize| {
+        let along = dofs.iter().skip(axis).step_by(2);
+        let ends = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(*x), high.max(*x)]
+        });
+        ends[1] - ends[0]
+    };
+    side(0).max(side(1))
 }
 
 /// Sum of nodal vectors.

@@ -181,34 +181,7 @@ impl FlexBlock {
             .displacement
             .iter()
             .fold(0.0f64, |reach, u| reach.max(u.abs()));
-        turned * (reach / self.extent).min(1.0)
-    }
-
-    /// Goes back to the beginning and drops what makes the step non-linear: the inertial terms of the displacement in a
-    /// turning frame, and the balance of angular momentum in favour of the row; and with them the stored second rates,
-    /// which is where unresolved vibrations live.
-    ///
-    /// Such a step is first order and stable; it is taken where Newton's iterations do not converge.
-    pub fn linearize(&mut self) {
-        if self.is_explicit() {
-            return;
-        }
-        let dt = self.step.dt;
-        let half = 0.5 * dt * dt;
-        for dof in 0..self.start_acceleration.len() {
-            let acceleration = std::mem::take(&mut self.start_acceleration[dof]);
-            self.rate_q[dof] -= dt * acceleration;
-            self.displacement_q[dof] -= dt * self.rate_q[dof] + half * acceleration;
-        }
-        // `displacement_q` is `u` of the beginning now: the iterate starts there, the operator goes on from it.
-        self.displacement.copy_from_slice(&self.displacement_q);
-        self.rate.copy_from_slice(&self.rate_q);
-        for (u, rate) in self.displacement_q.iter_mut().zip(&self.rate_q) {
-            *u += dt * rate;
-        }
-        self.frame = self.frame_q;
-        self.is_linear = true;
-        self.place();
+        turned * (reach / self.size).min(1.0)
     }
 
     /// Applies the increments of a frame that moves; `increment` holds `δ_u`.

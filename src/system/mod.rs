@@ -10,6 +10,7 @@ mod flex_block;
 mod flex_impulse;
 mod flex_momentum;
 mod flex_motion;
+mod flex_restart;
 mod flex_solve;
 mod massless_surface;
 mod moments;
