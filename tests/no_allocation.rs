@@ -254,6 +254,24 @@ fn a_flexible_block_on_a_flexible_beam_allocates_nothing() -> Result<(), BuildEr
 }
 
 #[test]
+fn explicit_steps_allocate_nothing() -> Result<(), BuildError> {
+    for inertia in [ContactInertia::Redistributed, ContactInertia::Kept] {
+        let mut warm = Warm::new();
+        warm.flex = warm.flex.with_integrator(Beta2::central_difference());
+        warm.world.integration_parameters.dt = 2e-4;
+        let soft = LinearElastic::plane_stress(1e6, 0.3)
+            .density(1000.0)
+            .rayleigh(1e-4)
+            .rayleigh_mass(5.0);
+        let body = block().material(soft).contact_inertia(inertia);
+        warm.with(body)?
+            .with_box([0.2, 0.1], [0.5, 1.101])
+            .assert_quiet("explicit", 6000, 5);
+    }
+    Ok(())
+}
+
+#[test]
 fn a_free_spinning_body_allocates_nothing() -> Result<(), BuildError> {
     let spinner = block()
         .translation([0.0, 50.0])

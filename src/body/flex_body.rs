@@ -9,7 +9,7 @@ use crate::fe::model::{Model, ModelError};
 use crate::fe::recovery::Stress;
 use crate::math::{Vec2, cross, node_vec};
 use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A flexible body.
 #[derive(Debug)]
@@ -30,6 +30,7 @@ pub struct FlexBody {
     contact_force: Vec<f64>,
     reaction: Vec<f64>,
     energy_reserve: f64,
+    pub(super) frequency: OnceLock<f64>,
     carrier: RigidBodyHandle,
     collider: ColliderHandle,
 }
@@ -59,6 +60,7 @@ impl FlexBody {
             contact_force: zeros.clone(),
             reaction: zeros,
             energy_reserve: 0.0,
+            frequency: OnceLock::new(),
             carrier: RigidBodyHandle::invalid(),
             collider: ColliderHandle::invalid(),
             model,

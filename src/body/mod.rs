@@ -3,6 +3,7 @@
 mod build;
 mod builder;
 mod contact_settings;
+mod critical;
 mod error;
 mod flex_body;
 mod frame;

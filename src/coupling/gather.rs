@@ -159,11 +159,18 @@ impl Gatherer {
         let lives = self.pool[slot]
             .as_ref()
             .is_some_and(|block| Arc::ptr_eq(block.model(), body.model()));
-        let mut block = match self.pool[slot].take().filter(|_| lives) {
+        let is_explicit = settings.step.is_explicit();
+        let kept = self.pool[slot].take();
+        let mut block = match kept.filter(|block| lives && block.is_explicit() == is_explicit) {
             Some(block) => block,
             None => {
                 let (model, fixed) = (Arc::clone(body.model()), body.fixed_dofs().to_vec());
-                Box::new(FlexBlock::new(model, fixed, body.frame()))
+                let make = if is_explicit {
+                    FlexBlock::explicit
+                } else {
+                    FlexBlock::new
+                };
+                Box::new(make(model, fixed, body.frame()))
             }
         };
         let own: Vec2 = body.body_force().into();

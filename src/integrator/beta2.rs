@@ -32,6 +32,11 @@ pub enum IntegratorError {
         /// Upper bound of the largest natural frequency (rad/s).
         frequency: f64,
     },
+    /// The member has `β0 = 0` and the mass matrix is not diagonal.
+    #[error(
+        "beta0 is 0 and the mass is consistent, so that a step would have to solve for accelerations: choose `MassKind::Lumped`, or beta0 > 0"
+    )]
+    ConsistentMass,
     /// The member has `β0 = 0`, for which the second row of (C.5) vanishes.
     #[error(
         "beta0 is 0: positions at the end of the step do not depend on the contact forces of the step, so (C.5) is singular; choose beta0 > 0, or integrate with multipliers at the forward increment"
@@ -124,7 +129,8 @@ impl Beta2 {
     }
 
     /// The central difference method, `β0 = 0`, `β1 = 1/2`: second order, stable while `ω dt <= 2`, and explicit:
-    /// with a lumped mass a step solves nothing. (C.5) is singular for it, see [`Beta2::require_implicit`].
+    /// with a lumped mass a step solves nothing. (C.5) is singular for it, see [`Beta2::require_implicit`]; the pipeline
+    /// takes multipliers at the forward increment instead.
     pub const fn central_difference() -> Self {
         Self {
             beta0: 0.0,

@@ -1,6 +1,6 @@
 //! The Delassus matrix `W = G A⁻¹ Gᵀ` (1/kg), gathered from the compliances of the blocks.
 
-use crate::constraint::contact::Kinematics;
+use crate::constraint::contact::{Attachment, Kinematics};
 use crate::math::{Mat2, Vec2};
 use crate::system::{Block, Response};
 
@@ -67,9 +67,13 @@ pub(super) fn compliance(
     of: Response,
 ) -> Option<Mat2> {
     let mut sum: Option<Mat2> = None;
+    // Through nodes without mass, an explicit step moves those nodes at once and masses only in the next step.
+    let is_quasi_static = one.is_quasi_static() || other.is_quasi_static();
+    let both = one.is_quasi_static() && other.is_quasi_static();
+    let moves = |a: &Attachment| both && blocks[a.block].is_massless(a.grip.point);
     for a in one.attachments() {
         for b in other.attachments() {
-            if a.block == b.block {
+            if a.block == b.block && (!is_quasi_static || moves(a) && moves(b)) {
                 let term = a.weight * b.weight * blocks[a.block].compliance(a.grip, b.grip, of);
                 sum = Some(sum.map_or(term, |sum| sum + term));
             }

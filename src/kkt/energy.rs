@@ -191,7 +191,7 @@ impl Island {
         before - self.kinetic_energy()
     }
 
-    fn kinetic_energy(&self) -> f64 {
+    pub(super) fn kinetic_energy(&self) -> f64 {
         self.blocks
             .iter()
             .map(|block| match block {

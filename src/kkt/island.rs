@@ -6,7 +6,7 @@ use crate::constraint::contact::{
     Candidate, ContactMemory, Kinematics, PlacedPart, Remembered, Scene,
 };
 use crate::linalg::cholesky::CholeskyError;
-use crate::linalg::complementarity::{ComplementarityError, RowKind, Solver, Status};
+use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
 use thiserror::Error;
@@ -22,6 +22,16 @@ pub enum KktError {
         /// What the factorization found.
         source: CholeskyError,
     },
+    /// A rigid body is too light for the springs that an explicit body meets it with.
+    #[error(
+        "a rigid body is so light that on the surface of an explicit flexible body it vibrates faster than the step of {dt} s resolves: shorten the step below {critical} s, make the body heavier, keep the inertia of the surface (`ContactInertia::Kept`), or choose beta0 > 0"
+    )]
+    LightPartner {
+        /// The step asked for (s).
+        dt: f64,
+        /// The longest stable step (s).
+        critical: f64,
+    },
     /// The contact problem holds numbers that are not finite.
     #[error(transparent)]
     Contact(#[from] ComplementarityError),
@@ -32,12 +42,18 @@ pub enum KktError {
 pub struct SolveSettings {
     /// Step length (s).
     pub dt: f64,
-    /// Beta-2 weight `b0` (s²).
+    /// What a multiplier moves, over `A⁻¹` (s²): the Beta-2 weight `b0`, or `dt²` for the forward increment.
     pub b0: f64,
     /// Beta-2 weight `b1` (s).
     pub b1: f64,
+    /// Whether `β0 = 0`, so that multipliers act at the forward increment.
+    pub is_explicit: bool,
+    /// Whether steps that are too long for a partner are taken all the same.
+    pub insists: bool,
     /// What is done on impact.
     pub impact: ImpactTreatment,
+    /// The solver that contact problems are given to first.
+    pub solver: Method,
     /// Approach velocity below which restitution is ignored (m/s).
     pub restitution_threshold: f64,
     /// Most Newton iterations.
@@ -65,6 +81,8 @@ pub struct ActiveContact {
     pub is_hard: bool,
     /// Whether some grip carries no inertia.
     pub is_massless: bool,
+    /// Whether its multiplier alone decides its velocity: no impulse of the velocity stage follows.
+    pub is_settled: bool,
     /// Gap and relative motion `Σ w u` at the last measurement, from which gaps are extrapolated where the
     /// geometry has no answer or keeps changing.
     pub(super) known: Option<(f64, Vec2)>,
@@ -97,7 +115,9 @@ impl ActiveContact {
     /// How far the velocity stage holds the contact's relative velocity, 0 to 1 (-): masses that meet would ring at every
     /// mesh's highest frequency; a massless surface only where the step is longer than the impact.
     pub(super) fn holds_velocity(&self) -> f64 {
-        if self.is_massless {
+        if self.is_settled {
+            0.0
+        } else if self.is_massless {
             self.unresolved
         } else {
             1.0
@@ -138,6 +158,10 @@ pub struct IslandSummary {
     pub work: f64,
     /// Energy taken out by the energy stage (J).
     pub limited: f64,
+    /// `dt²/8 a·M a` at the end of an explicit step (J).
+    pub swing: f64,
+    /// Kinetic energy of the half step of forward contacts that belongs to this instant and is not in the velocities (J).
+    pub pending: f64,
 }
 
 /// A set of blocks and candidates, and the buffers to solve them.
@@ -195,19 +219,16 @@ impl Island {
         reserve: &mut f64,
     ) -> Result<IslandSummary, KktError> {
         let mut summary = IslandSummary::default();
+        self.solver.set_first(settings.solver);
         self.solve_positions(settings, memory, &mut summary);
         let before = self.start_energy();
         let allowance = self.external_work();
-        if settings.impact == ImpactTreatment::Stabilized {
-            self.solve_velocities(settings)?;
-            self.balance_angular_momentum();
-        } else {
-            self.keep_plain_forces();
-        }
+        let treatment = settings.treatment();
+        treatment.finish(self, settings, &mut summary)?;
         summary.work = self.actual_work(settings);
         summary.start_energy = before;
         summary.end_energy = self.end_energy();
-        if settings.impact == ImpactTreatment::Stabilized {
+        if treatment.limits_energy() {
             self.limit_energy(settings, allowance, reserve, &mut summary);
             self.hold_if_flung(settings.dt, &mut summary);
         }

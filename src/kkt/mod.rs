@@ -9,10 +9,12 @@
 mod delassus;
 mod energy;
 mod fallback;
+mod forward;
 mod impact;
 mod island;
 mod momentum;
 mod multipliers;
+mod partner;
 mod position;
 mod velocity;
 

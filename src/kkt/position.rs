@@ -164,12 +164,14 @@ impl Island {
             }
         }
         for contact in &self.contacts {
+            let is_late = contact.kinematics.is_quasi_static();
+            let wrenches = (!is_late).then_some(&mut self.wrenches[..]);
             Self::spread(
                 &mut self.blocks,
                 &contact.kinematics,
                 contact.multiplier,
-                Some(&mut self.wrenches),
-                |block, node, force, lever| block.add_contact_force(node, force, lever),
+                wrenches,
+                |block, node, force, lever| block.add_stage_force(node, force, lever, is_late),
             );
         }
         let mut turned = 0.0f64;
@@ -328,6 +330,7 @@ impl ActiveContact {
         Self {
             candidate,
             is_hard: kinematics.is_rigid(blocks),
+            is_settled: kinematics.is_explicit(blocks),
             is_massless: kinematics.is_massless(blocks),
             kinematics,
             measured: kinematics,

@@ -28,9 +28,23 @@ impl Island {
                     self.unresolved_share(&self.contacts[index].kinematics);
             }
         }
+        if !self.impact_rows(settings)? {
+            return Ok(());
+        }
+        // The accelerations do not depend on these impulses: one substitution answers both.
+        self.settle_accelerations(settings)?;
+        self.respond();
+        self.add_to_flexible(Response::Velocity, 1.0);
+        self.add_to_flexible(Response::Acceleration, 1.0);
+        Ok(())
+    }
+
+    /// Solves the impact law at the contacts that hold velocities, and gathers its impulses, which rigid bodies take at once;
+    /// returns whether there are any.
+    pub(super) fn impact_rows(&mut self, settings: &SolveSettings) -> Result<bool, KktError> {
         self.velocity_rows(settings);
         if self.rows.is_empty() {
-            return Ok(());
+            return Ok(false);
         }
         self.solve_rows()?;
         for (row, direction) in self.rows.iter().enumerate() {
@@ -41,16 +55,11 @@ impl Island {
         self.clear_impulses();
         self.gather_rows(Response::Velocity);
         self.add_to_rigid(Response::Velocity, 1.0);
-        // The accelerations do not depend on these impulses: one substitution answers both.
-        self.settle_accelerations(settings)?;
-        self.respond();
-        self.add_to_flexible(Response::Velocity, 1.0);
-        self.add_to_flexible(Response::Acceleration, 1.0);
-        Ok(())
+        Ok(true)
     }
 
     /// Velocities and accelerations feel soft multipliers as (C.5) says, hard ones not at all.
-    fn take_out_hard_forces(&mut self) {
+    pub(super) fn take_out_hard_forces(&mut self) {
         self.wrenches.clear();
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         for contact in &self.contacts {
@@ -81,7 +90,7 @@ impl Island {
         self.set_soft_forces();
     }
 
-    fn set_soft_forces(&mut self) {
+    pub(super) fn set_soft_forces(&mut self) {
         for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
             if let Block::Rigid(block) = block
                 && !block.is_prescribed()
@@ -184,7 +193,7 @@ impl Island {
         }
     }
 
-    fn solve_rows(&mut self) -> Result<(), KktError> {
+    pub(super) fn solve_rows(&mut self) -> Result<(), KktError> {
         self.multipliers.clear();
         self.multipliers.resize(self.rows.len(), 0.0);
         self.statuses.clear();

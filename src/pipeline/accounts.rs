@@ -53,8 +53,9 @@ impl FlexPipeline {
         report.n_held += usize::from(summary.is_held);
         report.n_pivots += summary.n_pivots;
         report.energy_limited += summary.limited;
-        report.energy.kinetic += summary.end_energy[0];
+        report.energy.kinetic += summary.end_energy[0] + summary.pending;
         report.energy.elastic += summary.end_energy[1];
+        report.energy.swing += summary.swing;
         let gain: f64 =
             summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
         report.energy.dissipated += summary.work - gain;

@@ -2,8 +2,10 @@
 
 use super::error::StepError;
 use super::flex_pipeline::FlexPipeline;
-use crate::body::{FlexBodyError, FlexBodySet};
+use crate::body::{FlexBody, FlexBodyError, FlexBodySet};
 use crate::coupling::{RapierSets, is_carried, is_held_motion};
+use crate::fe::model::MassMatrix;
+use crate::integrator::IntegratorError;
 use crate::math::{from_rapier, is_held};
 use crate::system::{Block, Step};
 
@@ -33,23 +35,34 @@ impl FlexPipeline {
             if !is_carried(body, sets.bodies, sets.colliders) {
                 return Err(FlexBodyError::NoCarrier(handle).into());
             }
-            if !self.integrator().is_unconditionally_stable() {
-                self.integrator()
-                    .require_implicit()
-                    .and_then(|()| {
-                        let frequency = body.model().largest_frequency();
-                        self.integrator().check_step(dt, frequency)
-                    })
-                    .map_err(|source| StepError::Integrator {
-                        body: handle,
-                        source,
-                    })?;
-            }
+            self.check_step(dt, body)
+                .map_err(|source| StepError::Integrator {
+                    body: handle,
+                    source,
+                })?;
         }
         Ok(Step {
             dt,
             weights: self.integrator().weights(dt),
         })
+    }
+
+    /// Refuses an integrator that a body's mass or mesh does not allow at this step length.
+    fn check_step(&self, dt: f64, body: &FlexBody) -> Result<(), IntegratorError> {
+        let integrator = self.integrator();
+        let is_explicit = integrator.is_explicit();
+        if is_explicit && !matches!(body.model().mass(), MassMatrix::Lumped(_)) {
+            return Err(IntegratorError::ConsistentMass);
+        }
+        if self.insists || integrator.is_unconditionally_stable() {
+            return Ok(());
+        }
+        let frequency = if is_explicit {
+            body.explicit_frequency()
+        } else {
+            body.model().largest_frequency()
+        };
+        integrator.check_step(dt, frequency)
     }
 
     /// Refuses a solved island whose motion rapier cannot hold.

@@ -9,6 +9,7 @@ use crate::coupling::{
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ImpactTreatment, Island, SolveSettings};
+use crate::linalg::complementarity::Method;
 use crate::rapier::prelude::*;
 use crate::system::Step;
 
@@ -40,8 +41,10 @@ use crate::system::Step;
 pub struct FlexPipeline {
     integrator: Beta2,
     impact: ImpactTreatment,
+    solver: Method,
     restitution_threshold: f64,
     max_newton: usize,
+    pub(super) insists: bool,
     claims: Claims,
     pub(super) gatherer: Gatherer,
     masters: Masters,
@@ -65,8 +68,10 @@ impl FlexPipeline {
         Self {
             integrator: Beta2::default(),
             impact: ImpactTreatment::default(),
+            solver: Method::ActiveSet,
             restitution_threshold: 0.5,
             max_newton: 20,
+            insists: false,
             claims: Claims::default(),
             gatherer: Gatherer::default(),
             masters: Masters::default(),
@@ -80,6 +85,10 @@ impl FlexPipeline {
     }
 
     /// Chooses the member of the Beta-2 family.
+    ///
+    /// An explicit one (`β0 = 0`, [`Beta2::central_difference`]) needs a lumped mass; contact forces then are multipliers at
+    /// the forward increment, and the [treatment of impacts](Self::with_impact) does not matter. Steps longer than the
+    /// critical one of a body are refused, see [`Self::insisting`].
     pub fn with_integrator(mut self, integrator: Beta2) -> Self {
         self.integrator = integrator;
         self
@@ -88,6 +97,23 @@ impl FlexPipeline {
     /// Chooses what is done on impact.
     pub fn with_impact(mut self, impact: ImpactTreatment) -> Self {
         self.impact = impact;
+        self
+    }
+
+    /// Chooses the solver of the contact problems: the active set, a direct method, by default;
+    /// [`Method::GaussSeidel`] for the modified Gauss–Seidel method of Carpenter, Taylor and Katona.
+    pub fn with_contact_solver(mut self, method: Method) -> Self {
+        self.solver = method;
+        self
+    }
+
+    /// Takes steps longer than the critical one of a conditionally stable integrator instead of refusing them.
+    ///
+    /// The critical step of a body is that of a safe bound, so a step a little longer may be stable; one much longer makes the highest
+    /// frequencies grow until numbers are no longer finite. The same goes for rigid bodies that are light on the surface of an
+    /// explicit body.
+    pub fn insisting(mut self) -> Self {
+        self.insists = true;
         self
     }
 
@@ -286,9 +312,16 @@ impl FlexPipeline {
         clock.lap(&mut self.report.times.gather);
         let settings = SolveSettings {
             dt: step.dt,
-            b0: step.weights.b0,
+            b0: if step.is_explicit() {
+                step.dt * step.dt
+            } else {
+                step.weights.b0
+            },
             b1: step.weights.b1,
+            is_explicit: step.is_explicit(),
+            insists: self.insists,
             impact: self.impact,
+            solver: self.solver,
             restitution_threshold: self.restitution_threshold,
             max_newton: self.max_newton,
         };

@@ -4,6 +4,7 @@
 //! then turn with the body, where nodal world coordinates would tear them off their axes at every step.
 
 use super::compliance::Compliance;
+use super::explicit_block::Explicit;
 use super::flex_impulse::Impulses;
 use crate::body::{Arms, FlexState, Frame, FrameMotion};
 use crate::fe::model::Model;
@@ -20,6 +21,13 @@ pub struct Step {
     pub dt: f64,
     /// Beta-2 weights.
     pub weights: Weights,
+}
+
+impl Step {
+    /// Whether positions at the end do not depend on accelerations there: `b0 = 0`.
+    pub fn is_explicit(&self) -> bool {
+        self.weights.b0 == 0.0
+    }
 }
 
 /// What responds.
@@ -120,12 +128,25 @@ pub struct FlexBlock {
     pub(super) inertia: f64,
     /// Whether the step is linearised; see [`FlexBlock::linearize`].
     pub(super) is_linear: bool,
+    pub(super) explicit: Explicit,
 }
 
 impl FlexBlock {
     /// Analyses the pattern of a model whose dofs in `is_fixed` are pinned.
     pub fn new(model: Arc<Model>, is_fixed: Vec<bool>, kind: Frame) -> Self {
         let effective = model.stiffness().clone();
+        let factor = BlockCholesky::analyze(&effective);
+        let matrix = (effective, factor, Compliance::new(&model));
+        Self::with_matrix(model, is_fixed, kind, matrix, Explicit::default())
+    }
+
+    pub(super) fn with_matrix(
+        model: Arc<Model>,
+        is_fixed: Vec<bool>,
+        kind: Frame,
+        (effective, factor, compliance): (BlockMatrix, BlockCholesky, Compliance),
+        explicit: Explicit,
+    ) -> Self {
         let n = model.n_dofs();
         let zeros = || vec![0.0; n];
         let extent = model
@@ -139,10 +160,10 @@ impl FlexBlock {
             is_fixed,
             extent,
             size: size_of(model.rest_positions()),
-            factor: BlockCholesky::analyze(&effective),
+            factor,
             effective,
             factored_for: None,
-            compliance: Compliance::new(&model),
+            compliance,
             n_factorizations: 0,
             n_solves: 0,
             step: Step {
@@ -185,6 +206,7 @@ impl FlexBlock {
             torque: 0.0,
             inertia: 0.0,
             is_linear: false,
+            explicit,
             model,
         }
     }
@@ -239,7 +261,16 @@ impl FlexBlock {
         state: &FlexState,
         load: &FlexLoad<'_>,
     ) -> Result<(), CholeskyError> {
+        self.take_over(step, state, load);
+        if self.is_explicit() {
+            return self.predict_explicitly(state);
+        }
         self.factorize(step.weights)?;
+        self.predict_operators(state);
+        Ok(())
+    }
+
+    fn take_over(&mut self, step: Step, state: &FlexState, load: &FlexLoad<'_>) {
         self.step = step;
         self.start_position.copy_from_slice(&state.position);
         self.start_velocity.copy_from_slice(&state.velocity);
@@ -257,8 +288,16 @@ impl FlexBlock {
             }
         }
         self.force_total = sum_of(load.force) + self.arms.mass * load.gravity;
+    }
+
+    fn predict_operators(&mut self, state: &FlexState) {
         let start = [&state.displacement[..], &state.rate, &state.acceleration];
-        Beta2::predict(step.dt, start, &mut self.displacement_q, &mut self.rate_q);
+        Beta2::predict(
+            self.step.dt,
+            start,
+            &mut self.displacement_q,
+            &mut self.rate_q,
+        );
         // The iterate starts from where the body is: the operators of unresolved modes are large and cancel in the solve.
         self.displacement.copy_from_slice(&state.displacement);
         self.rate.copy_from_slice(&state.rate);
@@ -272,7 +311,6 @@ impl FlexBlock {
                 self.angular_momentum_of(&self.start_frame, &state.displacement, &state.rate);
         }
         self.place();
-        Ok(())
     }
 
     /// Writes the accelerations that a new body's loads and spin give it from an unstrained start.
@@ -288,6 +326,10 @@ impl FlexBlock {
         state: &mut FlexState,
         load: &FlexLoad<'_>,
     ) -> Result<(), CholeskyError> {
+        if self.is_explicit() {
+            self.start_explicitly(state);
+            return Ok(());
+        }
         self.factorize(step.weights)?;
         let rayleigh = self.model.rayleigh();
         for node in 0..self.model.n_nodes() {

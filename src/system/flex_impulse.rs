@@ -8,13 +8,13 @@ use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, set_node_vec};
 /// Impulses on the nodes, for the velocity (N s) or as forces for the acceleration (N), and the response to them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Impulses {
-    nodal: Vec<f64>,
-    total: Vec2,
+    pub(super) nodal: Vec<f64>,
+    pub(super) total: Vec2,
     /// Moment about the centre, by the levers they came with.
     moment: f64,
     /// Velocities in world axes, or second rates in the frame without their rigid part.
-    response: Vec<f64>,
-    is_used: bool,
+    pub(super) response: Vec<f64>,
+    pub(super) is_used: bool,
 }
 
 impl Impulses {
@@ -91,6 +91,24 @@ impl FlexBlock {
             ..
         } = self;
         arms.split(*kind, &mut impulses[1].response);
+    }
+
+    /// Finds what the nodal masses alone answer, `M⁻¹` in the place of `A⁻¹`; a consistent mass counts by its row sums. Nodes
+    /// without mass must have no impulse.
+    pub fn respond_by_mass(&mut self) {
+        let back = self.turn.transpose();
+        for impulses in self.impulses.iter_mut().filter(|impulses| impulses.is_used) {
+            for (node, &mass) in self.arms.node_mass.iter().enumerate() {
+                let inverse = if mass > 0.0 { 1.0 / mass } else { 0.0 };
+                let response = inverse * back * node_vec(&impulses.nodal, node);
+                set_node_vec(&mut impulses.response, node, response);
+            }
+            for &dof in &self.fixed_dofs {
+                impulses.response[dof] = 0.0;
+            }
+        }
+        self.finish_velocity();
+        self.arms.split(self.kind, &mut self.impulses[1].response);
     }
 
     /// Adds a multiple of a response to the end velocity or acceleration.

@@ -64,6 +64,9 @@ impl FlexBlock {
 
     /// Acceleration of a node at the end of the step, linear in the increments (m/s²).
     pub fn end_acceleration(&self, node: usize) -> Vec2 {
+        if self.is_explicit() {
+            return self.explicit_acceleration(node);
+        }
         let own = self.carried(node, |node| {
             node_vec(&self.start_acceleration, node) + node_vec(&self.increment, node)
         });
@@ -120,6 +123,11 @@ impl FlexBlock {
     ///
     /// Where nothing else resists, `½ u·(f + Gᵀp - M (a + α v))` is what `½ u·K u` is, without the product.
     pub fn measure_elastic_energy(&mut self) {
+        if self.is_explicit() {
+            // One product gives this energy and the forces of the end.
+            self.finish_explicitly();
+            return;
+        }
         let rayleigh = self.model.rayleigh();
         let is_moved = self
             .fixed_dofs
@@ -234,6 +242,10 @@ impl FlexBlock {
 
     /// Writes the end of the step over the committed state.
     pub fn commit(&self, state: &mut FlexState) {
+        if self.is_explicit() {
+            self.commit_explicitly(state);
+            return;
+        }
         let kinetic_energy = self.kinetic_energy();
         state.position.copy_from_slice(&self.position);
         state.velocity.copy_from_slice(&self.velocity);

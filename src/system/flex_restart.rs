@@ -6,6 +6,10 @@ use crate::math::is_held;
 impl FlexBlock {
     /// Puts the iterate back to the beginning of the step.
     pub fn restart(&mut self) {
+        if self.is_explicit() {
+            self.restart_explicitly();
+            return;
+        }
         let dt = self.step.dt;
         let half = 0.5 * dt * dt;
         for (dof, acceleration) in self.start_acceleration.iter().enumerate() {
@@ -26,6 +30,10 @@ impl FlexBlock {
     ///
     /// Such a step is first order and stable; it is taken where Newton's iterations do not converge.
     pub fn linearize(&mut self) {
+        if self.is_explicit() {
+            self.restart();
+            return;
+        }
         let dt = self.step.dt;
         let half = 0.5 * dt * dt;
         for dof in 0..self.start_acceleration.len() {
@@ -39,6 +47,10 @@ impl FlexBlock {
 
     /// Ends the step where it began, without velocities.
     pub fn hold(&mut self) {
+        if self.is_explicit() {
+            self.hold_explicitly();
+            return;
+        }
         self.restart();
         let start = self.start_frame;
         self.frame = crate::body::FrameMotion {

@@ -28,6 +28,10 @@ impl FlexBlock {
     /// Returns how far the frame's angle moved (rad), or that part of it that matters: a frame that hardly spins turns only
     /// the displacements.
     pub fn solve(&mut self) -> f64 {
+        if self.is_explicit() {
+            self.solve_explicitly();
+            return 0.0;
+        }
         if self.may_add() {
             self.solve_difference();
         } else {
@@ -171,6 +175,7 @@ impl FlexBlock {
 
     /// Clears the contact forces of the iterate.
     pub fn clear_contact_force(&mut self) {
+        self.clear_late_force();
         if self.has_contact_force {
             self.contact_force.fill(0.0);
             self.has_contact_force = false;
@@ -272,6 +277,9 @@ impl FlexBlock {
 
     /// World velocities of the last iterate: nothing asks for them before.
     pub fn place_velocities(&mut self) {
+        if self.is_explicit() {
+            return;
+        }
         if self.kind == Frame::Fixed {
             self.velocity.copy_from_slice(&self.rate);
             return;
@@ -291,6 +299,10 @@ impl FlexBlock {
 
     /// Makes [`super::Block::compliance`] known from `node`.
     pub fn prepare_compliance(&mut self, node: usize) {
+        if self.is_explicit() {
+            self.prepare_explicitly(node);
+            return;
+        }
         if self
             .compliance
             .prepare(node, &self.is_fixed, &mut self.factor)
@@ -309,6 +321,9 @@ impl FlexBlock {
         (from, from_lever): (usize, Vec2),
         of: Response,
     ) -> Mat2 {
+        if self.is_explicit() {
+            return self.explicit_compliance(at, from, of);
+        }
         let local = self.compliance.get(at, from);
         if self.kind == Frame::Fixed {
             return local;

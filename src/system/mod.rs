@@ -4,12 +4,15 @@
 //! the multipliers. [`FlexBlock`] has two dofs a node, [`RigidBlock`] three.
 
 mod compliance;
+mod explicit_block;
+mod explicit_motion;
 mod flex_block;
 mod flex_impulse;
 mod flex_momentum;
 mod flex_motion;
 mod flex_restart;
 mod flex_solve;
+mod massless_surface;
 mod moments;
 mod rigid_block;
 
@@ -141,6 +144,19 @@ impl Block {
             (Self::Flex(block), Point::Node(node)) => block.end_acceleration(node),
             (Self::Rigid(block), Point::Arm(_)) => block.smooth_acceleration(grip.lever),
             _ => mismatch(),
+        }
+    }
+
+    /// Whether the block is a flexible one that steps by central difference.
+    pub fn is_explicit(&self) -> bool {
+        matches!(self, Self::Flex(block) if block.is_explicit())
+    }
+
+    /// `dt²/8 a·M a` of an explicit block, with its smooth accelerations at the beginning and at the end of the step (J).
+    pub fn swing(&self) -> [f64; 2] {
+        match self {
+            Self::Flex(block) => block.swing(),
+            Self::Rigid(block) => block.swing(),
         }
     }
 

@@ -192,7 +192,12 @@ impl RigidBlock {
 
     /// Moves the iterate away from the free motion by what a wrench does.
     pub fn set_position_increment(&mut self, wrench: [f64; 3]) {
-        let b0 = self.weights.b0;
+        // With β0 = 0 the multiplier is an impulse at the forward increment.
+        let b0 = if self.weights.b0 > 0.0 {
+            self.weights.b0
+        } else {
+            self.dt * self.dt
+        };
         let step: [f64; 3] = std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]);
         self.current = self.free;
         self.current.centre += Vec2::new(step[0], step[1]);
@@ -280,6 +285,15 @@ impl RigidBlock {
         self.force[0] * moved.x
             + self.force[1] * moved.y
             + self.force[2] * (self.current.angle - self.start.angle)
+    }
+
+    /// See [`super::Block::swing`].
+    pub(super) fn swing(&self) -> [f64; 2] {
+        [&self.smooth_start, &self.smooth_end].map(|acceleration| {
+            let terms = self.mass.iter().zip(acceleration);
+            let squared: f64 = terms.map(|(mass, a)| mass * a * a).sum();
+            0.125 * self.dt * self.dt * squared
+        })
     }
 
     /// Kinetic energy of a motion of this body (J).

@@ -35,6 +35,7 @@ pub struct Kinematics {
     pub feature: Option<Feature>,
     attachments: [Attachment; 3],
     n_attachments: usize,
+    is_quasi_static: bool,
 }
 
 impl Kinematics {
@@ -70,6 +71,19 @@ impl Kinematics {
             .any(|a| a.weight.abs() > 1e-9 && blocks[a.block].is_massless(a.grip.point))
     }
 
+    /// Whether an explicit body is met through a node without mass, which a force moves at once, while it moves
+    /// masses only from the end of the step on.
+    pub fn is_quasi_static(&self) -> bool {
+        self.is_quasi_static
+    }
+
+    /// Whether a flexible body takes part that steps by central difference.
+    pub fn is_explicit(&self, blocks: &[Block]) -> bool {
+        self.attachments()
+            .iter()
+            .any(|a| blocks[a.block].is_explicit())
+    }
+
     fn new(
         scene: &Scene<'_>,
         gap: f64,
@@ -94,14 +108,18 @@ impl Kinematics {
                 weight,
             };
         }
-        Self {
+        let mut kinematics = Self {
             gap,
             normal,
             position,
             feature: None,
             attachments,
             n_attachments: grips.len(),
-        }
+            is_quasi_static: false,
+        };
+        kinematics.is_quasi_static =
+            kinematics.is_explicit(scene.blocks) && kinematics.is_massless(scene.blocks);
+        kinematics
     }
 }
 

@@ -1,4 +1,6 @@
-//! The first fallback: projected Gauss–Seidel with over-relaxation, `p_i <- proj_i(p_i - omega w_i / W_ii)`.
+//! The first fallback: projected Gauss–Seidel with over-relaxation, `p_i <- proj_i(p_i - omega w_i / W_ii)`. With
+//! `omega = 1` it is the modified Gauss–Seidel method of Carpenter, Taylor and Katona (1991): every multiplier in turn is
+//! solved for, dropped if it pulls, and cut to `mu p_n` if it holds more than friction can.
 //!
 //! Without friction it decreases `½ pᵀ W p + bᵀ p` at every row and converges for `0 < omega < 2`, also if
 //! `W` is singular (Cryer 1971; Luo and Tseng 1992), if slowly. With friction there is no proof, but its
@@ -7,14 +9,19 @@
 use super::problem::Checked;
 
 /// Over-relaxation: above 1 for speed, well below 2 because friction adds a coupling of its own.
-const RELAXATION: f64 = 1.2;
+pub(super) const RELAXATION: f64 = 1.2;
 /// A relative change per sweep below which nothing more will come.
 const STALLED: f64 = 1e-14;
 
 /// Sweeps over the rows, in place, at most `n_sweeps` times; returns how many were made.
 ///
 /// - `multipliers`: the start, then the result, shape `(n)`.
-pub(super) fn sweep(problem: Checked, multipliers: &mut [f64], n_sweeps: usize) -> usize {
+pub(super) fn sweep(
+    problem: Checked,
+    relaxation: f64,
+    multipliers: &mut [f64],
+    n_sweeps: usize,
+) -> usize {
     for done in 0..n_sweeps {
         let (mut change, mut size) = (0.0_f64, 0.0_f64);
         for row in 0..problem.n_rows() {
@@ -22,7 +29,7 @@ pub(super) fn sweep(problem: Checked, multipliers: &mut [f64], n_sweeps: usize) 
             let next = if problem.is_movable(row) {
                 let step = problem.velocity(row, multipliers) / problem.diagonal(row);
                 let normal = problem.normal_multiplier(row, multipliers);
-                problem.project(row, present - RELAXATION * step, normal)
+                problem.project(row, present - relaxation * step, normal)
             } else {
                 problem.idle_multiplier(row)
             };
@@ -60,7 +67,7 @@ mod tests {
         let mut multipliers = [0.0; 2];
         let n_sweeps = problem
             .check()
-            .map(|problem| sweep(problem, &mut multipliers, 100));
+            .map(|problem| sweep(problem, RELAXATION, &mut multipliers, 100));
         assert!(
             n_sweeps.is_ok_and(|n_sweeps| n_sweeps < 60),
             "the sweeps did not stall"

@@ -60,6 +60,13 @@ const RESCUE: [(Method, usize); 6] = [
     (Method::GaussSeidel, 500),
 ];
 
+/// Sweeps of a solver that is asked for Gauss–Seidel, before the active set takes over: contacts of masses take some ten, and
+/// those of a surface that transmits forces as many as it has nodes, squared.
+const MOST_SWEEPS: usize = 20_000;
+
+/// The [`natural_map_residual`] up to which sweeps that have stalled are the answer.
+const SWEPT: f64 = 1e-10;
+
 /// The solver that found the answer. The last two are finished by an active-set solve if it improves them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Method {
@@ -118,6 +125,7 @@ impl Answer {
 #[derive(Debug, Clone)]
 pub struct Solver {
     redundancy_tolerance: f64,
+    first: Method,
     active_set: ActiveSet,
     lemke: Lemke,
     best: Answer,
@@ -129,6 +137,7 @@ impl Default for Solver {
     fn default() -> Self {
         Self {
             redundancy_tolerance: 1e-6,
+            first: Method::ActiveSet,
             active_set: ActiveSet::default(),
             lemke: Lemke::default(),
             best: Answer::default(),
@@ -159,6 +168,15 @@ impl Solver {
         self.redundancy_tolerance = residual;
     }
 
+    /// Chooses the solver that is asked first: the active set by default.
+    ///
+    /// [`Method::GaussSeidel`] is the modified Gauss–Seidel method of Carpenter, Taylor and Katona (1991), which needs no
+    /// factorization: fast for multipliers that hardly couple, slow for others. Where it does not converge the active set
+    /// takes over. [`Method::Lemke`] is only ever asked when others fail; here it means the active set.
+    pub fn set_first(&mut self, method: Method) {
+        self.first = method;
+    }
+
     /// Solves the problem as well as it can; `outcome.residual` says how well.
     ///
     /// An unsolvable problem (joints that contradict each other, a jammed wedge) hands back the
@@ -185,6 +203,13 @@ impl Solver {
         let problem = problem.check()?;
         self.start(problem, multipliers, status);
         let mut outcome = Outcome::default();
+        if self.first == Method::GaussSeidel && self.sweep(problem, &mut outcome) {
+            multipliers.copy_from_slice(&self.best.multipliers);
+            status.copy_from_slice(&self.best.status);
+            outcome.residual = self.best.residual;
+            outcome.method = Method::GaussSeidel;
+            return Ok(outcome);
+        }
         if !self.follow_active_set(problem, Redundancy::MinimumNorm, &mut outcome) {
             self.status.copy_from_slice(status);
             self.rescue(problem, &mut outcome);
@@ -215,6 +240,22 @@ impl Solver {
         self.best.residual = f64::INFINITY;
         self.best.multipliers.copy_from_slice(&self.trial);
         self.best.status.copy_from_slice(&self.status);
+    }
+
+    /// Sweeps from the start; returns whether that solved the problem. If not, the active set starts from where they ended.
+    fn sweep(&mut self, problem: Checked, outcome: &mut Outcome) -> bool {
+        let n_sweeps = gauss_seidel::sweep(problem, 1.0, &mut self.trial, MOST_SWEEPS);
+        outcome.n_sweeps += n_sweeps;
+        self.best.candidate = Method::GaussSeidel;
+        self.judge_trial(problem);
+        if self.best.residual <= SWEPT {
+            return true;
+        }
+        self.best.candidate = Method::ActiveSet;
+        self.best.residual = f64::INFINITY;
+        self.trial.copy_from_slice(&self.best.multipliers);
+        self.status.copy_from_slice(&self.best.status);
+        false
     }
 
     fn follow_active_set(
@@ -260,7 +301,8 @@ impl Solver {
             Method::ActiveSet => return self.trial.iter().any(|&multiplier| multiplier != 0.0),
             Method::GaussSeidel => {
                 self.trial.copy_from_slice(&self.best.multipliers);
-                outcome.n_sweeps += gauss_seidel::sweep(problem, &mut self.trial, effort);
+                outcome.n_sweeps +=
+                    gauss_seidel::sweep(problem, gauss_seidel::RELAXATION, &mut self.trial, effort);
             }
             Method::Lemke => {
                 let n_pivots = &mut outcome.n_lemke_pivots;

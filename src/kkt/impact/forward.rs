@@ -1,0 +1,19 @@
+//! Multipliers at the forward increment, for `β0 = 0`; see `kkt/forward.rs`.
+
+use super::Treatment;
+use crate::kkt::island::{Island, IslandSummary, KktError, SolveSettings};
+
+/// The treatment of explicit steps.
+#[derive(Debug)]
+pub(super) struct Forward;
+
+impl Treatment for Forward {
+    fn finish(
+        &self,
+        island: &mut Island,
+        settings: &SolveSettings,
+        summary: &mut IslandSummary,
+    ) -> Result<(), KktError> {
+        island.solve_forward(settings, summary)
+    }
+}

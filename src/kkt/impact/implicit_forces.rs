@@ -1,0 +1,85 @@
+//! Contact forces of the end of the step alone (Kane, Repetto, Ortiz, Marsden 1999).
+//!
+//! Internal forces follow Newmark, contact forces do not:
+//!
+//! ```text
+//! x' = q0 + b0 Δa + dt²/2 M⁻¹ Gᵀp,    v' = q1 + b1 Δa + dt M⁻¹ Gᵀp,    a' = a + Δa = M⁻¹ (R - C v' - K x').
+//! ```
+//!
+//! With `p = β0 p̃` the positions are those of (C.5) under the multipliers `p̃`, which the position stage has found. What is
+//! left is to take `(b1 - β0 dt) M⁻¹ Gᵀp̃` from the velocity, nothing for the trapezoidal rule, and `M⁻¹ Gᵀp̃` from the
+//! acceleration. A node that is held has `x' = x`, so `v' = -v` by the trapezoidal rule: what velocity it has left after the
+//! impact changes sign with every step, and the force alternates by `2 m v / dt` for as long. Nodes without mass have no `M⁻¹`: contacts there are quasi-static, as (C.5) says.
+
+use super::Treatment;
+use crate::kkt::island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
+use crate::system::{Block, Response};
+
+/// See [`ImpactTreatment::ImplicitForces`](super::ImpactTreatment::ImplicitForces).
+#[derive(Debug)]
+pub(super) struct ImplicitForces;
+
+impl Treatment for ImplicitForces {
+    fn finish(
+        &self,
+        island: &mut Island,
+        settings: &SolveSettings,
+        _summary: &mut IslandSummary,
+    ) -> Result<(), KktError> {
+        for contact in &mut island.contacts {
+            contact.is_settled = !contact.is_hard;
+        }
+        island.take_out_hard_forces();
+        // Between rigid bodies there is only the impact law.
+        island.impact_rows(settings)?;
+        island.take_from_acceleration(settings);
+        island.balance_angular_momentum();
+        Ok(())
+    }
+}
+
+/// Whether a contact's force is one between masses of a flexible body and others.
+fn is_implicit(contact: &ActiveContact) -> bool {
+    contact.is_closed() && !contact.is_hard && !contact.is_massless
+}
+
+impl Island {
+    fn take_from_acceleration(&mut self, settings: &SolveSettings) {
+        let beta0 = 2.0 * settings.b0 / (settings.dt * settings.dt);
+        self.clear_impulses();
+        self.wrenches.clear();
+        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
+        for contact in self
+            .contacts
+            .iter_mut()
+            .filter(|contact| is_implicit(contact))
+        {
+            Self::spread(
+                &mut self.blocks,
+                &contact.kinematics,
+                contact.multiplier,
+                Some(&mut self.wrenches),
+                |block, node, force, lever| {
+                    block.gather_impulse(Response::Velocity, node, force, lever);
+                    block.gather_impulse(Response::Acceleration, node, force, lever);
+                },
+            );
+            // The mean force over the step is `β0 p̃`.
+            let part = (beta0 - 1.0) * settings.dt;
+            contact.impulse = contact.multiplier.map(|force| part * force);
+        }
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.respond_by_mass();
+            }
+        }
+        let excess = settings.b1 - beta0 * settings.dt;
+        for (of, scale) in [
+            (Response::Velocity, -excess),
+            (Response::Acceleration, -1.0),
+        ] {
+            self.add_to_rigid(of, scale);
+            self.add_to_flexible(of, scale);
+        }
+    }
+}

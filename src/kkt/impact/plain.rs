@@ -1,0 +1,21 @@
+//! (C.5) as printed: every multiplier acts on velocity and acceleration. The multiplier of an impact lingers in the stored
+//! acceleration, and the energy of a bouncing bar grows without bound.
+
+use super::Treatment;
+use crate::kkt::island::{Island, IslandSummary, KktError, SolveSettings};
+
+/// No treatment.
+#[derive(Debug)]
+pub(super) struct Plain;
+
+impl Treatment for Plain {
+    fn finish(
+        &self,
+        island: &mut Island,
+        _settings: &SolveSettings,
+        _summary: &mut IslandSummary,
+    ) -> Result<(), KktError> {
+        island.keep_plain_forces();
+        Ok(())
+    }
+}

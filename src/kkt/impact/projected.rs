@@ -1,0 +1,22 @@
+//! Projection of velocities and accelerations: `M Δv = Gᵀπ` such that masses in contact neither part nor approach, and the same
+//! for accelerations (Hughes, Taylor, Sackman, Curnier, Kanoknukulchai 1976; Laursen, Love 2002), with `A` in the place of `M`.
+
+use super::Treatment;
+use crate::kkt::island::{Island, IslandSummary, KktError, SolveSettings};
+
+/// See [`ImpactTreatment::Projected`](super::ImpactTreatment::Projected).
+#[derive(Debug)]
+pub(super) struct Projected;
+
+impl Treatment for Projected {
+    fn finish(
+        &self,
+        island: &mut Island,
+        settings: &SolveSettings,
+        _summary: &mut IslandSummary,
+    ) -> Result<(), KktError> {
+        island.solve_velocities(settings)?;
+        island.balance_angular_momentum();
+        Ok(())
+    }
+}
