@@ -1,0 +1,95 @@
+//! The verification book: the list of its cases, and how they are run.
+//!
+//! To add a case, write its file beside the others and name it in [`CASES`].
+
+pub mod figure;
+pub mod scene;
+pub mod sheet;
+
+mod b1;
+mod b2;
+mod bars;
+mod schemes;
+
+use sheet::{Row, Sheet, Size};
+use std::error::Error;
+use std::sync::Mutex;
+
+/// What a case may fail with: an error of the library, which is a finding by itself.
+pub type Outcome = Result<(), Box<dyn Error + Send + Sync>>;
+
+/// One case of the book.
+#[derive(Clone, Copy)]
+pub struct Case {
+    /// Its number in the list of benchmarks, or a word.
+    pub id: &'static str,
+    /// What it shows, in a line.
+    pub title: &'static str,
+    /// Puts the question to the library and writes the answers on the sheet.
+    pub run: fn(&mut Sheet) -> Outcome,
+}
+
+/// The book, in order.
+pub const CASES: &[Case] = &[
+    Case {
+        id: "B1",
+        title: "impacting bar",
+        run: b1::run,
+    },
+    Case {
+        id: "B2",
+        title: "bouncing bar",
+        run: b2::run,
+    },
+    Case {
+        id: "schemes",
+        title: "the scheme table",
+        run: schemes::run,
+    },
+];
+
+/// Runs the cases chosen on two threads and returns their sheets in the order of the book; `done` is told of each.
+pub fn run(cases: &[Case], size: Size, done: &(dyn Fn(&Case) + Sync)) -> Vec<Sheet> {
+    let next = Mutex::new(0);
+    let sheets = Mutex::new(vec![None; cases.len()]);
+    let work = || {
+        loop {
+            let index = {
+                let mut next = next.lock().expect("no case panics with the lock");
+                *next += 1;
+                *next - 1
+            };
+            let Some(case) = cases.get(index) else {
+                return;
+            };
+            let sheet = run_case(case, size);
+            sheets.lock().expect("no case panics with the lock")[index] = Some(sheet);
+            done(case);
+        }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(work);
+        scope.spawn(work);
+    });
+    let sheets = sheets.into_inner().expect("no case panics with the lock");
+    sheets.into_iter().flatten().collect()
+}
+
+/// A case that ends in an error fails with it as the note.
+fn run_case(case: &Case, size: Size) -> Sheet {
+    let start = std::time::Instant::now();
+    let mut sheet = Sheet::new(case.id, case.title, size);
+    if let Err(error) = (case.run)(&mut sheet) {
+        sheet.fail(&error.to_string());
+    }
+    sheet.seconds = start.elapsed().as_secs_f64();
+    sheet
+}
+
+/// All rows of the sheets, in order.
+pub fn rows(sheets: &[Sheet]) -> Vec<Row> {
+    sheets
+        .iter()
+        .flat_map(|sheet| sheet.rows.iter().cloned())
+        .collect()
+}
