@@ -22,14 +22,24 @@ pub const WAVE_SPEED: f64 = 30.0;
 pub const CONTACT_TIME: f64 = 2.0 * LENGTH / WAVE_SPEED;
 const SECTION: f64 = 1.0;
 
+/// Where the mass of the bar sits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mass {
+    /// Lumped, and the two nodes that meet the floor gave theirs away.
+    Redistributed,
+    /// Lumped.
+    Kept,
+    /// Consistent: the nodes that meet the floor keep theirs too.
+    Consistent,
+}
+
 /// A way to step the bar through its impacts.
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme {
     pub name: &'static str,
     pub integrator: Beta2,
     pub impact: ImpactTreatment,
-    /// Whether the two nodes that meet the floor keep their inertia.
-    pub keeps_inertia: bool,
+    pub mass: Mass,
 }
 
 impl Scheme {
@@ -39,7 +49,7 @@ impl Scheme {
             name: "trapezoidal",
             integrator: Beta2::trapezoidal(),
             impact: ImpactTreatment::Stabilized,
-            keeps_inertia: false,
+            mass: Mass::Redistributed,
         }
     }
 }
@@ -87,15 +97,16 @@ pub fn drop_bar(scheme: &Scheme, drop: &Drop) -> Result<Record, Box<dyn Error + 
         ColliderBuilder::cuboid(20.0, 10.0).translation(Vector::new(0.0, -10.0)),
         None,
     );
-    let inertia = if scheme.keeps_inertia {
-        ContactInertia::Kept
-    } else {
-        ContactInertia::RedistributedAt(vec![0, 1])
+    let (kind, inertia) = match scheme.mass {
+        Mass::Redistributed => (MassKind::Lumped, ContactInertia::RedistributedAt(vec![0, 1])),
+        Mass::Kept => (MassKind::Lumped, ContactInertia::Kept),
+        Mass::Consistent => (MassKind::Consistent, ContactInertia::Kept),
     };
     let width = LENGTH / drop.n_cells as f64;
     let builder = FlexBodyBuilder::rectangle([width, LENGTH], [1, drop.n_cells])
         .material(LinearElastic::plane_stress(YOUNG, 0.0).density(DENSITY))
         .thickness(SECTION / width)
+        .mass_kind(kind)
         .contact_inertia(inertia)
         .pin_where(|_| true, Pin::x())
         .translation([0.0, drop.gap])

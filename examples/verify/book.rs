@@ -7,8 +7,15 @@ pub mod scene;
 pub mod sheet;
 
 mod b1;
+mod b17;
+mod b18;
 mod b2;
+mod b22;
+mod b24;
+mod b3;
+mod b8;
 mod bars;
+mod plain;
 mod schemes;
 
 use sheet::{Row, Sheet, Size};
@@ -42,9 +49,44 @@ pub const CASES: &[Case] = &[
         run: b2::run,
     },
     Case {
+        id: "B3",
+        title: "two bars collide",
+        run: b3::run,
+    },
+    Case {
         id: "schemes",
         title: "the scheme table",
         run: schemes::run,
+    },
+    Case {
+        id: "plain",
+        title: "plain (C.5) in lasting contact",
+        run: plain::run,
+    },
+    Case {
+        id: "B8",
+        title: "elastic disc dropped on a rigid floor",
+        run: b8::run,
+    },
+    Case {
+        id: "B17",
+        title: "block on an incline",
+        run: b17::run,
+    },
+    Case {
+        id: "B18",
+        title: "rolling disc",
+        run: b18::run,
+    },
+    Case {
+        id: "B22",
+        title: "mass ratio of a million",
+        run: b22::run,
+    },
+    Case {
+        id: "B24",
+        title: "weight",
+        run: b24::run,
     },
 ];
 
