@@ -12,11 +12,17 @@ mod b18;
 mod b2;
 mod b22;
 mod b24;
+mod b25;
+mod b29;
 mod b3;
+mod b31;
+mod b32;
 mod b8;
 mod bars;
+mod orders;
 mod plain;
 mod schemes;
+mod statics;
 
 use sheet::{Row, Sheet, Size};
 use std::error::Error;
@@ -87,6 +93,31 @@ pub const CASES: &[Case] = &[
         id: "B24",
         title: "weight",
         run: b24::run,
+    },
+    Case {
+        id: "B25",
+        title: "Cook's membrane",
+        run: b25::run,
+    },
+    Case {
+        id: "B29",
+        title: "MacNeal and Harder's straight beam",
+        run: b29::run,
+    },
+    Case {
+        id: "B31",
+        title: "cantilever",
+        run: b31::run,
+    },
+    Case {
+        id: "B32",
+        title: "pendulum",
+        run: b32::run,
+    },
+    Case {
+        id: "orders",
+        title: "observed orders of the integrators",
+        run: orders::run,
     },
 ];
 
