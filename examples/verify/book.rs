@@ -7,8 +7,11 @@ pub mod scene;
 pub mod sheet;
 
 mod b1;
+mod b10;
+mod b14;
 mod b17;
 mod b18;
+mod b19;
 mod b2;
 mod b22;
 mod b24;
@@ -18,6 +21,7 @@ mod b3;
 mod b31;
 mod b32;
 mod b8;
+mod b9;
 mod bars;
 mod orders;
 mod plain;
@@ -75,6 +79,21 @@ pub const CASES: &[Case] = &[
         run: b8::run,
     },
     Case {
+        id: "B9",
+        title: "contact patch test",
+        run: b9::run,
+    },
+    Case {
+        id: "B10",
+        title: "Hertz line contact",
+        run: b10::run,
+    },
+    Case {
+        id: "B14",
+        title: "flat punch",
+        run: b14::run,
+    },
+    Case {
         id: "B17",
         title: "block on an incline",
         run: b17::run,
@@ -83,6 +102,11 @@ pub const CASES: &[Case] = &[
         id: "B18",
         title: "rolling disc",
         run: b18::run,
+    },
+    Case {
+        id: "B19",
+        title: "stick-slip oscillator",
+        run: b19::run,
     },
     Case {
         id: "B22",
