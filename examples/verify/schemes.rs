@@ -53,7 +53,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         let mut one = b1::drop(0.0);
         one.n_steps = sheet.n_steps(one.n_steps);
         let impact = drop_bar(&scheme, &one)?;
-        let mut ten = b2::drop(n_periods);
+        let mut ten = b2::drop(n_periods, b2::COARSE);
         ten.n_steps = sheet.n_steps(ten.n_steps);
         let bounces = drop_bar(&scheme, &ten)?;
         let _ = writeln!(table, "{}", line(&scheme, &impact, &bounces));
