@@ -60,7 +60,11 @@ impl Arguments {
             }
         }
         let is_chosen = |case: &&Case| {
-            self.case.is_empty() || self.case.iter().any(|name| case.id.eq_ignore_ascii_case(name))
+            self.case.is_empty()
+                || self
+                    .case
+                    .iter()
+                    .any(|name| case.id.eq_ignore_ascii_case(name))
         };
         Ok(CASES.iter().filter(is_chosen).copied().collect())
     }
@@ -77,7 +81,9 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         return Ok(ExitCode::SUCCESS);
     }
     let bar = ProgressBar::new(cases.len() as u64);
-    bar.set_style(ProgressStyle::with_template("{bar:30} {pos}/{len} cases, {elapsed}  {msg}")?);
+    bar.set_style(ProgressStyle::with_template(
+        "{bar:30} {pos}/{len} cases, {elapsed}  {msg}",
+    )?);
     bar.tick();
     let sheets = book::run(&cases, arguments.size(), &|case| {
         bar.set_message(format!("{} done", case.id));
@@ -100,7 +106,11 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     if arguments.common.json {
         print_json(&rows);
     }
-    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(if failed == 0 {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
 }
 
 fn draw(sheets: &[Sheet]) -> Result<(), Box<dyn Error>> {
@@ -114,7 +124,10 @@ fn draw(sheets: &[Sheet]) -> Result<(), Box<dyn Error>> {
 
 fn print_table(sheets: &[Sheet]) {
     for sheet in sheets {
-        println!("\n{}  {}  ({:.1} s)", sheet.case, sheet.title, sheet.seconds);
+        println!(
+            "\n{}  {}  ({:.1} s)",
+            sheet.case, sheet.title, sheet.seconds
+        );
         println!(
             "  {:<58} {:>13} {:>13} {:>10} {:>10}  verdict",
             "quantity", "expected", "obtained", "error", "tolerance"

@@ -52,17 +52,42 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     drop_at.n_steps = sheet.n_steps(drop_at.n_steps);
     let record = drop_bar(&scheme, &drop_at)?;
     let [_, peak] = record.pressure_error(SPAN, |_| PLATEAU);
-    sheet.relative("mean pressure of the plateau (Pa)", PLATEAU, record.mean_pressure(SPAN), 5e-3);
-    sheet.at_most("largest error on the plateau, of 300 Pa (-)", 5e-3, peak / PLATEAU);
+    sheet.relative(
+        "mean pressure of the plateau (Pa)",
+        PLATEAU,
+        record.mean_pressure(SPAN),
+        5e-3,
+    );
+    sheet.at_most(
+        "largest error on the plateau, of 300 Pa (-)",
+        5e-3,
+        peak / PLATEAU,
+    );
     let release = TOUCH + CONTACT_TIME;
     sheet.absolute("last contact (s)", release, record.release(2.0), 2.0 / RATE);
-    let energy = record.energy.iter().fold(0.0f64, |worst, e| worst.max((e - 1.0).abs()));
-    sheet.absolute("largest change of energy, of the initial (-)", 0.0, energy, 1e-3);
+    let energy = record
+        .energy
+        .iter()
+        .fold(0.0f64, |worst, e| worst.max((e - 1.0).abs()));
+    sheet.absolute(
+        "largest change of energy, of the initial (-)",
+        0.0,
+        energy,
+        1e-3,
+    );
     sheet.absolute("deepest overlap (m)", 0.0, record.penetration, 1e-9);
-    sheet.tell("velocity after the impact (m/s)", SPEED, record.at(&record.velocity, 1.45));
+    sheet.tell(
+        "velocity after the impact (m/s)",
+        SPEED,
+        record.at(&record.velocity, 1.45),
+    );
     drop_at.gap = drop(0.5).gap;
     let late = drop_bar(&scheme, &drop_at)?;
-    sheet.tell("energy after a gap that closes half-way in a step", 1.0, late.at(&late.energy, 1.45));
+    sheet.tell(
+        "energy after a gap that closes half-way in a step",
+        1.0,
+        late.at(&late.energy, 1.45),
+    );
     sheet.figure(figure(&record));
     Ok(())
 }
@@ -80,5 +105,8 @@ fn figure(record: &Record) -> Figure {
     let axes = ["time (s)", "contact pressure (Pa)"];
     Figure::new("b1_pressure", "B1: pressure under the impacting bar", axes)
         .exact("exact", exact)
-        .line("trapezoidal, redistributed mass", record.curve(&record.pressure))
+        .line(
+            "trapezoidal, redistributed mass",
+            record.curve(&record.pressure),
+        )
 }

@@ -19,11 +19,20 @@ use foil2d::prelude::*;
 use std::error::Error;
 
 /// A block at rest on the flat floor, pressed by the gravity across an incline of `angle`.
-fn block(angle: f64, mu: f64, rate: f64, x: f64) -> Result<(Scene, FlexBodyHandle), Box<dyn Error + Send + Sync>> {
+fn block(
+    angle: f64,
+    mu: f64,
+    rate: f64,
+    x: f64,
+) -> Result<(Scene, FlexBodyHandle), Box<dyn Error + Send + Sync>> {
     let mut scene = Scene::new(1.0 / rate, Beta2::default()).with_gravity(0.0, -G * angle.cos());
     scene.ground(mu);
     let builder = FlexBodyBuilder::rectangle([1.0, 0.5], [4, 2])
-        .material(LinearElastic::plane_stress(1e8, 0.3).density(1000.0).rayleigh(1e-3))
+        .material(
+            LinearElastic::plane_stress(1e8, 0.3)
+                .density(1000.0)
+                .rayleigh(1e-3),
+        )
         .friction(mu)
         .translation([x, 0.0]);
     let body = scene.add(builder)?;
@@ -50,7 +59,12 @@ fn slide(sheet: &mut Sheet) -> Outcome {
         let gained = scene.body(body).linvel()[0] - start;
         let exact = G * (angle.sin() - mu * angle.cos());
         let found = gained / (n as f64 * scene.dt());
-        sheet.relative(format!("acceleration of the slide, {rate} Hz (m/s²)"), exact, found, by_precision(1e-6, 1e-9));
+        sheet.relative(
+            format!("acceleration of the slide, {rate} Hz (m/s²)"),
+            exact,
+            found,
+            by_precision(1e-6, 1e-9),
+        );
     }
     Ok(())
 }
@@ -63,7 +77,10 @@ fn stop(sheet: &mut Sheet) -> Outcome {
     scene.bodies[body].set_velocities(&[3.0, 0.0].repeat(n_nodes))?;
     // Friction sets in within a step and makes the block lean back: the law is asked from a tenth of a second on.
     scene.steps(sheet.n_steps(100))?;
-    let (start, speed) = (scene.body(body).centre_of_mass()[0], scene.body(body).linvel()[0]);
+    let (start, speed) = (
+        scene.body(body).centre_of_mass()[0],
+        scene.body(body).linvel()[0],
+    );
     let (mut time, mut before) = (f64::NAN, speed);
     for step in 0..sheet.n_steps(1400) {
         scene.step()?;
@@ -77,8 +94,18 @@ fn stop(sheet: &mut Sheet) -> Outcome {
     let way = scene.body(body).centre_of_mass()[0] - start;
     // The last step ends with the block at rest: its way is known to mu g dt²/2 = 2e-6 m. The lean is given back:
     // mu rho g h²/2G = 1e-5 m.
-    sheet.relative("time of the stop, from its speed (s)", speed / mu / G, time, 1e-3);
-    sheet.relative("distance of the stop, from its speed (m)", speed * speed / 2.0 / mu / G, way, 2e-5);
+    sheet.relative(
+        "time of the stop, from its speed (s)",
+        speed / mu / G,
+        time,
+        1e-3,
+    );
+    sheet.relative(
+        "distance of the stop, from its speed (m)",
+        speed * speed / 2.0 / mu / G,
+        way,
+        2e-5,
+    );
     Ok(())
 }
 
@@ -92,10 +119,20 @@ fn stick(sheet: &mut Sheet) -> Outcome {
     scene.steps(sheet.n_steps(n))?;
     let end = scene.body(body).centre_of_mass();
     let creep = (end[0] - start[0]).hypot(end[1] - start[1]);
-    sheet.absolute(format!("creep in {n} steps of sticking (m)"), 0.0, creep, 1e-9);
+    sheet.absolute(
+        format!("creep in {n} steps of sticking (m)"),
+        0.0,
+        creep,
+        1e-9,
+    );
     let [fx, fy] = scene.force_on(body);
     let gravity = scene.world.gravity;
     let tangent = f64::from(gravity.x) / f64::from(-gravity.y);
-    sheet.relative("friction over pressure, sticking (-)", tangent, -fx / fy, 1e-6);
+    sheet.relative(
+        "friction over pressure, sticking (-)",
+        tangent,
+        -fx / fy,
+        1e-6,
+    );
     Ok(())
 }

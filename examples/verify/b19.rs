@@ -48,20 +48,34 @@ struct State {
 fn advance(from: State, friction: Option<f64>, pull: f64, t: f64) -> State {
     let swing = |x: f64, v: f64, omega: f64, rest: f64| {
         let (sin, cos) = (omega * t).sin_cos();
-        [rest + (x - rest) * cos + v / omega * sin, v * cos - (x - rest) * omega * sin]
+        [
+            rest + (x - rest) * cos + v / omega * sin,
+            v * cos - (x - rest) * omega * sin,
+        ]
     };
     let [[x1, x2], [v1, v2]] = [from.x, from.v];
     let Some(friction) = friction else {
         let [x, v] = swing(x2, v2, (SPRING / MASS).sqrt(), x1 + pull / SPRING);
-        return State { x: [x1, x], v: [0.0, v] };
+        return State {
+            x: [x1, x],
+            v: [0.0, v],
+        };
     };
     let push = (pull + friction) / (2.0 * MASS);
     let (centre, speed) = (0.5 * (x1 + x2), 0.5 * (v1 + v2));
     let centre = centre + speed * t + 0.5 * push * t * t;
     let speed = speed + push * t;
     // m s'' = pull - friction - 2 k s
-    let [s, rate] = swing(x2 - x1, v2 - v1, (2.0 * SPRING / MASS).sqrt(), (pull - friction) / (2.0 * SPRING));
-    State { x: [centre - 0.5 * s, centre + 0.5 * s], v: [speed - 0.5 * rate, speed + 0.5 * rate] }
+    let [s, rate] = swing(
+        x2 - x1,
+        v2 - v1,
+        (2.0 * SPRING / MASS).sqrt(),
+        (pull - friction) / (2.0 * SPRING),
+    );
+    State {
+        x: [centre - 0.5 * s, centre + 0.5 * s],
+        v: [speed - 0.5 * rate, speed + 0.5 * rate],
+    }
 }
 
 /// The exact motion at the multiples of `DT`.
@@ -70,7 +84,11 @@ fn exact(n: usize) -> Vec<State> {
     let mut friction = None;
     let mut states = Vec::new();
     for step in 0..n {
-        let pull = if (step as f64 + 0.5) * DT < RELEASE { PULL } else { 0.0 };
+        let pull = if (step as f64 + 0.5) * DT < RELEASE {
+            PULL
+        } else {
+            0.0
+        };
         let mut left = DT;
         // No more than a few events fit into a step.
         for _ in 0..8 {
@@ -85,7 +103,11 @@ fn exact(n: usize) -> Vec<State> {
             let (mut low, mut high) = (0.0, left);
             for _ in 0..60 {
                 let middle = 0.5 * (low + high);
-                if over(&advance(state, friction, pull, middle)) > 1e-12 { high = middle } else { low = middle }
+                if over(&advance(state, friction, pull, middle)) > 1e-12 {
+                    high = middle
+                } else {
+                    low = middle
+                }
             }
             state = advance(state, friction, pull, high);
             left -= high;
@@ -118,28 +140,63 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let n = sheet.n_steps((END / DT) as usize);
     let mut ours = Vec::new();
     for step in 0..n {
-        let pull = if (step as f64 + 0.5) * DT < RELEASE { PULL } else { 0.0 };
+        let pull = if (step as f64 + 0.5) * DT < RELEASE {
+            PULL
+        } else {
+            0.0
+        };
         for node in [1, 2] {
             scene.bodies[body].set_nodal_force(node, [0.5 * pull, 0.0])?;
         }
         scene.step()?;
         let body = scene.body(body);
-        ours.push([[0, 3], [1, 2]].map(|pair| 0.5 * pair.map(|node| body.displacement(node)[0]).iter().sum::<f64>()));
+        ours.push([[0, 3], [1, 2]].map(|pair| {
+            0.5 * pair
+                .map(|node| body.displacement(node)[0])
+                .iter()
+                .sum::<f64>()
+        }));
     }
     let exact = exact(n);
     let largest = exact.iter().fold(0.0f64, |a, s| a.max(s.x[1].abs()));
     for (k, name) in ["left", "right"].into_iter().enumerate() {
-        let worst = ours.iter().zip(&exact).fold(0.0f64, |a, (x, s)| a.max((x[k] - s.x[k]).abs()));
-        sheet.absolute(format!("largest error of the {name} mass, of the largest way (-)"), 0.0, worst / largest, 1e-3);
+        let worst = ours
+            .iter()
+            .zip(&exact)
+            .fold(0.0f64, |a, (x, s)| a.max((x[k] - s.x[k]).abs()));
+        sheet.absolute(
+            format!("largest error of the {name} mass, of the largest way (-)"),
+            0.0,
+            worst / largest,
+            1e-3,
+        );
     }
     let last = exact.last().copied().unwrap_or_default();
-    sheet.relative("where the left mass is at 0.5 s (m)", last.x[0], ours.last().map_or(f64::NAN, |x| x[0]), 2e-3);
+    sheet.relative(
+        "where the left mass is at 0.5 s (m)",
+        last.x[0],
+        ours.last().map_or(f64::NAN, |x| x[0]),
+        2e-3,
+    );
     let at = |k: usize| (k + 1) as f64 * DT;
-    let mut figure = Figure::new("b19_motion", "B19: stick–slip oscillator", ["time (s)", "displacement (m)"]);
+    let mut figure = Figure::new(
+        "b19_motion",
+        "B19: stick–slip oscillator",
+        ["time (s)", "displacement (m)"],
+    );
     for (k, name) in ["left", "right"].into_iter().enumerate() {
-        let curve = exact.iter().enumerate().map(|(i, s)| [at(i), s.x[k]]).collect();
+        let curve = exact
+            .iter()
+            .enumerate()
+            .map(|(i, s)| [at(i), s.x[k]])
+            .collect();
         figure = figure.exact(&format!("exact, {name} mass"), curve);
-        let dots = ours.iter().enumerate().step_by(200).map(|(i, x)| [at(i), x[k]]).collect();
+        let dots = ours
+            .iter()
+            .enumerate()
+            .step_by(200)
+            .map(|(i, x)| [at(i), x[k]])
+            .collect();
         figure = figure.dots(&format!("{name} mass"), dots);
     }
     sheet.figure(figure);

@@ -66,14 +66,26 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         let span = [begin + FRONT, begin + CONTACT_TIME - FRONT];
         let [rms, _] = record.pressure_error(span, pressure);
         if begin == 1.0 {
-            sheet.at_most("rms error of the first pressure, of 300 Pa (-)", 5e-3, rms / 300.0);
+            sheet.at_most(
+                "rms error of the first pressure, of 300 Pa (-)",
+                5e-3,
+                rms / 300.0,
+            );
         } else {
             // It meets the vibration that the fronts of the first one left in the mesh.
-            sheet.tell(format!("1 + rms error of the {name} pressure, of 300 Pa (-)"), 1.0, 1.0 + rms / 300.0);
+            sheet.tell(
+                format!("1 + rms error of the {name} pressure, of 300 Pa (-)"),
+                1.0,
+                1.0 + rms / 300.0,
+            );
         }
     }
     // The pressure falls from 500 Pa within a few cells' time, and grazes the floor a little longer.
-    sheet.tell("first release (s)", TOUCH[0] + CONTACT_TIME, record.release(2.5));
+    sheet.tell(
+        "first release (s)",
+        TOUCH[0] + CONTACT_TIME,
+        record.release(2.5),
+    );
     let height = record.at(&record.bottom, PERIOD);
     sheet.relative("height after one period, 16/3 s (m)", HEIGHT, height, 1e-2);
     let end = n_periods as f64 * PERIOD - 1e-3;
@@ -93,21 +105,36 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
 }
 
 fn figures(record: &Record, sheet: &mut Sheet) {
-    let first: Vec<f64> = record.times.iter().copied().filter(|t| *t <= PERIOD).collect();
+    let first: Vec<f64> = record
+        .times
+        .iter()
+        .copied()
+        .filter(|t| *t <= PERIOD)
+        .collect();
     let n = first.len();
     let exact = first.iter().map(|&t| [t, pressure(t)]).collect();
     let axes = ["time (s)", "contact pressure (Pa)"];
     sheet.figure(
-        Figure::new("b2_pressure", "B2: pressure under the bouncing bar, first period", axes)
-            .within([0.0, 800.0])
-            .exact("exact", exact)
-            .line("trapezoidal, redistributed mass", record.curve(&record.pressure)[..n].to_vec()),
+        Figure::new(
+            "b2_pressure",
+            "B2: pressure under the bouncing bar, first period",
+            axes,
+        )
+        .within([0.0, 800.0])
+        .exact("exact", exact)
+        .line(
+            "trapezoidal, redistributed mass",
+            record.curve(&record.pressure)[..n].to_vec(),
+        ),
     );
     let periods = (0..=10).map(|k| [k as f64 * PERIOD, HEIGHT]).collect();
     let axes = ["time (s)", "height of the lower end (m)"];
     sheet.figure(
         Figure::new("b2_height", "B2: the bouncing bar over ten periods", axes)
             .exact("top of the exact motion", periods)
-            .line("trapezoidal, redistributed mass", record.curve(&record.bottom)),
+            .line(
+                "trapezoidal, redistributed mass",
+                record.curve(&record.bottom),
+            ),
     );
 }

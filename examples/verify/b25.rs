@@ -36,7 +36,9 @@ fn rise(
     place: [f64; 2],
     sheet: &Sheet,
 ) -> Result<f64, Box<dyn Error + Send + Sync>> {
-    let mesh = grid([n, n], kind, |[s, t]| [48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s)])?;
+    let mesh = grid([n, n], kind, |[s, t]| {
+        [48.0 * s, 44.0 * s + t * (44.0 - 28.0 * s)]
+    })?;
     let forces = traction(&mesh, kind, [0.0, pull], |[x, _]| x > 48.0 - 1e-9);
     // Tip load over deflection, against a quarter of the mass of density 1.
     let mut scene = still((material.young() / (24.0 * 360.0)).sqrt())?;
@@ -52,7 +54,11 @@ fn rise(
 
 pub fn run(sheet: &mut Sheet) -> Outcome {
     let stress = LinearElastic::plane_stress(1.0, 1.0 / 3.0).density(1.0);
-    let elements = [("QM6", CellKind::Quad4), ("T6", CellKind::Tri6), ("T3", CellKind::Tri3)];
+    let elements = [
+        ("QM6", CellKind::Quad4),
+        ("T6", CellKind::Tri6),
+        ("T3", CellKind::Tri3),
+    ];
     let mut figure = Figure::new(
         "b25_convergence",
         "B25: Cook's membrane, error of the rise",
@@ -65,14 +71,22 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
             let found = rise(kind, n, stress, 1.0 / 16.0, [48.0, 52.0], sheet)?;
             errors.push([n as f64, (found / EXACT - 1.0).abs()]);
             if n == 16 && kind != CellKind::Tri3 {
-                sheet.at_least(format!("rise, {name}, 16 x 16, of the exact (-)"), 0.99, found / EXACT);
+                sheet.at_least(
+                    format!("rise, {name}, 16 x 16, of the exact (-)"),
+                    0.99,
+                    found / EXACT,
+                );
             } else if n == 16 {
                 sheet.tell(format!("rise, {name}, 16 x 16 (m)"), EXACT, found);
             }
         }
         let order = (errors[1][1] / errors[2][1]).log2();
         // Re-entrant stress at the clamped corner holds the order below the elements' own of two.
-        sheet.tell(format!("order of convergence from 4 to 8, {name} (2: smooth)"), 2.0, order);
+        sheet.tell(
+            format!("order of convergence from 4 to 8, {name} (2: smooth)"),
+            2.0,
+            order,
+        );
         figure = figure.line(name, errors);
     }
     let strain = LinearElastic::plane_strain(70.0, 1.0 / 3.0).density(1.0);

@@ -31,7 +31,10 @@ const SHEAR: f64 = 5.0 / 6.0 * HEIGHT * YOUNG / (2.0 * (1.0 + NU));
 /// The load, and the weight per length (N, N/m).
 const LOAD: f64 = 1.0;
 
-fn beam(kind: CellKind, n: [usize; 2]) -> Result<(FlexBodyBuilder, Mesh), Box<dyn Error + Send + Sync>> {
+fn beam(
+    kind: CellKind,
+    n: [usize; 2],
+) -> Result<(FlexBodyBuilder, Mesh), Box<dyn Error + Send + Sync>> {
     let mesh = grid(n, kind, |[s, t]| [s, HEIGHT * t])?;
     let builder = FlexBodyBuilder::mesh(mesh.clone())
         .material(LinearElastic::plane_stress(YOUNG, NU).density(DENSITY))
@@ -41,10 +44,16 @@ fn beam(kind: CellKind, n: [usize; 2]) -> Result<(FlexBodyBuilder, Mesh), Box<dy
 }
 
 /// Deflections under the tip load and under the weight (m).
-fn deflections(kind: CellKind, n: [usize; 2], sheet: &Sheet) -> Result<[f64; 2], Box<dyn Error + Send + Sync>> {
+fn deflections(
+    kind: CellKind,
+    n: [usize; 2],
+    sheet: &Sheet,
+) -> Result<[f64; 2], Box<dyn Error + Send + Sync>> {
     let (builder, mesh) = beam(kind, n)?;
     let forces = traction(&mesh, kind, [0.0, -LOAD / HEIGHT], |[x, _]| x > 1.0 - 1e-9);
-    let weight = builder.clone().body_force([0.0, -LOAD / (DENSITY * HEIGHT)]);
+    let weight = builder
+        .clone()
+        .body_force([0.0, -LOAD / (DENSITY * HEIGHT)]);
     let mut found = [0.0; 2];
     for (found, builder) in found.iter_mut().zip([loaded(builder, forces), weight]) {
         let mut scene = still(3.2)?;
@@ -69,7 +78,9 @@ fn huang(omega: f64) -> f64 {
 /// The `k`-th root (Hz).
 fn frequency(k: usize) -> f64 {
     let step = 0.01;
-    let brackets = (1..).map(|i| f64::from(i) * step).filter(|&w| huang(w) * huang(w + step) < 0.0);
+    let brackets = (1..)
+        .map(|i| f64::from(i) * step)
+        .filter(|&w| huang(w) * huang(w + step) < 0.0);
     let mut low = brackets.take(k + 1).last().unwrap_or(0.0);
     let mut high = low + step;
     for _ in 0..60 {
@@ -87,9 +98,15 @@ fn frequency(k: usize) -> f64 {
 fn measured(k: usize, sheet: &Sheet) -> Result<f64, Box<dyn Error + Send + Sync>> {
     let wave = [1.875_104_07, 4.694_091_13][k];
     let share = [0.734_095_51, 1.018_467_32][k];
-    let shape = |x: f64| (wave * x).cosh() - (wave * x).cos() - share * ((wave * x).sinh() - (wave * x).sin());
+    let shape = |x: f64| {
+        (wave * x).cosh() - (wave * x).cos() - share * ((wave * x).sinh() - (wave * x).sin())
+    };
     let (builder, mesh) = beam(CellKind::Quad4, [40, 4])?;
-    let velocities: Vec<[f64; 2]> = mesh.nodes().iter().map(|&[x, _]| [0.0, 1e-3 * shape(x)]).collect();
+    let velocities: Vec<[f64; 2]> = mesh
+        .nodes()
+        .iter()
+        .map(|&[x, _]| [0.0, 1e-3 * shape(x)])
+        .collect();
     let flat: Vec<f64> = velocities.iter().flatten().copied().collect();
     let mut scene = Scene::new(1.0 / (400.0 * frequency(k)), Beta2::trapezoidal());
     let body = scene.add(builder.velocities(velocities))?;
@@ -103,7 +120,10 @@ fn measured(k: usize, sheet: &Sheet) -> Result<f64, Box<dyn Error + Send + Sync>
         }
         before = now;
     }
-    let span = passes.last().zip(passes.first()).map_or(f64::NAN, |(last, first)| last - first);
+    let span = passes
+        .last()
+        .zip(passes.first())
+        .map_or(f64::NAN, |(last, first)| last - first);
     Ok((passes.len() as f64 - 1.0) / span)
 }
 
@@ -118,23 +138,46 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         ["cells along the beam", "|error| (-)"],
     )
     .log();
-    for (name, kind) in [("QM6", CellKind::Quad4), ("T6", CellKind::Tri6), ("T3", CellKind::Tri3)] {
+    for (name, kind) in [
+        ("QM6", CellKind::Quad4),
+        ("T6", CellKind::Tri6),
+        ("T3", CellKind::Tri3),
+    ] {
         let mut errors = Vec::new();
         for n in [1, 2, 4] {
             let found = deflections(kind, [10 * n, n], sheet)?;
             errors.push([10.0 * n as f64, (found[0] / exact[0] - 1.0).abs()]);
             if n == 4 && kind != CellKind::Tri3 {
-                sheet.relative(format!("tip load, {name}, 40 x 4 (m)"), exact[0], found[0], 5e-3);
-                sheet.relative(format!("own weight, {name}, 40 x 4 (m)"), exact[1], found[1], 5e-3);
+                sheet.relative(
+                    format!("tip load, {name}, 40 x 4 (m)"),
+                    exact[0],
+                    found[0],
+                    5e-3,
+                );
+                sheet.relative(
+                    format!("own weight, {name}, 40 x 4 (m)"),
+                    exact[1],
+                    found[1],
+                    5e-3,
+                );
             } else if n == 4 {
-                sheet.tell(format!("tip load, {name}, 40 x 4: it locks (m)"), exact[0], found[0]);
+                sheet.tell(
+                    format!("tip load, {name}, 40 x 4: it locks (m)"),
+                    exact[0],
+                    found[0],
+                );
             }
         }
         figure = figure.line(name, errors);
     }
     for (k, name) in ["first", "second"].into_iter().enumerate() {
         let found = measured(k, sheet)?;
-        sheet.relative(format!("{name} frequency, QM6, 40 x 4 (Hz)"), frequency(k), found, 5e-3);
+        sheet.relative(
+            format!("{name} frequency, QM6, 40 x 4 (Hz)"),
+            frequency(k),
+            found,
+            5e-3,
+        );
     }
     sheet.figure(figure);
     Ok(())

@@ -21,6 +21,7 @@ use foil2d::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 const START: f64 = 1.5;
+const STEP: f64 = 5e-4;
 
 /// The complete elliptic integral of the first kind, by the arithmetic-geometric mean.
 fn elliptic_k(modulus: f64) -> f64 {
@@ -32,7 +33,7 @@ fn elliptic_k(modulus: f64) -> f64 {
 }
 
 pub fn run(sheet: &mut Sheet) -> Outcome {
-    let mut scene = Scene::new(1e-3, Beta2::trapezoidal()).with_gravity(0.0, -G);
+    let mut scene = Scene::new(STEP, Beta2::trapezoidal()).with_gravity(0.0, -G);
     let (width, length) = (0.1, 1.0);
     let builder = FlexBodyBuilder::rectangle([width, length], [2, 10])
         .material(LinearElastic::plane_stress(1e11, 0.3).density(1000.0))
@@ -49,11 +50,13 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let place = scene.body(body).position(hinge);
     let energy = |scene: &Scene| {
         let body = scene.body(body);
-        body.energy().kinetic + body.energy().elastic + g * body.mass() * (body.centre_of_mass()[1] - place[1] + arm)
+        body.energy().kinetic
+            + body.energy().elastic
+            + g * body.mass() * (body.centre_of_mass()[1] - place[1] + arm)
     };
     let at_start = energy(&scene);
     let (mut passes, mut drift, mut before, mut angles) = (Vec::new(), 0.0f64, START, Vec::new());
-    for step in 1..=sheet.n_steps((5.2 * exact / 1e-3) as usize) {
+    for step in 1..=sheet.n_steps((5.2 * exact / STEP) as usize) {
         scene.step()?;
         let angle = START + scene.body(body).angle();
         if before > 0.0 && angle <= 0.0 {
@@ -63,17 +66,39 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         drift = drift.max((energy(&scene) / at_start - 1.0).abs());
         angles.push([step as f64 * scene.dt(), angle]);
     }
-    let span = passes.last().zip(passes.first()).map_or(f64::NAN, |(last, first)| last - first);
-    sheet.relative("period of a flexible plate on a hinge (s)", exact, span / (passes.len() as f64 - 1.0), 1e-5);
+    let span = passes
+        .last()
+        .zip(passes.first())
+        .map_or(f64::NAN, |(last, first)| last - first);
+    sheet.relative(
+        "period of a flexible plate on a hinge (s)",
+        exact,
+        span / (passes.len() as f64 - 1.0),
+        1e-5,
+    );
     // The trapezoidal rule keeps a quadratic energy; that of gravity is not, and its error is of the second order.
-    sheet.absolute("largest change of energy over five periods (-)", 0.0, drift, 1e-5);
+    sheet.absolute(
+        "largest change of energy over five periods (-)",
+        0.0,
+        drift,
+        1e-5,
+    );
     let moved = scene.body(body).position(hinge);
-    sheet.absolute("the hinge moves by (m)", 0.0, (moved[0] - place[0]).hypot(moved[1] - place[1]), 1e-12);
+    sheet.absolute(
+        "the hinge moves by (m)",
+        0.0,
+        (moved[0] - place[0]).hypot(moved[1] - place[1]),
+        1e-12,
+    );
     let turns = (0..=5).map(|k| [f64::from(k) * exact, START]).collect();
     sheet.figure(
-        Figure::new("b32_angle", "B32: angle of the pendulum", ["time (s)", "angle (rad)"])
-            .line("flexible plate", angles)
-            .dots("exact turning points", turns),
+        Figure::new(
+            "b32_angle",
+            "B32: angle of the pendulum",
+            ["time (s)", "angle (rad)"],
+        )
+        .line("flexible plate", angles)
+        .dots("exact turning points", turns),
     );
     Ok(())
 }

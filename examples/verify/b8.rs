@@ -32,16 +32,40 @@ struct Impact {
 
 pub fn run(sheet: &mut Sheet) -> Outcome {
     let divisions = sheet.choose(vec![6, 12, 24], vec![6, 12]);
-    let mut figure = Figure::new("b8_force", "B8: force under the dropped disc", ["time (s)", "contact force (N)"]);
+    let mut figure = Figure::new(
+        "b8_force",
+        "B8: force under the dropped disc",
+        ["time (s)", "contact force (N)"],
+    );
     let (mut last, mut n_last) = (None::<Impact>, 0);
     for n in divisions {
         let impact = drop_disc(n, sheet)?;
-        sheet.absolute(format!("R/{n}: largest change of energy (-)"), 0.0, impact.energy_error, 1e-3);
-        sheet.absolute(format!("R/{n}: sideways momentum, of m v0 (-)"), 0.0, impact.sideways, 1e-10);
-        sheet.absolute(format!("R/{n}: impulse over change of momentum, less 1 (-)"), 0.0, impact.impulse_error, 1e-3);
+        sheet.absolute(
+            format!("R/{n}: largest change of energy (-)"),
+            0.0,
+            impact.energy_error,
+            1e-3,
+        );
+        sheet.absolute(
+            format!("R/{n}: sideways momentum, of m v0 (-)"),
+            0.0,
+            impact.sideways,
+            1e-10,
+        );
+        sheet.absolute(
+            format!("R/{n}: impulse over change of momentum, less 1 (-)"),
+            0.0,
+            impact.impulse_error,
+            1e-3,
+        );
         figure = figure.line(&format!("edges of R/{n}"), impact.force.clone());
         if let Some(coarse) = &last {
-            sheet.relative(format!("rebound over v0, R/{n} against R/{n_last} (-)"), coarse.rebound, impact.rebound, 1e-2);
+            sheet.relative(
+                format!("rebound over v0, R/{n} against R/{n_last} (-)"),
+                coarse.rebound,
+                impact.rebound,
+                1e-2,
+            );
         }
         (last, n_last) = (Some(impact), n);
     }
@@ -52,7 +76,9 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
 fn drop_disc(n: usize, sheet: &Sheet) -> Result<Impact, Box<dyn Error + Send + Sync>> {
     let rate = 100.0 * n as f64;
     let mut scene = Scene::new(1.0 / rate, Beta2::trapezoidal());
-    let floor = ColliderBuilder::cuboid(5.0, 0.5).translation(vector(0.0, -0.5)).friction(0.0);
+    let floor = ColliderBuilder::cuboid(5.0, 0.5)
+        .translation(vector(0.0, -0.5))
+        .friction(0.0);
     scene.world.insert_collider(floor, None);
     let disc = FlexBodyBuilder::disc(RADIUS, RADIUS / n as f64)
         .material(LinearElastic::plane_stress(1e6, 0.3).density(1000.0))
@@ -64,7 +90,8 @@ fn drop_disc(n: usize, sheet: &Sheet) -> Result<Impact, Box<dyn Error + Send + S
     let disc = scene.add(disc)?;
     let energy = |body: &FlexBody| body.energy().kinetic + body.energy().elastic;
     let (at_start, momentum) = (energy(scene.body(disc)), scene.body(disc).mass() * SPEED);
-    let (mut force, mut impulse, mut energy_error, mut sideways) = (Vec::new(), 0.0, 0.0f64, 0.0f64);
+    let (mut force, mut impulse, mut energy_error, mut sideways) =
+        (Vec::new(), 0.0, 0.0f64, 0.0f64);
     // Waves need 2 R / c = 32 ms to cross the disc; contact lasts 2 to 3 times that.
     for step in 1..=sheet.n_steps((0.2 * rate) as usize) {
         scene.step()?;

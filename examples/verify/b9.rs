@@ -49,7 +49,9 @@ fn patch(sheet: &mut Sheet, name: &str, n_lower: usize, n_upper: usize) -> Outco
         builder.material(material).friction(0.0)
     };
     let cell = 1.0 / n_lower as f64;
-    let mesh = grid([n_lower + 4, n_lower], CellKind::Quad4, |[s, t]| [-2.0 * cell + s * (1.0 + 4.0 * cell), t])?;
+    let mesh = grid([n_lower + 4, n_lower], CellKind::Quad4, |[s, t]| {
+        [-2.0 * cell + s * (1.0 + 4.0 * cell), t]
+    })?;
     let is_beside = |[x, y]: [f64; 2]| y == 1.0 && !(1e-6..=1.0 - 1e-6).contains(&x);
     let beside = traction(&mesh, CellKind::Quad4, [0.0, -PRESSURE], is_beside);
     let lower = block(FlexBodyBuilder::mesh(mesh)).pin_where(|[_, y]| y == 0.0, Pin::both());
@@ -63,18 +65,40 @@ fn patch(sheet: &mut Sheet, name: &str, n_lower: usize, n_upper: usize) -> Outco
     press(&mut scene, sheet, upper, &top, [0.0, -0.1])?;
     let force = scene.force_on(upper)[1];
     sheet.relative(format!("{name}: mean pressure (Pa)"), PRESSURE, force, 1e-2);
-    let sunk: Vec<f64> = (0..=n_upper).map(|node| scene.body(upper).displacement(node)[1]).collect();
+    let sunk: Vec<f64> = (0..=n_upper)
+        .map(|node| scene.body(upper).displacement(node)[1])
+        .collect();
     let mean = sunk.iter().sum::<f64>() / sunk.len() as f64;
-    sheet.relative(format!("{name}: mean sink of the interface (m)"), SINK, mean, 2e-2);
+    sheet.relative(
+        format!("{name}: mean sink of the interface (m)"),
+        SINK,
+        mean,
+        2e-2,
+    );
     let pressures = pressures(&scene);
-    let worst = pressures.iter().fold(0.0f64, |worst, p| worst.max((p[1] / PRESSURE - 1.0).abs()));
+    let worst = pressures
+        .iter()
+        .fold(0.0f64, |worst, p| worst.max((p[1] / PRESSURE - 1.0).abs()));
     if name == "matching" {
-        sheet.absolute(format!("{name}: largest error of a nodal pressure (-)"), 0.0, worst, 1e-9);
+        sheet.absolute(
+            format!("{name}: largest error of a nodal pressure (-)"),
+            0.0,
+            worst,
+            1e-9,
+        );
     } else {
-        sheet.tell(format!("{name}: 1 + largest error of a nodal pressure (-)"), 1.0, 1.0 + worst);
+        sheet.tell(
+            format!("{name}: 1 + largest error of a nodal pressure (-)"),
+            1.0,
+            1.0 + worst,
+        );
         sheet.figure(
             Figure::new(
-                if n_lower == 5 { "b9_pressure_5_7" } else { "b9_pressure_7_5" },
+                if n_lower == 5 {
+                    "b9_pressure_5_7"
+                } else {
+                    "b9_pressure_7_5"
+                },
                 format!("B9: nodal pressures, {name} cells"),
                 ["place (m)", "pressure (Pa)"],
             )
@@ -88,7 +112,10 @@ fn patch(sheet: &mut Sheet, name: &str, n_lower: usize, n_upper: usize) -> Outco
 /// Place and pressure of each contact: its force over the part of the face nearest to it.
 fn pressures(scene: &Scene) -> Vec<[f64; 2]> {
     let contacts = scene.flex.report().contacts();
-    let mut at: Vec<[f64; 2]> = contacts.iter().map(|c| [c.position[0], c.normal_force]).collect();
+    let mut at: Vec<[f64; 2]> = contacts
+        .iter()
+        .map(|c| [c.position[0], c.normal_force])
+        .collect();
     at.sort_by(|a, b| a[0].total_cmp(&b[0]));
     spread(&at)
 }
@@ -99,8 +126,16 @@ pub fn spread(forces: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let place = |k: usize| forces[k][0];
     (0..n)
         .map(|k| {
-            let left = if k > 0 { 0.5 * (place(k) - place(k - 1)) } else { 0.0 };
-            let right = if k + 1 < n { 0.5 * (place(k + 1) - place(k)) } else { 0.0 };
+            let left = if k > 0 {
+                0.5 * (place(k) - place(k - 1))
+            } else {
+                0.0
+            };
+            let right = if k + 1 < n {
+                0.5 * (place(k + 1) - place(k))
+            } else {
+                0.0
+            };
             [place(k), forces[k][1] / (left + right)]
         })
         .collect()

@@ -98,7 +98,10 @@ pub fn drop_bar(scheme: &Scheme, drop: &Drop) -> Result<Record, Box<dyn Error + 
         None,
     );
     let (kind, inertia) = match scheme.mass {
-        Mass::Redistributed => (MassKind::Lumped, ContactInertia::RedistributedAt(vec![0, 1])),
+        Mass::Redistributed => (
+            MassKind::Lumped,
+            ContactInertia::RedistributedAt(vec![0, 1]),
+        ),
         Mass::Kept => (MassKind::Lumped, ContactInertia::Kept),
         Mass::Consistent => (MassKind::Consistent, ContactInertia::Kept),
     };
@@ -133,7 +136,9 @@ pub fn drop_bar(scheme: &Scheme, drop: &Drop) -> Result<Record, Box<dyn Error + 
         record.n_pivots += report.n_pivots();
         let body = scene.body(bar);
         record.times.push(step as f64 * scene.dt());
-        record.pressure.push(body.total_contact_force()[1] / SECTION);
+        record
+            .pressure
+            .push(body.total_contact_force()[1] / SECTION);
         record.energy.push(energy(body) / at_start);
         record.bottom.push(body.position(0)[1]);
         record.velocity.push(body.linvel()[1]);
@@ -157,7 +162,11 @@ impl Record {
 
     /// Pairs of time and value, for a figure.
     pub fn curve(&self, values: &[f64]) -> Vec<[f64; 2]> {
-        self.times.iter().zip(values).map(|(&t, &v)| [t, v]).collect()
+        self.times
+            .iter()
+            .zip(values)
+            .map(|(&t, &v)| [t, v])
+            .collect()
     }
 
     /// End of the last step with a contact force before a time (s).

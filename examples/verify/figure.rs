@@ -92,7 +92,10 @@ impl Figure {
             [0.7 * low.max(1e-300), 1.4 * high.max(1e-299)]
         } else {
             let room = (0.05 * (high - low)).max(1e-12 + 1e-6 * high.abs());
-            [low - if axis == 1 { room } else { 0.0 }, high + if axis == 1 { room } else { 0.0 }]
+            [
+                low - if axis == 1 { room } else { 0.0 },
+                high + if axis == 1 { room } else { 0.0 },
+            ]
         }
     }
 
@@ -115,12 +118,24 @@ impl Figure {
             ($chart:expr) => {{
                 let mut chart = $chart;
                 let [x, y] = self.axes;
-                chart.configure_mesh().x_desc(x).y_desc(y).light_line_style(WHITE).draw()?;
+                chart
+                    .configure_mesh()
+                    .x_desc(x)
+                    .y_desc(y)
+                    .light_line_style(WHITE)
+                    .draw()?;
                 for (index, curve) in self.curves.iter().enumerate() {
-                    let colour = if curve.is_exact { BLACK.to_rgba() } else { Palette99::pick(index).to_rgba() };
+                    let colour = if curve.is_exact {
+                        BLACK.to_rgba()
+                    } else {
+                        Palette99::pick(index).to_rgba()
+                    };
                     // Far outside the chart a renderer may lose precision.
                     let (reach, low, high) = (y1 - y0, y0, y1);
-                    let points = curve.points.iter().filter(|p| p[0].is_finite() && p[1].is_finite());
+                    let points = curve
+                        .points
+                        .iter()
+                        .filter(|p| p[0].is_finite() && p[1].is_finite());
                     let points = points.map(|&[x, y]| (x, y.clamp(low - reach, high + reach)));
                     let shown = if curve.is_dotted {
                         chart.draw_series(points.map(|at| Circle::new(at, 3, colour.filled())))?

@@ -37,7 +37,11 @@ fn exact<const N: usize>([k, c, m]: Equation, t: f64) -> [f64; N] {
 fn error<const N: usize>(method: BetaM<N>, equation: Equation, n: usize) -> f64 {
     let dt = 1.0 / n as f64;
     let mut state: [f64; N] = exact(equation, 0.0);
-    let weight: f64 = equation.iter().zip(method.weights(dt)).map(|(w, b)| w * b).sum();
+    let weight: f64 = equation
+        .iter()
+        .zip(method.weights(dt))
+        .map(|(w, b)| w * b)
+        .sum();
     for _ in 0..n {
         method.predict_in_place(dt, state.each_mut().map(std::slice::from_mut));
         let residual: f64 = equation.iter().zip(&state).map(|(w, q)| w * q).sum();
@@ -58,7 +62,9 @@ fn judge<const N: usize>(
     let found = (error(method, equation, 200) / error(method, equation, 400)).log2();
     sheet.absolute(format!("order, {name}"), order, found, 0.05);
     let steps = [10, 20, 50, 100, 200, 400];
-    steps.map(|n| [1.0 / n as f64, error(method, equation, n)]).to_vec()
+    steps
+        .map(|n| [1.0 / n as f64, error(method, equation, n)])
+        .to_vec()
 }
 
 pub fn run(sheet: &mut Sheet) -> Outcome {
@@ -83,7 +89,11 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let members = [
         ("Beta-3, Houbolt", Beta3::houbolt(), 2.0),
         ("Beta-3, Wilson 1.4", Beta3::wilson(1.4)?, 2.0),
-        ("Beta-3, beta1 = beta2 - 1/6", Beta3::third_order(0.3, 0.8)?, 3.0),
+        (
+            "Beta-3, beta1 = beta2 - 1/6",
+            Beta3::third_order(0.3, 0.8)?,
+            3.0,
+        ),
     ];
     for (name, member, order) in members {
         let points = judge(sheet, name, member, OSCILLATOR, order);

@@ -36,42 +36,83 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let linear = multiplier_errors(Beta2::linear_acceleration(), n)?;
     // The first steps still hold the other root, which falls by 14 each step.
     let growth = ratio(&linear, 6);
-    sheet.relative("growth, linear acceleration (-)", -2.0 - 3f64.sqrt(), growth, 1e-2);
+    sheet.relative(
+        "growth, linear acceleration (-)",
+        -2.0 - 3f64.sqrt(),
+        growth,
+        1e-2,
+    );
 
     let trapezoidal = multiplier_errors(Beta2::trapezoidal(), sheet.n_steps(200))?;
-    let alternates = trapezoidal.windows(2).skip(3).all(|pair| pair[0] * pair[1] < 0.0);
-    sheet.absolute("trapezoidal alternates (1: in every step)", 1.0, f64::from(u8::from(alternates)), 0.0);
-    let slope = |from: usize| trapezoidal.get(from..from + 2).map_or(f64::NAN, |p| p[1].abs() - p[0].abs());
-    sheet.relative("trapezoidal: growth per step, late over early (-)", 1.0, slope(190) / slope(10), 1e-2);
+    let alternates = trapezoidal
+        .windows(2)
+        .skip(3)
+        .all(|pair| pair[0] * pair[1] < 0.0);
+    sheet.absolute(
+        "trapezoidal alternates (1: in every step)",
+        1.0,
+        f64::from(u8::from(alternates)),
+        0.0,
+    );
+    let slope = |from: usize| {
+        trapezoidal
+            .get(from..from + 2)
+            .map_or(f64::NAN, |p| p[1].abs() - p[0].abs())
+    };
+    sheet.relative(
+        "trapezoidal: growth per step, late over early (-)",
+        1.0,
+        slope(190) / slope(10),
+        1e-2,
+    );
 
     let bounded = multiplier_errors(Beta2::new(1.0, 0.5)?, sheet.n_steps(200))?;
     let largest = |part: &[f64]| part.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-    let late = largest(bounded.get(180..).unwrap_or(&[])) / largest(bounded.get(2..22).unwrap_or(&[]));
+    let late =
+        largest(bounded.get(180..).unwrap_or(&[])) / largest(bounded.get(2..22).unwrap_or(&[]));
     sheet.relative("(1, 1/2): size, late over early (-)", 1.0, late, 1e-2);
     beside_one_dimension(sheet)?;
     let axes = ["step", "|error of the multiplier| over the first (-)"];
     let curve = |errors: &[f64]| {
         let relative = errors.iter().map(|e| (e / errors[0]).abs());
-        relative.enumerate().map(|(k, e)| [k as f64 + 1.0, e]).take(12).collect()
+        relative
+            .enumerate()
+            .map(|(k, e)| [k as f64 + 1.0, e])
+            .take(12)
+            .collect()
     };
     sheet.figure(
-        Figure::new("plain_growth", "multipliers of a node with mass in lasting contact, plain (C.5)", axes)
-            .log()
-            .exact("3.732^n", (1..=12).map(|k| [f64::from(k), (2.0 + 3f64.sqrt()).powi(k - 1)]).collect())
-            .dots("linear acceleration", curve(&linear))
-            .dots("trapezoidal", curve(&trapezoidal))
-            .dots("(1, 1/2)", curve(&bounded)),
+        Figure::new(
+            "plain_growth",
+            "multipliers of a node with mass in lasting contact, plain (C.5)",
+            axes,
+        )
+        .log()
+        .exact(
+            "3.732^n",
+            (1..=12)
+                .map(|k| [f64::from(k), (2.0 + 3f64.sqrt()).powi(k - 1)])
+                .collect(),
+        )
+        .dots("linear acceleration", curve(&linear))
+        .dots("trapezoidal", curve(&trapezoidal))
+        .dots("(1, 1/2)", curve(&bounded)),
     );
     Ok(())
 }
 
 /// Quotient of two successive errors; NaN where there are none.
 fn ratio(errors: &[f64], at: usize) -> f64 {
-    errors.get(at..at + 2).map_or(f64::NAN, |pair| pair[1] / pair[0])
+    errors
+        .get(at..at + 2)
+        .map_or(f64::NAN, |pair| pair[1] / pair[0])
 }
 
 /// Contact force less the static one, at the end of each step (N).
-fn multiplier_errors(integrator: Beta2, n: usize) -> Result<Vec<f64>, Box<dyn Error + Send + Sync>> {
+fn multiplier_errors(
+    integrator: Beta2,
+    n: usize,
+) -> Result<Vec<f64>, Box<dyn Error + Send + Sync>> {
     const FORCE: f64 = 10.0;
     let mut scene = Scene::new(0.01, integrator).with_impact(ImpactTreatment::Plain);
     scene.ground(0.0);
@@ -121,9 +162,19 @@ fn beside_one_dimension(sheet: &mut Sheet) -> Outcome {
     let theirs = one_dimensional(&Drop { dt, ..drop });
     let pairs = ours.pressure.iter().zip(&theirs);
     let worst = pairs.fold(0.0f64, |worst, (a, b)| worst.max((a - b).abs()));
-    sheet.absolute("B1, largest difference to a program in 1-D, of 300 Pa (-)", 0.0, worst / 300.0, 1e-3);
+    sheet.absolute(
+        "B1, largest difference to a program in 1-D, of 300 Pa (-)",
+        0.0,
+        worst / 300.0,
+        1e-3,
+    );
     let highest = theirs.iter().fold(0.0f64, |a, &b| a.max(b));
-    sheet.relative("B1, highest multiplier of those steps over 300 Pa (-)", highest / 300.0, ours.pressure.iter().fold(0.0f64, |a, &b| a.max(b)) / 300.0, 1e-3);
+    sheet.relative(
+        "B1, highest multiplier of those steps over 300 Pa (-)",
+        highest / 300.0,
+        ours.pressure.iter().fold(0.0f64, |a, &b| a.max(b)) / 300.0,
+        1e-3,
+    );
     Ok(())
 }
 
@@ -137,15 +188,25 @@ fn one_dimensional(drop: &Drop) -> Vec<f64> {
         let entry = |i: usize| if i == 0 || i == n - 1 { end } else { 2.0 * end };
         let next = |i: usize| if i + 1 < n { x[i + 1] } else { 0.0 };
         let last = |i: usize| if i > 0 { x[i - 1] } else { 0.0 };
-        (0..n).map(|i| entry(i) * x[i] + off * (last(i) + next(i))).collect()
+        (0..n)
+            .map(|i| entry(i) * x[i] + off * (last(i) + next(i)))
+            .collect()
     };
     let (m, k) = ([2.0 * mass, mass], [spring, -spring]);
     let a = [m[0] + b0 * k[0], m[1] + b0 * k[1]];
     let solve = |mut x: Vec<f64>| -> Vec<f64> {
         let mut upper = vec![0.0; n];
         for i in 0..n {
-            let (above, before) = if i > 0 { (upper[i - 1], x[i - 1]) } else { (0.0, 0.0) };
-            let own = if i == 0 || i == n - 1 { a[0] } else { 2.0 * a[0] };
+            let (above, before) = if i > 0 {
+                (upper[i - 1], x[i - 1])
+            } else {
+                (0.0, 0.0)
+            };
+            let own = if i == 0 || i == n - 1 {
+                a[0]
+            } else {
+                2.0 * a[0]
+            };
             let pivot = own - a[1] * above;
             upper[i] = a[1] / pivot;
             x[i] = (x[i] - a[1] * before) / pivot;

@@ -10,7 +10,11 @@ pub const G: f64 = 9.81;
 
 /// `single` where rapier's own poses are `f32`, `double` in the `f64` build.
 pub fn by_precision(single: f64, double: f64) -> f64 {
-    if cfg!(feature = "f64") { double } else { single }
+    if cfg!(feature = "f64") {
+        double
+    } else {
+        single
+    }
 }
 
 /// A vector in rapier's precision.

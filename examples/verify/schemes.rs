@@ -31,7 +31,12 @@ pub fn schemes() -> Result<Vec<Scheme>, IntegratorError> {
                 // A massless node vibrates at an infinite frequency, and this dt is too long for the consistent mass: a
                 // conditionally stable member can have neither.
                 if mass == Mass::Kept || integrator.is_unconditionally_stable() {
-                    schemes.push(Scheme { name, integrator, impact, mass });
+                    schemes.push(Scheme {
+                        name,
+                        integrator,
+                        impact,
+                        mass,
+                    });
                 }
             }
         }
@@ -48,7 +53,10 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         ["time (s)", "energy, of the initial (-)"],
     )
     .within([0.0, 2.0])
-    .exact("exact", vec![[0.0, 1.0], [n_periods as f64 * b2::PERIOD, 1.0]]);
+    .exact(
+        "exact",
+        vec![[0.0, 1.0], [n_periods as f64 * b2::PERIOD, 1.0]],
+    );
     for scheme in schemes()? {
         let mut one = b1::drop(0.0);
         one.n_steps = sheet.n_steps(one.n_steps);
@@ -59,7 +67,11 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         let _ = writeln!(table, "{}", line(&scheme, &impact, &bounces));
         judge(sheet, &scheme, &impact);
         if scheme.name == "trapezoidal" || scheme.mass == Mass::Redistributed {
-            let sparse = bounces.curve(&bounces.energy).into_iter().step_by(20).collect();
+            let sparse = bounces
+                .curve(&bounces.energy)
+                .into_iter()
+                .step_by(20)
+                .collect();
             best = best.line(&full_name(&scheme), sparse);
         }
     }
@@ -70,7 +82,11 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
 }
 
 fn full_name(scheme: &Scheme) -> String {
-    let impact = if scheme.impact == Plain { "plain" } else { "stabilized" };
+    let impact = if scheme.impact == Plain {
+        "plain"
+    } else {
+        "stabilized"
+    };
     let mass = match scheme.mass {
         Mass::Redistributed => "moved mass",
         Mass::Kept => "lumped mass",
@@ -86,7 +102,19 @@ fn heading(n_periods: usize) -> String {
          energy. From B2: energy after {n_periods} periods, height after one period. Both: deepest overlap, most Newton\n\
          iterations of a step, pivots per step, time of a step.\n\n\
          {:<42} {:>8} {:>8} {:>6} {:>8} {:>8} {:>8} {:>9} {:>7} {:>8} {:>3} {:>5} {:>5}\n",
-        "scheme", "rms", "peak", "max p", "release", "rebound", "E/E0", "E/E0 end", "h(16/3)", "overlap", "N", "piv", "us",
+        "scheme",
+        "rms",
+        "peak",
+        "max p",
+        "release",
+        "rebound",
+        "E/E0",
+        "E/E0 end",
+        "h(16/3)",
+        "overlap",
+        "N",
+        "piv",
+        "us",
     )
 }
 
@@ -96,7 +124,9 @@ fn highest(record: &Record) -> f64 {
 }
 
 fn line(scheme: &Scheme, impact: &Record, bounces: &Record) -> String {
-    let [rms, peak] = impact.pressure_error(b1::SPAN, |_| b1::PLATEAU).map(|e| e / b1::PLATEAU);
+    let [rms, peak] = impact
+        .pressure_error(b1::SPAN, |_| b1::PLATEAU)
+        .map(|e| e / b1::PLATEAU);
     let release = (impact.release(2.0) - b1::TOUCH - CONTACT_TIME) * b1::RATE;
     let steps = (impact.times.len() + bounces.times.len()).max(1) as f64;
     format!(
@@ -111,7 +141,11 @@ fn line(scheme: &Scheme, impact: &Record, bounces: &Record) -> String {
         impact.n_newton.max(bounces.n_newton),
         (impact.n_pivots + bounces.n_pivots) as f64 / steps,
         bounces.microseconds,
-        bounces.times.last().filter(|_| bounces.ended.is_some()).map_or(String::new(), |t| format!("  ended at {t:.1} s")),
+        bounces
+            .times
+            .last()
+            .filter(|_| bounces.ended.is_some())
+            .map_or(String::new(), |t| format!("  ended at {t:.1} s")),
     )
 }
 

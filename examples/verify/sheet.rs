@@ -66,31 +66,63 @@ impl Sheet {
 
     /// `full`, or `reduced` where the book is run at a reduced size.
     pub fn choose<T>(&self, full: T, reduced: T) -> T {
-        if self.size == Size::Full { full } else { reduced }
+        if self.size == Size::Full {
+            full
+        } else {
+            reduced
+        }
     }
 
     /// Judges `|obtained / expected - 1|`.
-    pub fn relative(&mut self, quantity: impl Into<String>, expected: f64, obtained: f64, tolerance: f64) {
+    pub fn relative(
+        &mut self,
+        quantity: impl Into<String>,
+        expected: f64,
+        obtained: f64,
+        tolerance: f64,
+    ) {
         let error = obtained / expected - 1.0;
-        self.push(quantity.into(), [expected, obtained, error], Some(tolerance));
+        self.push(
+            quantity.into(),
+            [expected, obtained, error],
+            Some(tolerance),
+        );
     }
 
     /// Judges `|obtained - expected|`.
-    pub fn absolute(&mut self, quantity: impl Into<String>, expected: f64, obtained: f64, tolerance: f64) {
+    pub fn absolute(
+        &mut self,
+        quantity: impl Into<String>,
+        expected: f64,
+        obtained: f64,
+        tolerance: f64,
+    ) {
         let error = obtained - expected;
-        self.push(quantity.into(), [expected, obtained, error], Some(tolerance));
+        self.push(
+            quantity.into(),
+            [expected, obtained, error],
+            Some(tolerance),
+        );
     }
 
     /// Asks for `obtained >= bound`.
     pub fn at_least(&mut self, quantity: impl Into<String>, bound: f64, obtained: f64) {
         // `max` would turn a NaN into a pass.
-        let error = if obtained >= bound { 0.0 } else { obtained - bound };
+        let error = if obtained >= bound {
+            0.0
+        } else {
+            obtained - bound
+        };
         self.push(quantity.into(), [bound, obtained, error], Some(0.0));
     }
 
     /// Asks for `obtained <= bound`.
     pub fn at_most(&mut self, quantity: impl Into<String>, bound: f64, obtained: f64) {
-        let error = if obtained <= bound { 0.0 } else { obtained - bound };
+        let error = if obtained <= bound {
+            0.0
+        } else {
+            obtained - bound
+        };
         self.push(quantity.into(), [bound, obtained, error], Some(0.0));
     }
 
@@ -120,7 +152,12 @@ impl Sheet {
         row.map_or(f64::NAN, |row| row.obtained)
     }
 
-    fn push(&mut self, quantity: String, [expected, obtained, error]: [f64; 3], tolerance: Option<f64>) {
+    fn push(
+        &mut self,
+        quantity: String,
+        [expected, obtained, error]: [f64; 3],
+        tolerance: Option<f64>,
+    ) {
         let is_judged = !matches!(self.size, Size::Steps(_));
         self.rows.push(Row {
             case: self.case,

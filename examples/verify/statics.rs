@@ -46,12 +46,20 @@ pub fn grid(
     map: impl Fn([f64; 2]) -> [f64; 2],
 ) -> Result<Mesh, BuildError> {
     let row = n[0] + 1;
-    let place = |k: usize| map([(k % row) as f64 / n[0] as f64, (k / row) as f64 / n[1] as f64]);
+    let place = |k: usize| {
+        map([
+            (k % row) as f64 / n[0] as f64,
+            (k / row) as f64 / n[1] as f64,
+        ])
+    };
     let nodes: Vec<[f64; 2]> = (0..row * (n[1] + 1)).map(place).collect();
     let quads = (0..n[0] * n[1]).map(|cell| {
         let (i, j) = (cell % n[0], cell / n[0]);
         let corner = j * row + i;
-        ([corner, corner + 1, corner + row + 1, corner + row], (i + j) % 2)
+        (
+            [corner, corner + 1, corner + row + 1, corner + row],
+            (i + j) % 2,
+        )
     });
     if kind == CellKind::Quad4 {
         let cells: Vec<[usize; 4]> = quads.map(|(quad, _)| quad).collect();
@@ -63,7 +71,11 @@ pub fn grid(
     });
     let cells: Vec<[usize; 3]> = halves.collect();
     let mesh = Mesh::from_cells(nodes, CellKind::Tri3, &cells)?;
-    Ok(if kind == CellKind::Tri6 { mesh.to_tri6()? } else { mesh })
+    Ok(if kind == CellKind::Tri6 {
+        mesh.to_tri6()?
+    } else {
+        mesh
+    })
 }
 
 /// Nodal forces of a uniform traction along the straight boundary sides whose nodes are all `chosen`.
@@ -84,12 +96,18 @@ pub fn traction(
         _ => (1, &[0.5, 0.5]),
     };
     for start in (0..nodes.len()).step_by(stride) {
-        let side: Vec<usize> = (0..=stride).map(|k| nodes[(start + k) % nodes.len()]).collect();
+        let side: Vec<usize> = (0..=stride)
+            .map(|k| nodes[(start + k) % nodes.len()])
+            .collect();
         if side.iter().all(|&node| chosen(at(node))) {
             let [a, b] = [at(side[0]), at(side[stride])];
             let length = (b[0] - a[0]).hypot(b[1] - a[1]);
             let pull = |share: f64| traction.map(|t| t * share * length);
-            forces.extend(side.iter().zip(shares).map(|(&node, &share)| (node, pull(share))));
+            forces.extend(
+                side.iter()
+                    .zip(shares)
+                    .map(|(&node, &share)| (node, pull(share))),
+            );
         }
     }
     forces
@@ -97,7 +115,7 @@ pub fn traction(
 
 /// Adds nodal forces to a description.
 pub fn loaded(builder: FlexBodyBuilder, forces: Vec<(usize, [f64; 2])>) -> FlexBodyBuilder {
-    forces
-        .into_iter()
-        .fold(builder, |builder, (node, force)| builder.nodal_force(node, force))
+    forces.into_iter().fold(builder, |builder, (node, force)| {
+        builder.nodal_force(node, force)
+    })
 }
