@@ -13,7 +13,7 @@
 //! Excellent: acceleration, friction and creep to 1e-6 or better, over 100,000 steps of sticking.
 
 use super::Outcome;
-use super::scene::{G, Scene, by_precision};
+use super::scene::{G, Scene};
 use super::sheet::Sheet;
 use foil2d::prelude::*;
 use std::error::Error;
@@ -63,7 +63,7 @@ fn slide(sheet: &mut Sheet) -> Outcome {
             format!("acceleration of the slide, {rate} Hz (m/s²)"),
             exact,
             found,
-            by_precision(1e-6, 1e-9),
+            1e-6,
         );
     }
     Ok(())

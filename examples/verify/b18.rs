@@ -12,7 +12,7 @@
 //! contact, and its surface is a polygon of 100 segments; positions are rapier's.
 
 use super::Outcome;
-use super::scene::{G, Scene, by_precision, vector};
+use super::scene::{G, Scene, vector};
 use super::sheet::Sheet;
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
@@ -66,7 +66,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
             ]
         };
         let name = if rolls { "rolls" } else { "slips" };
-        let tolerance = by_precision(2e-6, 1e-6);
+        let tolerance = 1e-6;
         sheet.relative(
             format!("acceleration, {name} (m/s²)"),
             exact[0],
