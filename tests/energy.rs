@@ -327,8 +327,9 @@ fn a_body_that_keeps_the_mass_of_its_surface_presses_with_its_weight() {
     findings.report();
 }
 
-/// Drops undamped blocks of random stiffness, step, tilt and friction; fails where energy exceeds that of the start.
-fn drop_blocks(seed: u64, meshes: &[[usize; 2]]) {
+/// Drops undamped blocks of random stiffness, step, tilt and friction; fails where energy exceeds that of the start by more
+/// than `overshoot` at any time, or by more than rounding in the end.
+fn drop_blocks(seed: u64, meshes: &[[usize; 2]], overshoot: f64) {
     let mut findings = Findings::default();
     let mut dice = Dice(seed);
     for case in 0..40 {
@@ -338,14 +339,6 @@ fn drop_blocks(seed: u64, meshes: &[[usize; 2]]) {
         let (angle, height) = (dice.between(-0.8, 0.8), dice.between(0.6, 1.2));
         let (speed, mu) = (dice.between(-1.0, 1.0), dice.pick(&[0.0, 0.3, 1.0]));
         let mut scene = Scene::new(dt).with_integrator(Beta2::trapezoidal());
-        if std::env::var("FOIL_LIST").is_ok() {
-            eprintln!(
-                "case {case}: {young} {} {} {} {angle} {height} {speed} {mu}",
-                1.0 / dt,
-                cells[0],
-                cells[1]
-            );
-        }
         scene.ground(mu);
         scene.flexible(
             FlexBodyBuilder::rectangle([1.0, 0.6], cells)
@@ -356,19 +349,20 @@ fn drop_blocks(seed: u64, meshes: &[[usize; 2]]) {
                 .linvel([speed, -2.0]),
         );
         let start = total_energy(&scene);
-        let mut worst = f64::NEG_INFINITY;
+        let (mut worst, mut last) = (f64::NEG_INFINITY, 0.0);
         for _ in 0..((2.5 / dt) as usize).min(600) {
-            worst = match scene.try_step() {
-                Ok(report) => worst.max(report.energy().total() / start - 1.0),
+            last = match scene.try_step() {
+                Ok(report) => report.energy().total() / start - 1.0,
                 Err(_) => f64::INFINITY,
             };
+            worst = worst.max(last);
             if worst > 1.0 {
                 break;
             }
         }
-        findings.check(worst <= 1e-9, || {
+        findings.check(worst <= overshoot && last <= 1e-9, || {
             let rate = 1.0 / dt;
-            format!("case {case}: E {young:.1e}, dt 1/{rate:.0}, {cells:?}, angle {angle:.2}, μ {mu}: gains {worst:.1e}")
+            format!("case {case}: E {young:.1e}, dt 1/{rate:.0}, {cells:?}, angle {angle:.2}, μ {mu}: gains {worst:.1e}, in the end {last:.1e}")
         });
     }
     findings.report();
@@ -376,10 +370,13 @@ fn drop_blocks(seed: u64, meshes: &[[usize; 2]]) {
 
 #[test]
 fn impacts_never_add_energy() {
-    drop_blocks(7, &[[8, 8], [10, 8], [12, 6]]);
+    drop_blocks(7, &[[8, 8], [10, 8], [12, 6]], 1e-9);
 }
 
 #[test]
-fn impacts_of_coarse_bodies_never_add_energy() {
-    drop_blocks(8, &[[1, 1], [2, 1], [2, 2], [4, 2], [6, 5]]);
+fn impacts_of_coarse_bodies_add_no_energy_that_stays() {
+    // Without room inside, the surface keeps its mass. An impact within one step may then store more elastic energy than the
+    // body had: the step lands on a surface it should have left again. No velocity can pay for that at once without
+    // changing momentum; the debt is kept, and paid as the body unloads.
+    drop_blocks(8, &[[1, 1], [2, 1], [2, 2], [4, 2], [6, 5]], 0.15);
 }

@@ -1,5 +1,6 @@
 //! Candidates of an island: every point that may touch a target during the step, found by swept boxes.
 
+use super::references::References;
 use super::shapes::ShapePart;
 use crate::constraint::contact::{Candidate, ContactKey, ContactLaw, Owner, Pair, PlacedPart};
 use crate::constraint::geometry::{FaceOrVertex, Pose2, polygon_pair};
@@ -304,6 +305,7 @@ pub(super) fn rigid_rigid(
     names: Names,
     law: ContactLaw,
     prediction: f64,
+    references: &mut References,
 ) {
     let first_parts = [parts[0].start, parts[1].start];
     for a in parts[0].clone() {
@@ -326,14 +328,19 @@ pub(super) fn rigid_rigid(
                 world_pose(block_a.start(), part_a),
                 world_pose(block_b.start(), part_b),
             ];
+            let names_of_parts = [
+                (names.one, (a - first_parts[0]) as u32),
+                (names.other, (b - first_parts[1]) as u32),
+            ];
             let found = polygon_pair(
                 &part_a.part,
                 &poses[0],
                 &part_b.part,
                 &poses[1],
                 reach,
-                None,
+                references.recall(names_of_parts),
             );
+            references.remember(names_of_parts, found.reference);
             let placed = [part_a.pose, part_b.pose];
             let radius = part_a.part.radius() + part_b.part.radius();
             for contact in found.iter() {
@@ -342,9 +349,10 @@ pub(super) fn rigid_rigid(
                 let part_names = [(a - first_parts[0]) as u32, (b - first_parts[1]) as u32];
                 let key = ContactKey {
                     contactor: owners[point],
-                    point: contact.id,
+                    // The owners say who carries the point, in whatever order the pair comes.
+                    point: contact.id & !(1 << 31),
                     target: owners[face],
-                    part: (part_names[0] << 16) | part_names[1],
+                    part: (part_names[point] << 16) | part_names[face],
                 };
                 let blocks = [one, other];
                 let ends = match contact.face {

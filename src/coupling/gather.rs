@@ -7,6 +7,7 @@ use super::reading::{
     GatherError, at_rest, is_held_load, is_held_motion, law_of, load_of, offset_of, owner_of,
     prescribed_block,
 };
+use super::references::References;
 use super::sets::RapierSets;
 use super::shapes::{ShapeCache, pose_of};
 use crate::body::FlexBodySet;
@@ -33,6 +34,7 @@ pub(crate) struct Gatherer {
     /// One per slot of the flexible set.
     pool: Vec<Option<Box<FlexBlock>>>,
     shapes: ShapeCache,
+    references: References,
     placed: HashMap<ColliderHandle, PlacedCollider>,
     block_of_body: HashMap<RigidBodyHandle, usize>,
     flex_blocks: HashMap<usize, usize>,
@@ -59,6 +61,15 @@ impl Gatherer {
             .flatten()
             .map(|block| block.n_factorizations())
             .sum()
+    }
+
+    /// Keeps the reference faces noted since the last call, or with `false` throws them away.
+    pub fn turn_over(&mut self, keeps: bool) {
+        if keeps {
+            self.references.turn_over();
+        } else {
+            self.references.discard_notes();
+        }
     }
 
     /// The rebuildable half of a body, if it took part in a step.
@@ -294,7 +305,15 @@ impl Gatherer {
                 let law = law_of(sets.colliders, one, other)?;
                 let blocks = [first.block, second.block];
                 let parts = [first.parts, second.parts];
-                candidates::rigid_rigid(island, blocks, parts, names, law, settings.prediction);
+                candidates::rigid_rigid(
+                    island,
+                    blocks,
+                    parts,
+                    names,
+                    law,
+                    settings.prediction,
+                    &mut self.references,
+                );
             }
             _ => {}
         }

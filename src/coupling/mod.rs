@@ -10,6 +10,7 @@ mod hand_back;
 mod masters;
 mod nearby;
 mod reading;
+mod references;
 mod sets;
 mod shapes;
 

@@ -17,6 +17,7 @@ pub mod element;
 pub mod frequency;
 pub mod mass;
 pub mod mass_matrix;
+mod massless;
 pub mod material;
 pub mod mesh;
 pub mod model;

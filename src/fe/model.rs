@@ -4,8 +4,9 @@
 
 use super::element::{Element, ElementError, MAX_NODES, default_element};
 use super::frequency::frequency_bound;
-use super::mass::{self, MassError};
+use super::mass::MassError;
 pub use super::mass_matrix::{MassKind, MassMatrix};
+use super::massless::{massive_support, redistribute};
 use super::material::{Material, Rayleigh};
 use super::mesh::{Cell, Mesh};
 use super::recovery::{CellStress, Stress, smooth_to_nodes};
@@ -390,61 +391,4 @@ fn add_scalar_cell(matrix: &mut BlockMatrix, nodes: &[usize], cell: &[f64]) {
             }
         }
     }
-}
-
-/// Moves the mass of massless nodes inwards, unless a free body would turn or balance differently by it: the nodes inside
-/// of a coarse mesh may be too few to carry its centre and polar moment. Then all mass stays where it is.
-fn redistribute(
-    description: &mut ModelDescription,
-    lumped: &mut [f64],
-    pattern: &BlockMatrix,
-) -> Result<(), MassError> {
-    let nodes: Vec<[f64; 2]> = description
-        .rest_positions
-        .chunks_exact(2)
-        .map(|p| [p[0], p[1]])
-        .collect();
-    let is_held = |node: usize| description.held.get(node).copied().unwrap_or(false);
-    let neighbours: Vec<Vec<usize>> = (0..nodes.len())
-        .map(|node| {
-            let all = pattern.neighbours(node).iter().map(|&n| n as usize);
-            all.filter(|&n| n != node && !is_held(n)).collect()
-        })
-        .collect();
-    let before = lumped.to_vec();
-    let found = mass::redistribute(&nodes, lumped, &description.massless, |node| {
-        &neighbours[node]
-    })?;
-    let is_free = !(0..nodes.len()).any(is_held);
-    if is_free && !(found.keeps_centre && found.keeps_polar_moment) {
-        lumped.copy_from_slice(&before);
-        description.massless.fill(false);
-    }
-    Ok(())
-}
-
-/// Nearest massive nodes of every massless one, ring by ring over the mesh.
-fn massive_support(massless: &[bool], pattern: &BlockMatrix) -> Vec<(usize, Vec<usize>)> {
-    let mut support = Vec::new();
-    for node in (0..massless.len()).filter(|&node| massless[node]) {
-        let mut ring = vec![node];
-        let mut seen = ring.clone();
-        loop {
-            let mut next: Vec<usize> = ring
-                .iter()
-                .flat_map(|&node| pattern.neighbours(node).iter().map(|&n| n as usize))
-                .filter(|node| !seen.contains(node))
-                .collect();
-            next.sort_unstable();
-            next.dedup();
-            let massive: Vec<usize> = next.iter().copied().filter(|&n| !massless[n]).collect();
-            if !massive.is_empty() || next.is_empty() {
-                support.push((node, massive));
-                break;
-            }
-            seen.extend_from_slice(&next);
-            ring = next;
-        }
-    }
-    support
 }

@@ -150,17 +150,24 @@ impl Island {
         if self.rows.is_empty() {
             return 0.0;
         }
+        self.clear_impulses();
+        self.gather_rows(Response::Velocity);
+        self.respond();
         // Kinetic energy along v' + s z is a parabola in s; three samples give it exactly.
         let before = self.kinetic_energy();
-        self.apply_rows(Response::Velocity, 1.0);
-        let after = self.kinetic_energy();
-        self.apply_rows(Response::Velocity, -2.0);
-        let mirrored = self.kinetic_energy();
+        let after = self.add_responses(1.0);
+        let mirrored = self.add_responses(-2.0);
         let curvature = 0.5 * (after + mirrored) - before;
         let slope = 0.5 * (after - mirrored);
         let step = step_of_parabola(curvature, slope, excess);
-        self.apply_rows(Response::Velocity, 1.0 + step);
-        before - self.kinetic_energy()
+        before - self.add_responses(1.0 + step)
+    }
+
+    /// Adds a multiple of the responses to the velocities; returns the kinetic energy (J).
+    fn add_responses(&mut self, scale: f64) -> f64 {
+        self.add_to_rigid(Response::Velocity, scale);
+        self.add_to_flexible(Response::Velocity, scale);
+        self.kinetic_energy()
     }
 
     /// Scales down the vibration of the flexible blocks until `excess` (J) is gone; returns what was removed.

@@ -49,7 +49,7 @@ pub struct SolveSettings {
 pub struct ActiveContact {
     /// Index of the candidate.
     pub candidate: usize,
-    /// The row that the forces act along, with the gap at the last iterate.
+    /// The row that the forces act along, with the gap beyond the allowance at the last iterate.
     pub kinematics: Kinematics,
     /// Geometry at the last iterate.
     pub(super) measured: Kinematics,
@@ -74,6 +74,9 @@ pub struct ActiveContact {
     pub unresolved: f64,
     /// Approach velocity at the beginning of the step, `n·v` (m/s).
     pub approach: f64,
+    /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and
+    /// by. The solver's gap counts from here.
+    pub allowance: f64,
     /// What the contact was in the last step.
     pub remembered: Remembered,
 }
@@ -101,9 +104,9 @@ impl ActiveContact {
         }
     }
 
-    /// Whether the contact acted in this step or, through stored accelerations, from the last one.
-    pub(super) fn acts(&self) -> bool {
-        self.is_closed() || self.remembered.normal > 0.0
+    /// The gap (m).
+    pub fn gap(&self) -> f64 {
+        self.kinematics.gap + self.allowance
     }
 
     /// Whether the contact carries or would carry a force.
@@ -123,6 +126,8 @@ pub struct IslandSummary {
     pub residual: f64,
     /// Whether Newton's iterations failed and a linearised step was taken.
     pub is_linearized: bool,
+    /// Whether even that threw a body about, so that the island stayed where it was, at rest.
+    pub is_held: bool,
     /// Largest overlap left at a candidate (m).
     pub gap_violation: f64,
     /// Energy at the beginning: kinetic, elastic (J).
@@ -159,6 +164,10 @@ pub struct Island {
     pub(super) statuses: Vec<Status>,
     pub(super) wrenches: Vec<[f64; 3]>,
     pub(super) groups: Vec<usize>,
+    /// Whether overlaps that the step began with are left alone.
+    pub(super) ignores_overlaps: bool,
+    /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.
+    pub(super) pressed_before: Vec<[usize; 2]>,
     pub(super) solver: Solver,
 }
 
@@ -186,7 +195,7 @@ impl Island {
         reserve: &mut f64,
     ) -> Result<IslandSummary, KktError> {
         let mut summary = IslandSummary::default();
-        self.solve_positions(settings, memory, &mut summary)?;
+        self.solve_positions(settings, memory, &mut summary);
         let before = self.start_energy();
         let allowance = self.external_work();
         if settings.impact == ImpactTreatment::Stabilized {
@@ -200,6 +209,7 @@ impl Island {
         summary.end_energy = self.end_energy();
         if settings.impact == ImpactTreatment::Stabilized {
             self.limit_energy(settings, allowance, reserve, &mut summary);
+            self.hold_if_flung(settings.dt, &mut summary);
         }
         self.publish_forces(settings.dt);
         Ok(summary)

@@ -8,9 +8,11 @@
 
 mod delassus;
 mod energy;
+mod fallback;
 mod impact;
 mod island;
 mod momentum;
+mod multipliers;
 mod position;
 mod velocity;
 

@@ -14,14 +14,11 @@ impl Island {
     pub(super) fn balance_angular_momentum(&mut self) {
         self.groups.clear();
         self.groups.extend(0..self.blocks.len());
-        for contact in &self.contacts {
-            if !contact.acts() {
-                continue;
-            }
-            for pair in contact.kinematics.attachments().windows(2) {
-                let [one, other] = [0, 1].map(|end| root(&self.groups, pair[end].block));
-                self.groups[one.max(other)] = one.min(other);
-            }
+        let closed = self.contacts.iter().filter(|contact| contact.is_closed());
+        let pressed = closed.map(|contact| self.candidates[contact.candidate].pair.blocks());
+        for pair in pressed.chain(self.pressed_before.iter().copied()) {
+            let [one, other] = pair.map(|block| root(&self.groups, block));
+            self.groups[one.max(other)] = one.min(other);
         }
         for block in 0..self.groups.len() {
             self.groups[block] = root(&self.groups, block);

@@ -4,12 +4,11 @@
 //! under the multipliers it has, beginning with those of the last step; measures gaps and slips there; and, unless they
 //! hold, finds new multipliers from `b = g / b0 - W p`. A contact at rest so costs one solve.
 
-use super::delassus::{RowDirection, assemble, compliance};
-use super::island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
+use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
 use crate::constraint::contact::{ContactMemory, Kinematics, Remembered};
-use crate::linalg::complementarity::{Problem, RowKind, Status};
+use crate::linalg::complementarity::Status;
 use crate::math::Vec2;
-use crate::system::{Block, Point, Response};
+use crate::system::Block;
 
 /// Turning below this angle (rad) changes no position by more than round-off.
 const ANGLE_TOLERANCE: f64 = 1e-11;
@@ -23,8 +22,11 @@ const GAPS_KEPT_FROM: usize = 12;
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
 
-/// Multiple of the tolerance by which redundant rows may contradict each other.
-const AVERAGED: f64 = 10.0;
+/// Rate at which bodies that were put into each other part (1/s): a third of the overlap in a step of 1/60 s.
+pub(super) const PARTING_RATE: f64 = 24.0;
+
+/// Multiple of the tolerance from which an overlap counts as put there.
+const OVERLAPPED: f64 = 1e7;
 
 /// Iterations in which the working set still forms.
 const SETTLING: usize = 6;
@@ -35,41 +37,51 @@ const DIVERGENCE: f64 = 1e2;
 /// Multiple of the tolerance that still counts when the iterations are used up.
 const ACCEPTABLE: f64 = 1e5;
 
-/// Solves for the working set of a linearised step.
-const LINEAR_ROUNDS: usize = 3;
-
 impl Island {
     pub(super) fn solve_positions(
         &mut self,
         settings: &SolveSettings,
         memory: &ContactMemory,
         summary: &mut IslandSummary,
-    ) -> Result<(), KktError> {
+    ) {
         let tolerance = self.gap_tolerance();
-        self.contacts.clear();
-        self.is_working.clear();
-        self.is_working.resize(self.candidates.len(), false);
-        self.remember_contacts(memory);
-        if !self.iterate(settings, memory, tolerance, summary)? {
-            self.linear_step(settings, memory, tolerance, summary)?;
+        self.ignores_overlaps = false;
+        self.open_working_set(settings, tolerance, memory);
+        if !self.iterate(settings, memory, tolerance, summary) {
+            self.fall_back(settings, memory, tolerance, summary);
         }
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {
+                block.place_velocities();
                 block.measure_elastic_energy();
             }
         }
         summary.gap_violation = self.gap_violation();
-        Ok(())
+    }
+
+    /// Empties the working set but for what pressed in the last step.
+    pub(super) fn open_working_set(
+        &mut self,
+        settings: &SolveSettings,
+        tolerance: f64,
+        memory: &ContactMemory,
+    ) {
+        let kept = (-PARTING_RATE * settings.dt).exp();
+        self.contacts.clear();
+        self.is_working.clear();
+        self.is_working.resize(self.candidates.len(), false);
+        self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
     }
 
     /// Newton's iterations; returns whether they converged.
-    fn iterate(
+    pub(super) fn iterate(
         &mut self,
         settings: &SolveSettings,
         memory: &ContactMemory,
         tolerance: f64,
         summary: &mut IslandSummary,
-    ) -> Result<bool, KktError> {
+    ) -> bool {
+        let kept = (-PARTING_RATE * settings.dt).exp();
         let mut peak = 0.0f64;
         for iteration in 0..settings.max_newton {
             summary.n_newton = iteration + 1;
@@ -81,75 +93,31 @@ impl Island {
             if is_guess && !misleads {
                 error = self.measure(false);
             }
-            let has_more = !misleads && self.add_violated(tolerance, memory);
-            if std::env::var("FOIL_DBG").is_ok() {
-                eprintln!(
-                    "   it {iteration} turned {turned:.2e} error {error:.2e} more {has_more} mis {misleads} n {} st {:?}",
-                    self.contacts.len(),
-                    self.contacts
-                        .iter()
-                        .map(|c| (
-                            c.candidate,
-                            c.kinematics.gap as f32,
-                            c.multiplier[0] as f32,
-                            c.slip as f32,
-                            c.status[1]
-                        ))
-                        .collect::<Vec<_>>()
-                );
-            }
+            let has_more = !misleads && self.add_violated(tolerance, kept, memory);
             if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
-                return Ok(true);
+                return true;
             }
             if iteration < SETTLING {
                 peak = peak.max(turned).max(error);
             }
             let is_diverging = turned.max(error) > DIVERGENCE * peak;
             if is_diverging || !(turned + error).is_finite() {
-                return Ok(false);
+                return false;
             }
             if iteration + 1 < settings.max_newton {
                 let refreshes = iteration < ROWS_KEPT_FROM && !misleads;
                 if refreshes {
                     self.refresh_rows();
                 }
-                self.solve_multipliers(settings, refreshes, tolerance, summary)?;
+                let solved = self.solve_multipliers(settings, refreshes, tolerance, summary);
+                if solved.is_err() {
+                    return false;
+                }
             } else if turned.max(error) <= ACCEPTABLE * tolerance && !has_more {
-                return Ok(true);
+                return true;
             }
         }
-        Ok(false)
-    }
-
-    /// The step that is taken when Newton's iterations fail: every block linearised, three rounds for the working set.
-    fn linear_step(
-        &mut self,
-        settings: &SolveSettings,
-        memory: &ContactMemory,
-        tolerance: f64,
-        summary: &mut IslandSummary,
-    ) -> Result<(), KktError> {
-        summary.is_linearized = true;
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.linearize();
-            }
-        }
-        self.contacts.clear();
-        self.is_working.fill(false);
-        self.remember_contacts(memory);
-        for round in 0..LINEAR_ROUNDS {
-            self.correct();
-            self.measure(round > 0);
-            self.add_violated(tolerance, memory);
-            if round == 0 {
-                self.refresh_rows();
-            }
-            self.solve_multipliers(settings, round == 0, tolerance, summary)?;
-        }
-        self.correct();
-        self.measure(true);
-        Ok(())
+        false
     }
 
     /// Round-off of a gap: positions of this size, and their predictions, are no better known.
@@ -158,29 +126,36 @@ impl Island {
             Block::Flex(block) => size.max(block.extent()),
             Block::Rigid(block) => size.max(block.start().centre.amax()),
         });
-        1e-11 * (1.0 + size)
+        2e-12 * (1.0 + size)
     }
 
     /// Opens the working set with what pressed in the last step.
-    fn remember_contacts(&mut self, memory: &ContactMemory) {
+    fn remember_contacts(&mut self, slop: f64, kept: f64, memory: &ContactMemory) {
+        self.pressed_before.clear();
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for (index, candidate) in self.candidates.iter().enumerate() {
             let remembered = memory.recall(&candidate.key);
             if remembered.normal <= 0.0 {
                 continue;
             }
+            self.pressed_before.push(candidate.pair.blocks());
             if let Some(kinematics) = candidate.evaluate(&scene, &remembered) {
-                self.is_working[index] = true;
                 let friction = candidate.law.friction;
-                let contact =
-                    ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
+                let blocks = &self.blocks;
+                let mut contact =
+                    ActiveContact::new(index, kinematics, remembered, friction, blocks);
+                let is_overlap = contact.allow_overlap(kept, slop, blocks);
+                if is_overlap && self.ignores_overlaps {
+                    continue;
+                }
+                self.is_working[index] = true;
                 self.contacts.push(contact);
             }
         }
     }
 
     /// Moves all blocks by the multipliers; returns the largest turn of a frame (rad).
-    fn correct(&mut self) -> f64 {
+    pub(super) fn correct(&mut self) -> f64 {
         self.wrenches.clear();
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         for block in &mut self.blocks {
@@ -212,7 +187,7 @@ impl Island {
     ///
     /// The forces keep acting along the rows they have: gaps are true, and Newton's matrix is that of the rows. With
     /// `extrapolates` gaps follow the rows too, which always converges.
-    fn measure(&mut self, extrapolates: bool) -> f64 {
+    pub(super) fn measure(&mut self, extrapolates: bool) -> f64 {
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         let mut error = 0.0f64;
         for contact in &mut self.contacts {
@@ -226,7 +201,7 @@ impl Island {
             contact.kinematics.gap = match (found, contact.known) {
                 (Some(found), _) => {
                     contact.measured = found;
-                    found.gap
+                    found.gap - contact.allowance
                 }
                 (None, Some((gap, from))) => gap + along.dot(&(at - from)),
                 (None, None) => contact.kinematics.gap,
@@ -251,7 +226,7 @@ impl Island {
     }
 
     /// Makes the measured geometry the rows that forces act along.
-    fn refresh_rows(&mut self) {
+    pub(super) fn refresh_rows(&mut self) {
         for contact in &mut self.contacts {
             let gap = contact.kinematics.gap;
             contact.applied = contact.kinematics;
@@ -262,7 +237,12 @@ impl Island {
     }
 
     /// Adds candidates that overlap now; returns whether there were any.
-    fn add_violated(&mut self, tolerance: f64, memory: &ContactMemory) -> bool {
+    pub(super) fn add_violated(
+        &mut self,
+        tolerance: f64,
+        kept: f64,
+        memory: &ContactMemory,
+    ) -> bool {
         let before = self.contacts.len();
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for (index, candidate) in self.candidates.iter().enumerate() {
@@ -270,172 +250,32 @@ impl Island {
                 continue;
             }
             let remembered = memory.recall(&candidate.key);
-            if let Some(kinematics) = candidate.evaluate(&scene, &remembered)
-                && kinematics.gap < -tolerance
-            {
+            let found = candidate.evaluate(&scene, &remembered);
+            let Some(kinematics) = found.filter(|found| found.gap < -tolerance) else {
+                continue;
+            };
+            let friction = candidate.law.friction;
+            let mut contact =
+                ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
+            let is_overlap = contact.allow_overlap(kept, OVERLAPPED * tolerance, &self.blocks);
+            let is_met = !(is_overlap && self.ignores_overlaps);
+            if is_met && contact.kinematics.gap < -tolerance {
                 self.is_working[index] = true;
-                let friction = candidate.law.friction;
-                let contact =
-                    ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
                 self.contacts.push(contact);
             }
         }
         self.contacts.len() > before
     }
 
-    /// One complementarity problem on the working set.
-    fn solve_multipliers(
-        &mut self,
-        settings: &SolveSettings,
-        has_new_rows: bool,
-        tolerance: f64,
-        summary: &mut IslandSummary,
-    ) -> Result<(), KktError> {
-        if self.contacts.is_empty() {
-            return Ok(());
-        }
-        for contact in &self.contacts {
-            prepare(&mut self.blocks, &contact.kinematics);
-            if has_new_rows {
-                prepare(&mut self.blocks, &contact.applied);
-            }
-        }
-        self.position_rows(settings.b0);
-        let contacts = &self.contacts;
-        let kinematics = |index: usize| &contacts[index].kinematics;
-        assemble(
-            &self.blocks,
-            &self.rows,
-            Response::Position,
-            kinematics,
-            &mut self.delassus,
-        );
-        self.take_out_multipliers(has_new_rows);
-        let redundancy = self.redundancy_tolerance(tolerance / settings.b0);
-        self.solver.set_redundancy_tolerance(redundancy);
-        let problem = Problem {
-            delassus: &self.delassus,
-            free: &self.free,
-            rows: &self.kinds,
-        };
-        let outcome = self
-            .solver
-            .solve(&problem, &mut self.multipliers, &mut self.statuses)?;
-        summary.n_pivots += outcome.n_pivots;
-        summary.residual = outcome.residual;
-        for (row, direction) in self.rows.iter().enumerate() {
-            let contact = &mut self.contacts[direction.contact];
-            let which = usize::from(matches!(self.kinds[row], RowKind::Friction { .. }));
-            contact.multiplier[which] = self.multipliers[row];
-            contact.status[which] = self.statuses[row];
-        }
-        Ok(())
-    }
-
-    /// Rows of the working set, with gaps and slips divided by `b0` and the multipliers that they were measured under.
-    fn position_rows(&mut self, b0: f64) {
-        self.rows.clear();
-        self.kinds.clear();
-        self.free.clear();
-        self.multipliers.clear();
-        self.statuses.clear();
-        for (index, contact) in self.contacts.iter().enumerate() {
-            let kinematics = &contact.kinematics;
-            let normal_row = self.rows.len();
-            self.rows.push(RowDirection {
-                contact: index,
-                direction: kinematics.normal,
-            });
-            self.kinds.push(RowKind::Unilateral);
-            self.free.push(kinematics.gap / b0);
-            self.multipliers.push(contact.multiplier[0]);
-            self.statuses.push(contact.status[0]);
-            let coefficient = self.candidates[contact.candidate].law.friction;
-            if coefficient > 0.0 {
-                self.rows.push(RowDirection {
-                    contact: index,
-                    direction: kinematics.tangent(),
-                });
-                self.kinds.push(RowKind::Friction {
-                    normal: normal_row,
-                    coefficient,
-                });
-                self.free.push(slip(kinematics, &self.blocks) / b0);
-                self.multipliers.push(contact.multiplier[1]);
-                self.statuses.push(contact.status[1]);
-            }
-        }
-    }
-
-    /// The natural-map residual of rows that move by `velocity` beyond what they may (m/s²): redundant rows that contradict
-    /// each other by less are averaged.
-    fn redundancy_tolerance(&self, velocity: f64) -> f64 {
-        let n = self.rows.len();
-        let (mut largest, mut scale) = (0.0f64, 0.0f64);
-        for (row, free) in self.free.iter().enumerate() {
-            let own = self.delassus[row * n + row];
-            if own > 0.0 {
-                largest = largest.max(own);
-                let load = free.abs().max(own * self.multipliers[row].abs());
-                scale = scale.max(load / own.sqrt());
-            }
-        }
-        let residual = AVERAGED * velocity / (largest.sqrt() * scale);
-        residual.clamp(1e-12, 1e-6)
-    }
-
-    /// `b -= W p`: what the rows would be without the multipliers they were measured under.
-    ///
-    /// Where the rows have changed since, the response is `G A⁻¹ G₀ᵀ p` with the rows `G₀` of that iterate: under a
-    /// heavy neighbour a force that turns by 1e-4 rad may throw a light body across the scene.
-    fn take_out_multipliers(&mut self, has_new_rows: bool) {
-        let n = self.rows.len();
-        if !has_new_rows {
-            for (free, row) in self.free.iter_mut().zip(self.delassus.chunks_exact(n)) {
-                let response: f64 = row.iter().zip(&self.multipliers).map(|(w, p)| w * p).sum();
-                *free -= response;
-            }
-            return;
-        }
-        let mut row = 0;
-        while row < n {
-            let contact = &self.contacts[self.rows[row].contact];
-            let mut response = Vec2::zeros();
-            for other in self
-                .contacts
-                .iter()
-                .filter(|other| other.multiplier[0] > 0.0)
-            {
-                let applied = &other.applied;
-                let found = compliance(
-                    &self.blocks,
-                    &contact.kinematics,
-                    applied,
-                    Response::Position,
-                );
-                if let Some(compliance) = found {
-                    let [normal, tangent] = other.multiplier;
-                    let force = normal * applied.normal + tangent * applied.tangent();
-                    response += compliance * force;
-                }
-            }
-            let first = row;
-            while row < n && self.rows[row].contact == self.rows[first].contact {
-                self.free[row] -= self.rows[row].direction.dot(&response);
-                row += 1;
-            }
-        }
-    }
-
     fn gap_violation(&self) -> f64 {
         self.contacts
             .iter()
-            .fold(0.0, |worst, contact| worst.max(-contact.kinematics.gap))
+            .fold(0.0, |worst, contact| worst.max(-contact.gap()))
     }
 }
 
 /// Tangential motion of the point against the target's material since the beginning of the step (m).
-fn slip(kinematics: &Kinematics, blocks: &[Block]) -> f64 {
+pub(super) fn slip(kinematics: &Kinematics, blocks: &[Block]) -> f64 {
     moved(kinematics, blocks).dot(&kinematics.tangent())
 }
 
@@ -444,18 +284,22 @@ fn moved(kinematics: &Kinematics, blocks: &[Block]) -> Vec2 {
     kinematics.relative(blocks, |block, grip| block.displacement(grip))
 }
 
-/// Makes the compliances of a contact's nodes known.
-pub(super) fn prepare(blocks: &mut [Block], kinematics: &Kinematics) {
-    for attachment in kinematics.attachments() {
-        if let (Block::Flex(block), Point::Node(node)) =
-            (&mut blocks[attachment.block], attachment.grip.point)
-        {
-            block.prepare_compliance(node);
-        }
-    }
-}
-
 impl ActiveContact {
+    /// Where the step began with an overlap beyond `slop`, leaves the share `kept` of it for now.
+    ///
+    /// Returns whether it did.
+    fn allow_overlap(&mut self, kept: f64, slop: f64, blocks: &[Block]) -> bool {
+        let began =
+            self.kinematics.gap - self.kinematics.normal.dot(&moved(&self.kinematics, blocks));
+        if began < -slop {
+            self.allowance = kept * began;
+            self.kinematics.gap -= self.allowance;
+            self.measured.gap = self.kinematics.gap;
+            self.known = self.known.map(|(gap, at)| (gap - self.allowance, at));
+        }
+        began < -slop
+    }
+
     fn new(
         candidate: usize,
         kinematics: Kinematics,
@@ -491,6 +335,7 @@ impl ActiveContact {
             multiplier: [remembered.normal, remembered.tangent],
             impulse: [0.0; 2],
             status: [normal, tangential],
+            allowance: 0.0,
             known: Some((kinematics.gap, moved(&kinematics, blocks))),
             slip: 0.0,
             unresolved: 0.0,

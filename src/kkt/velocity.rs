@@ -8,7 +8,7 @@
 
 use super::delassus::{RowDirection, assemble};
 use super::island::{Island, KktError, SolveSettings};
-use super::position::prepare;
+use super::multipliers::prepare;
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
 use crate::system::{Block, Response};
@@ -38,8 +38,15 @@ impl Island {
             let is_normal = direction.direction == contact.kinematics.normal;
             contact.impulse[usize::from(!is_normal)] = self.multipliers[row];
         }
-        self.apply_rows(Response::Velocity, 1.0);
-        self.settle_accelerations(settings)
+        self.clear_impulses();
+        self.gather_rows(Response::Velocity);
+        self.add_to_rigid(Response::Velocity, 1.0);
+        // The accelerations do not depend on these impulses: one substitution answers both.
+        self.settle_accelerations(settings)?;
+        self.respond();
+        self.add_to_flexible(Response::Velocity, 1.0);
+        self.add_to_flexible(Response::Acceleration, 1.0);
+        Ok(())
     }
 
     /// Velocities and accelerations feel soft multipliers as (C.5) says, hard ones not at all.
@@ -193,18 +200,15 @@ impl Island {
         Ok(())
     }
 
-    /// Adds the response to the current row multipliers to velocities or accelerations.
-    pub(super) fn apply_rows(&mut self, to: Response, scale: f64) {
+    /// Gathers the current row multipliers as impulses on the flexible blocks, and as wrenches on the rigid ones.
+    pub(super) fn gather_rows(&mut self, of: Response) {
         self.wrenches.clear();
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.clear_impulse();
-            }
-        }
-        let mut touched = false;
         for (row, direction) in self.rows.iter().enumerate() {
-            let value = scale * self.multipliers[row];
+            let value = self.multipliers[row];
+            if value == 0.0 {
+                continue;
+            }
             let kinematics = &self.contacts[direction.contact].kinematics;
             let is_normal = direction.direction == kinematics.normal;
             let force = if is_normal {
@@ -212,25 +216,51 @@ impl Island {
             } else {
                 [0.0, value]
             };
-            touched |= value != 0.0;
             Self::spread(
                 &mut self.blocks,
                 kinematics,
                 force,
                 Some(&mut self.wrenches),
-                |block, node, impulse, lever| block.gather_impulse(node, impulse, lever),
+                |block, node, impulse, lever| block.gather_impulse(of, node, impulse, lever),
             );
         }
-        if !touched {
-            return;
+    }
+
+    pub(super) fn clear_impulses(&mut self) {
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.clear_impulses();
+            }
         }
+    }
+
+    /// Finds what the flexible blocks answer to the gathered impulses.
+    pub(super) fn respond(&mut self) {
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.respond();
+            }
+        }
+    }
+
+    /// Adds a multiple of the gathered wrenches' effect to the rigid blocks.
+    pub(super) fn add_to_rigid(&mut self, of: Response, scale: f64) {
         for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
-            match block {
-                Block::Flex(block) => block.apply_impulse(to),
-                Block::Rigid(block) => match to {
-                    Response::Velocity | Response::Position => block.add_impulse(*wrench),
-                    Response::Acceleration => block.add_smooth_acceleration(*wrench),
-                },
+            if let Block::Rigid(block) = block {
+                let wrench = wrench.map(|value| scale * value);
+                match of {
+                    Response::Acceleration => block.add_smooth_acceleration(wrench),
+                    Response::Velocity | Response::Position => block.add_impulse(wrench),
+                }
+            }
+        }
+    }
+
+    /// Adds a multiple of the responses to the flexible blocks.
+    pub(super) fn add_to_flexible(&mut self, of: Response, scale: f64) {
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.add_response(of, scale);
             }
         }
     }
@@ -280,7 +310,8 @@ impl Island {
         );
         self.soften();
         self.solve_rows()?;
-        self.apply_rows(Response::Acceleration, 1.0);
+        self.gather_rows(Response::Acceleration);
+        self.add_to_rigid(Response::Acceleration, 1.0);
         Ok(())
     }
 

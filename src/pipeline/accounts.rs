@@ -50,6 +50,7 @@ impl FlexPipeline {
         report.solver_residual = report.solver_residual.max(summary.residual);
         report.n_newton = report.n_newton.max(summary.n_newton);
         report.n_linearized += usize::from(summary.is_linearized);
+        report.n_held += usize::from(summary.is_held);
         report.n_pivots += summary.n_pivots;
         report.energy_limited += summary.limited;
         report.energy.kinetic += summary.end_energy[0];
@@ -93,7 +94,7 @@ impl FlexPipeline {
         Some(ContactReport {
             position: contact.kinematics.position.into(),
             normal: contact.kinematics.normal.into(),
-            gap: contact.kinematics.gap,
+            gap: contact.gap(),
             normal_force,
             tangential_force,
             sticks: contact.status[1] == Status::Stick,

@@ -240,6 +240,7 @@ impl FlexPipeline {
         self.landings.clear();
         self.reserves.clear();
         self.memory.discard_notes();
+        self.gatherer.turn_over(false);
         self.components.clear();
         for flex in 0..self.claims.flex.len() {
             let component = self.claims.component_of_flex(flex);
@@ -311,6 +312,7 @@ impl FlexPipeline {
     /// Makes the solved motions the committed ones and writes the surfaces.
     fn commit(&mut self, sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet) {
         self.memory.turn_over();
+        self.gatherer.turn_over(true);
         for &(index, reserve) in &self.reserves {
             let Some(body) = flex_bodies.at_index_mut(index) else {
                 continue;

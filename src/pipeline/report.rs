@@ -93,6 +93,7 @@ pub struct StepReport {
     pub(super) n_claimed: usize,
     pub(super) n_newton: usize,
     pub(super) n_linearized: usize,
+    pub(super) n_held: usize,
     pub(super) n_pivots: usize,
     pub(super) n_factorizations: u64,
     pub(super) times: StageTimes,
@@ -165,6 +166,12 @@ impl StepReport {
     /// small.
     pub fn n_linearized(&self) -> usize {
         self.n_linearized
+    }
+
+    /// Islands that stayed where they were for this step, at rest: no step could be found, as when bodies are jammed into each
+    /// other.
+    pub fn n_held(&self) -> usize {
+        self.n_held
     }
 
     /// Pivots of the complementarity solver, summed over the islands.

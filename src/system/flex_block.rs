@@ -4,6 +4,7 @@
 //! then turn with the body, where nodal world coordinates would tear them off their axes at every step.
 
 use super::compliance::Compliance;
+use super::flex_impulse::Impulses;
 use crate::body::{Arms, FlexState, Frame, FrameMotion};
 use crate::fe::model::Model;
 use crate::integrator::{Beta2, Weights};
@@ -53,7 +54,7 @@ pub struct FlexBlock {
     /// The pinned dofs, ascending.
     pub(super) fixed_dofs: Vec<usize>,
     /// Largest coordinate of the reference placement (m).
-    extent: f64,
+    pub(super) extent: f64,
     pub(super) effective: BlockMatrix,
     pub(super) factor: BlockCholesky,
     pub(super) factored_for: Option<Weights>,
@@ -98,12 +99,10 @@ pub struct FlexBlock {
     pub(super) contact_total: Vec2,
     /// Moment of the contact forces about the centre, by the levers they were given with (N m).
     pub(super) contact_moment: f64,
-    pub(super) impulse: Vec<f64>,
-    pub(super) has_impulse: bool,
-    /// Resultant of the impulses (N s).
-    pub(super) impulse_total: Vec2,
-    /// Moment of the impulses about the centre (N m s).
-    pub(super) impulse_moment: f64,
+    /// Impulses for the velocity and for the acceleration.
+    pub(super) impulses: [Impulses; 2],
+    /// Right-hand sides of both.
+    pub(super) columns: Vec<f64>,
     pub(super) local: Vec<f64>,
     pub(super) scratch: Vec<f64>,
     /// `u`, `u̇` of the iterate.
@@ -167,10 +166,8 @@ impl FlexBlock {
             has_contact_force: false,
             contact_total: Vec2::zeros(),
             contact_moment: 0.0,
-            impulse: zeros(),
-            has_impulse: false,
-            impulse_total: Vec2::zeros(),
-            impulse_moment: 0.0,
+            impulses: [Impulses::new(n), Impulses::new(n)],
+            columns: vec![0.0; 2 * n],
             local: zeros(),
             scratch: zeros(),
             displacement: zeros(),
@@ -192,6 +189,15 @@ impl FlexBlock {
     /// What the frame turns about, at the iterate (m).
     pub fn centre(&self) -> Vec2 {
         self.frame.centre
+    }
+
+    /// Centre of mass at the beginning of the step, if the body moves freely (m).
+    pub fn start_centre(&self) -> Option<Vec2> {
+        (self.kind == Frame::Free).then_some(self.start_frame.centre)
+    }
+
+    pub(super) fn n_dofs(&self) -> usize {
+        self.local.len()
     }
 
     /// The model the block was built for.

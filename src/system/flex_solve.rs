@@ -15,11 +15,15 @@ use crate::body::Frame;
 use crate::integrator::Weights;
 use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
 
+/// Turn in a step (rad) up to which the inertial terms of the displacements are no matter for the iterations.
+const AT_REST: f64 = 1e-6;
+
 impl FlexBlock {
     /// Solves for the end of the step under the contact forces given, in the frame and with the inertial terms of the
     /// current iterate.
     ///
-    /// Returns how far the frame's angle moved (rad).
+    /// Returns how far the frame's angle moved (rad), or that part of it that matters: a frame that hardly spins turns only
+    /// the displacements.
     pub fn solve(&mut self) -> f64 {
         let rayleigh = self.model.rayleigh();
         let Weights { b0, b1 } = self.step.weights;
@@ -143,7 +147,7 @@ impl FlexBlock {
         self.contact_moment += cross(lever, force);
     }
 
-    /// Applies the increments of the iterate; returns how far the frame's angle moved (rad).
+    /// Applies the increments of the iterate; see [`FlexBlock::solve`].
     fn correct(&mut self) -> f64 {
         let Weights { b0, b1 } = self.step.weights;
         if self.kind == Frame::Fixed {
@@ -152,7 +156,6 @@ impl FlexBlock {
                 self.displacement[dof] = self.displacement_q[dof] + b0 * increment;
                 self.rate[dof] = self.rate_q[dof] + b1 * increment;
                 self.position[dof] = rest[dof] + self.displacement[dof];
-                self.velocity[dof] = self.rate[dof];
             }
             return 0.0;
         }
@@ -161,51 +164,19 @@ impl FlexBlock {
         self.advance(turn);
         if self.is_linear {
             self.torque = turn * self.inertia;
+            self.place();
             return 0.0;
         }
         self.balance_angular_momentum();
-        (self.frame.angle - angle).abs()
-    }
-
-    /// Goes back to the beginning and drops what makes the step non-linear: the inertial terms of the displacement in a
-    /// turning frame, and the balance of angular momentum in favour of the row; and with them the stored second rates,
-    /// which is where unresolved vibrations live.
-    ///
-    /// Such a step is first order and stable; it is taken where Newton's iterations do not converge.
-    pub fn linearize(&mut self) {
-        let dt = self.step.dt;
-        let half = 0.5 * dt * dt;
-        for dof in 0..self.start_acceleration.len() {
-            let acceleration = std::mem::take(&mut self.start_acceleration[dof]);
-            self.rate_q[dof] -= dt * acceleration;
-            self.displacement_q[dof] -= dt * self.rate_q[dof] + half * acceleration;
+        let turned = (self.frame.angle - angle).abs();
+        if self.step.dt * self.frame.spin.abs() > AT_REST {
+            return turned;
         }
-        // `displacement_q` is `u` of the beginning now: the iterate starts there, the operator goes on from it.
-        self.displacement.copy_from_slice(&self.displacement_q);
-        self.rate.copy_from_slice(&self.rate_q);
-        for (u, rate) in self.displacement_q.iter_mut().zip(&self.rate_q) {
-            *u += dt * rate;
-        }
-        self.frame = self.frame_q;
-        self.is_linear = true;
-        self.place();
-    }
-
-    /// `A⁻¹ Rᵀ π` for the gathered impulses, written over `local`.
-    pub(super) fn respond_to_impulse(&mut self) {
-        if self.kind == Frame::Fixed {
-            self.local.copy_from_slice(&self.impulse);
-        } else {
-            let back = self.turn.transpose();
-            for node in 0..self.model.n_nodes() {
-                set_node_vec(&mut self.local, node, back * node_vec(&self.impulse, node));
-            }
-        }
-        for &dof in &self.fixed_dofs {
-            self.local[dof] = 0.0;
-        }
-        self.factor.solve_in_place(&mut self.local);
-        self.n_solves += 1;
+        let reach = self
+            .displacement
+            .iter()
+            .fold(0.0f64, |reach, u| reach.max(u.abs()));
+        turned * (reach / self.extent).min(1.0)
     }
 
     /// Applies the increments of a frame that moves; `increment` holds `δ_u`.
@@ -234,10 +205,9 @@ impl FlexBlock {
         self.frame.angle = before.angle + 0.5 * self.step.dt * b1 * turn;
         self.frame.spin = before.spin + b1 * turn;
         self.frame.spin_rate = b1 * turn / self.step.dt;
-        self.place();
     }
 
-    /// World positions and velocities of the iterate.
+    /// World positions of the iterate.
     pub(super) fn place(&mut self) {
         if self.kind == Frame::Fixed {
             for ((x, rest), u) in self
@@ -248,15 +218,26 @@ impl FlexBlock {
             {
                 *x = rest + u;
             }
-            self.velocity.copy_from_slice(&self.rate);
             return;
         }
         self.turn = rotation(self.frame.angle);
         let (frame, turn) = (&self.frame, self.turn);
         for node in 0..self.model.n_nodes() {
             let arm = node_vec(&self.arms.reference, node) + node_vec(&self.displacement, node);
-            let own = node_vec(&self.rate, node) + frame.spin * perp(arm);
             set_node_vec(&mut self.position, node, frame.centre + turn * arm);
+        }
+    }
+
+    /// World velocities of the last iterate: nothing asks for them before.
+    pub fn place_velocities(&mut self) {
+        if self.kind == Frame::Fixed {
+            self.velocity.copy_from_slice(&self.rate);
+            return;
+        }
+        let (frame, turn) = (&self.frame, self.turn);
+        for node in 0..self.model.n_nodes() {
+            let arm = node_vec(&self.arms.reference, node) + node_vec(&self.displacement, node);
+            let own = node_vec(&self.rate, node) + frame.spin * perp(arm);
             set_node_vec(&mut self.velocity, node, frame.velocity + turn * own);
         }
     }

@@ -5,8 +5,10 @@
 
 mod compliance;
 mod flex_block;
+mod flex_impulse;
 mod flex_momentum;
 mod flex_motion;
+mod flex_restart;
 mod flex_solve;
 mod moments;
 mod rigid_block;

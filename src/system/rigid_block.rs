@@ -199,6 +199,19 @@ impl RigidBlock {
         self.current.angle += step[2];
     }
 
+    /// Ends the step where it began, without velocities, unless the motion is given.
+    pub fn hold(&mut self) {
+        if !self.is_prescribed {
+            self.current = RigidMotion {
+                velocity: Vec2::zeros(),
+                spin: 0.0,
+                ..self.start
+            };
+            self.free = self.current;
+            self.smooth_end = [0.0; 3];
+        }
+    }
+
     /// Displacement of the end of a lever over the step, linear in the dofs (m).
     pub fn displacement(&self, lever: Vec2) -> Vec2 {
         let turned = self.current.angle - self.start.angle;

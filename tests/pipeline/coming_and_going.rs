@@ -101,3 +101,27 @@ fn a_box_in_contact_may_change_its_shape_or_lose_its_collider() -> Outcome {
     assert!(scene.height(crate_body) < 1.0, "nothing holds it any more");
     Ok(())
 }
+
+#[test]
+fn sleeping_boxes_wake_when_a_flexible_body_touches_them_and_not_before() -> Outcome {
+    let mut scene = Scene::with_floor();
+    let crates = [0.5, 3.0].map(|x| scene.insert_box(0.25, [x, 0.25], 500.0));
+    scene.steps(300)?;
+    let sleeps = |scene: &Scene| crates.map(|handle| scene.world.bodies[handle].is_sleeping());
+    assert_eq!(sleeps(&scene), [true, true]);
+    // One metre of fall takes 0.45 s.
+    let block = scene.insert(square().translation([0.05, 1.5]))?;
+    scene.steps(12)?;
+    assert_eq!(sleeps(&scene), [true, true], "nothing touches them yet");
+    scene.steps(48)?;
+    assert_eq!(sleeps(&scene), [false, true]);
+    scene.steps(240)?;
+    // The block rests on the box and on nothing else, or fell beside it: the box bears what it bears.
+    let bottom = scene.flex_bodies[block]
+        .positions()
+        .chunks_exact(2)
+        .map(|at| at[1])
+        .fold(f64::INFINITY, f64::min);
+    assert!(bottom > -1e-6, "{bottom} m");
+    Ok(())
+}

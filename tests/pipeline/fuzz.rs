@@ -30,6 +30,10 @@ impl Chance {
 
 const N_OPERATIONS: usize = 2000;
 
+/// An overlap of the size of a body, undone within the shortest step, gives 1.5 m × 240 / s; beyond ten times that
+/// something feeds on itself (m/s).
+const FASTEST: f64 = 4e3;
+
 /// The floor and two walls.
 const N_STATIC: usize = 3;
 
@@ -259,6 +263,12 @@ impl Play {
             ];
             let is_finite = all.into_iter().flatten().all(|x| x.is_finite());
             assert!(is_finite, "{context}: {handle:?}");
+            let speeds = body.velocities().iter().map(|v| v.abs());
+            let fastest = speeds.fold(0.0, f64::max);
+            assert!(
+                fastest < FASTEST,
+                "{context}: {handle:?} moves at {fastest:e} m/s"
+            );
         }
         for (handle, body) in self.scene.world.rigid_bodies() {
             let is_finite = body.translation().is_finite()
@@ -291,9 +301,9 @@ fn play(seed: u64) -> Result<(Play, usize), Box<dyn Error>> {
 #[test]
 fn two_thousand_random_operations_between_steps_never_panic_stay_finite_and_leak_nothing() -> Outcome
 {
-    // Bodies are put into each other and into the floor: steps may be refused, but nothing may break.
+    // Bodies are put into each other and into the floor: every step can be taken all the same.
     let (mut play, n_refused) = play(0x2545_f491_4f6c_dd1d)?;
-    println!("{n_refused} of {N_OPERATIONS} steps were refused");
+    assert_eq!(n_refused, 0, "of {N_OPERATIONS} steps");
     for handle in std::mem::take(&mut play.flexible) {
         let scene = &mut play.scene;
         scene.flex_bodies.remove(handle, &mut scene.world)?;

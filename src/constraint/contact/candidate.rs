@@ -72,6 +72,18 @@ pub enum Pair {
     },
 }
 
+impl Pair {
+    /// The blocks of the point and of the target.
+    pub fn blocks(&self) -> [usize; 2] {
+        match *self {
+            Self::NodeOnPart { node, rigid, .. } => [node.0, rigid],
+            Self::VertexOnSurface { rigid, flex, .. } => [rigid, flex],
+            Self::NodeOnSurface { node, flex, .. } => [node.0, flex],
+            Self::PointOnFace { point, face, .. } => [point.0, face],
+        }
+    }
+}
+
 /// A point and a target that may touch, with their law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {

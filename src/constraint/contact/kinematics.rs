@@ -217,11 +217,12 @@ fn node_on_part(
     let arm = motion.current().arm(point);
     let local = placed.pose.inverse_transform(arm);
     let local_start = placed.pose.inverse_transform(motion.start().arm(start));
+    let body = flex_of(scene, block)?;
+    let reference = reference.or_else(|| buried_face(placed, motion, body, local_start));
     let found = separation(&placed.part, local, reference, Some(local_start));
     let normal = rotation(motion.current().angle) * placed.pose.rotate(found.normal);
     let is_sharp_vertex =
         matches!(found.feature, Feature::Vertex(_)) && placed.part.radius() == 0.0;
-    let body = flex_of(scene, block)?;
     if !faces(body, segment, normal, is_sharp_vertex) {
         return None;
     }
@@ -241,6 +242,31 @@ fn node_on_part(
     kinematics.feature = Some(found.feature);
     Some(kinematics)
 }
+
+/// The face by which a body that was put into a part leaves it: the nearest to the body's centre, one for all its nodes, or
+/// they would be pulled apart. `None` for nodes that begin the step outside.
+fn buried_face(
+    placed: &PlacedPart,
+    motion: &RigidBlock,
+    body: &FlexBlock,
+    node: Vec2,
+) -> Option<Feature> {
+    let before = separation(&placed.part, node, None, None);
+    if before.distance > -BURIED * placed.part.width() {
+        return None;
+    }
+    let centre = motion.start().arm(body.start_centre()?);
+    let nearest = separation(
+        &placed.part,
+        placed.pose.inverse_transform(centre),
+        None,
+        None,
+    );
+    Some(nearest.feature).filter(|feature| matches!(feature, Feature::Face(_)))
+}
+
+/// Depth, relative to a part's least thickness, from which a node counts as put into it.
+const BURIED: f64 = 1e-3;
 
 fn surface_of(
     scene: &Scene<'_>,

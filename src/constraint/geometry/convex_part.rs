@@ -200,7 +200,8 @@ impl ConvexPart {
     }
 
     #[inline]
-    pub(super) fn width(&self) -> f64 {
+    /// Least thickness of the core (m): 0 for points and segments, infinite for a half-space.
+    pub fn width(&self) -> f64 {
         self.width
     }
 

@@ -1,0 +1,124 @@
+//! What is done when Newton's iterations fail: first overlaps that were put there are left alone, then the step is taken
+//! linearised, and if that throws a body about, the island stays where it is for a step.
+
+use super::island::{Island, IslandSummary, KktError, SolveSettings};
+use super::position::PARTING_RATE;
+use crate::constraint::contact::ContactMemory;
+use crate::system::Block;
+
+/// Solves for the working set of a linearised step.
+const LINEAR_ROUNDS: usize = 3;
+
+/// Motion within a step, beyond the body's own and relative to its size, that no contact explains.
+const THROWN: f64 = 0.5;
+
+/// Multiple of the greatest speed before a collision that none gives: a light body between heavy ones gets twice, the
+/// tip of a bar some times more.
+const FLUNG: f64 = 10.0;
+
+impl Island {
+    pub(super) fn fall_back(
+        &mut self,
+        settings: &SolveSettings,
+        memory: &ContactMemory,
+        tolerance: f64,
+        summary: &mut IslandSummary,
+    ) {
+        // Bodies that stick in each other may ask for what no position can give.
+        self.ignores_overlaps = true;
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.restart();
+            }
+        }
+        self.open_working_set(settings, tolerance, memory);
+        if self.iterate(settings, memory, tolerance, summary) {
+            return;
+        }
+        let is_solved = self
+            .linear_step(settings, memory, tolerance, summary)
+            .is_ok();
+        let is_thrown = self
+            .blocks
+            .iter()
+            .any(|block| matches!(block, Block::Flex(block) if block.excess_motion() > THROWN));
+        if is_thrown || !is_solved {
+            self.hold(summary);
+        }
+    }
+
+    /// Holds the island if contact has flung a member away faster than any collision could.
+    pub(super) fn hold_if_flung(&mut self, dt: f64, summary: &mut IslandSummary) {
+        let (mut before, mut after) = (0.0f64, 0.0f64);
+        for block in &self.blocks {
+            if let Block::Flex(block) = block {
+                let [start, end] = block.fastest();
+                // Faster than across the body in a step, whatever it met.
+                before = before.max(start).max(block.extent() / dt);
+                after = after.max(end);
+            } else if let Block::Rigid(block) = block {
+                before = before.max(block.start().velocity.norm());
+            }
+        }
+        if after > FLUNG * before {
+            self.hold(summary);
+            for block in &mut self.blocks {
+                if let Block::Flex(block) = block {
+                    block.place_velocities();
+                    block.measure_elastic_energy();
+                }
+            }
+            summary.end_energy = self.end_energy();
+        }
+    }
+
+    /// Leaves every member where the step began, at rest.
+    ///
+    /// Not if loads beyond all measure are to blame: then the step is to be refused.
+    fn hold(&mut self, summary: &mut IslandSummary) {
+        let is_overloaded =
+            |block: &Block| matches!(block, Block::Flex(block) if block.is_overloaded());
+        if self.blocks.iter().any(is_overloaded) {
+            return;
+        }
+        summary.is_held = true;
+        self.contacts.clear();
+        self.pressed_before.clear();
+        for block in &mut self.blocks {
+            match block {
+                Block::Flex(block) => block.hold(),
+                Block::Rigid(block) => block.hold(),
+            }
+        }
+    }
+
+    /// The step that is taken when Newton's iterations fail: every block linearised, three rounds for the working set.
+    fn linear_step(
+        &mut self,
+        settings: &SolveSettings,
+        memory: &ContactMemory,
+        tolerance: f64,
+        summary: &mut IslandSummary,
+    ) -> Result<(), KktError> {
+        let kept = (-PARTING_RATE * settings.dt).exp();
+        summary.is_linearized = true;
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.linearize();
+            }
+        }
+        self.open_working_set(settings, tolerance, memory);
+        for round in 0..LINEAR_ROUNDS {
+            self.correct();
+            self.measure(round > 0);
+            self.add_violated(tolerance, kept, memory);
+            if round == 0 {
+                self.refresh_rows();
+            }
+            self.solve_multipliers(settings, round == 0, tolerance, summary)?;
+        }
+        self.correct();
+        self.measure(true);
+        Ok(())
+    }
+}

@@ -1,0 +1,169 @@
+//! Multipliers of the working set: rows of `G`, the Delassus matrix and one complementarity problem `w = W p + b`.
+
+use super::delassus::{RowDirection, assemble, compliance};
+use super::island::{Island, IslandSummary, KktError, SolveSettings};
+use super::position::slip;
+use crate::constraint::contact::Kinematics;
+use crate::linalg::complementarity::{Problem, RowKind};
+use crate::math::Vec2;
+use crate::system::{Block, Point, Response};
+
+/// Multiple of the tolerance by which redundant rows may contradict each other.
+const AVERAGED: f64 = 10.0;
+
+impl Island {
+    /// One complementarity problem on the working set.
+    pub(super) fn solve_multipliers(
+        &mut self,
+        settings: &SolveSettings,
+        has_new_rows: bool,
+        tolerance: f64,
+        summary: &mut IslandSummary,
+    ) -> Result<(), KktError> {
+        if self.contacts.is_empty() {
+            return Ok(());
+        }
+        for contact in &self.contacts {
+            prepare(&mut self.blocks, &contact.kinematics);
+            if has_new_rows {
+                prepare(&mut self.blocks, &contact.applied);
+            }
+        }
+        self.position_rows(settings.b0);
+        let contacts = &self.contacts;
+        let kinematics = |index: usize| &contacts[index].kinematics;
+        assemble(
+            &self.blocks,
+            &self.rows,
+            Response::Position,
+            kinematics,
+            &mut self.delassus,
+        );
+        self.take_out_multipliers(has_new_rows);
+        let redundancy = self.redundancy_tolerance(tolerance / settings.b0);
+        self.solver.set_redundancy_tolerance(redundancy);
+        let problem = Problem {
+            delassus: &self.delassus,
+            free: &self.free,
+            rows: &self.kinds,
+        };
+        let outcome = self
+            .solver
+            .solve(&problem, &mut self.multipliers, &mut self.statuses)?;
+        summary.n_pivots += outcome.n_pivots;
+        summary.residual = outcome.residual;
+        for (row, direction) in self.rows.iter().enumerate() {
+            let contact = &mut self.contacts[direction.contact];
+            let which = usize::from(matches!(self.kinds[row], RowKind::Friction { .. }));
+            contact.multiplier[which] = self.multipliers[row];
+            contact.status[which] = self.statuses[row];
+        }
+        Ok(())
+    }
+
+    /// Rows of the working set, with gaps and slips divided by `b0` and the multipliers that they were measured under.
+    fn position_rows(&mut self, b0: f64) {
+        self.rows.clear();
+        self.kinds.clear();
+        self.free.clear();
+        self.multipliers.clear();
+        self.statuses.clear();
+        for (index, contact) in self.contacts.iter().enumerate() {
+            let kinematics = &contact.kinematics;
+            let normal_row = self.rows.len();
+            self.rows.push(RowDirection {
+                contact: index,
+                direction: kinematics.normal,
+            });
+            self.kinds.push(RowKind::Unilateral);
+            self.free.push(kinematics.gap / b0);
+            self.multipliers.push(contact.multiplier[0]);
+            self.statuses.push(contact.status[0]);
+            let coefficient = self.candidates[contact.candidate].law.friction;
+            if coefficient > 0.0 {
+                self.rows.push(RowDirection {
+                    contact: index,
+                    direction: kinematics.tangent(),
+                });
+                self.kinds.push(RowKind::Friction {
+                    normal: normal_row,
+                    coefficient,
+                });
+                self.free.push(slip(kinematics, &self.blocks) / b0);
+                self.multipliers.push(contact.multiplier[1]);
+                self.statuses.push(contact.status[1]);
+            }
+        }
+    }
+
+    /// The natural-map residual of rows that move by `velocity` beyond what they may (m/s²): redundant rows that contradict
+    /// each other by less are averaged.
+    fn redundancy_tolerance(&self, velocity: f64) -> f64 {
+        let n = self.rows.len();
+        let (mut largest, mut scale) = (0.0f64, 0.0f64);
+        for (row, free) in self.free.iter().enumerate() {
+            let own = self.delassus[row * n + row];
+            if own > 0.0 {
+                largest = largest.max(own);
+                let load = free.abs().max(own * self.multipliers[row].abs());
+                scale = scale.max(load / own.sqrt());
+            }
+        }
+        let residual = AVERAGED * velocity / (largest.sqrt() * scale);
+        residual.clamp(1e-12, 1e-6)
+    }
+
+    /// `b -= W p`: what the rows would be without the multipliers they were measured under.
+    ///
+    /// Where the rows have changed since, the response is `G A⁻¹ G₀ᵀ p` with the rows `G₀` of that iterate: under a
+    /// heavy neighbour a force that turns by 1e-4 rad may throw a light body across the scene.
+    fn take_out_multipliers(&mut self, has_new_rows: bool) {
+        let n = self.rows.len();
+        if !has_new_rows {
+            for (free, row) in self.free.iter_mut().zip(self.delassus.chunks_exact(n)) {
+                let response: f64 = row.iter().zip(&self.multipliers).map(|(w, p)| w * p).sum();
+                *free -= response;
+            }
+            return;
+        }
+        let mut row = 0;
+        while row < n {
+            let contact = &self.contacts[self.rows[row].contact];
+            let mut response = Vec2::zeros();
+            for other in self
+                .contacts
+                .iter()
+                .filter(|other| other.multiplier[0] > 0.0)
+            {
+                let applied = &other.applied;
+                let found = compliance(
+                    &self.blocks,
+                    &contact.kinematics,
+                    applied,
+                    Response::Position,
+                );
+                if let Some(compliance) = found {
+                    let [normal, tangent] = other.multiplier;
+                    let force = normal * applied.normal + tangent * applied.tangent();
+                    response += compliance * force;
+                }
+            }
+            let first = row;
+            while row < n && self.rows[row].contact == self.rows[first].contact {
+                self.free[row] -= self.rows[row].direction.dot(&response);
+                row += 1;
+            }
+        }
+    }
+}
+
+/// Makes the compliances of a contact's nodes known.
+pub(super) fn prepare(blocks: &mut [Block], kinematics: &Kinematics) {
+    for attachment in kinematics.attachments() {
+        if let (Block::Flex(block), Point::Node(node)) =
+            (&mut blocks[attachment.block], attachment.grip.point)
+        {
+            block.prepare_compliance(node);
+        }
+    }
+}
