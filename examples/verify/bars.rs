@@ -171,9 +171,9 @@ impl Record {
 
     /// End of the last step with a contact force before a time (s).
     pub fn release(&self, before: f64) -> f64 {
-        let pressed = self.times.iter().zip(&self.pressure);
-        let pressed = pressed.filter(|(time, pressure)| **time < before && **pressure > 0.0);
-        pressed.last().map_or(f64::NAN, |(time, _)| *time)
+        let is_pressed = |&step: &usize| self.times[step] < before && self.pressure[step] > 0.0;
+        let last = (0..self.times.len()).rev().find(is_pressed);
+        last.map_or(f64::NAN, |step| self.times[step])
     }
 
     /// Root mean square and largest value of `p - exact(t)` over a span of time (s).
