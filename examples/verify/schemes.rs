@@ -65,7 +65,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         ten.n_steps = sheet.n_steps(ten.n_steps);
         let bounces = drop_bar(&scheme, &ten)?;
         let _ = writeln!(table, "{}", line(&scheme, &impact, &bounces));
-        judge(sheet, &scheme, &impact);
+        judge(sheet, &scheme, &impact, &bounces);
         if scheme.name == "trapezoidal" || scheme.mass == Mass::Redistributed {
             let sparse = bounces
                 .curve(&bounces.energy)
@@ -150,9 +150,13 @@ fn line(scheme: &Scheme, impact: &Record, bounces: &Record) -> String {
 }
 
 /// What every stabilized scheme promises, and what the plain one does.
-fn judge(sheet: &mut Sheet, scheme: &Scheme, impact: &Record) {
+fn judge(sheet: &mut Sheet, scheme: &Scheme, impact: &Record, bounces: &Record) {
     let name = full_name(scheme);
     let energy = impact.energy.iter().fold(0.0f64, |a, &b| a.max(b));
+    if scheme.impact == Stabilized {
+        let overlap = impact.penetration.max(bounces.penetration);
+        sheet.absolute(format!("B1, B2 overlap (m): {name}"), 0.0, overlap, 1e-8);
+    }
     // The energy of a vibration that linear acceleration integrates sways by (omega dt)² without any contact.
     if scheme.impact == Stabilized && scheme.integrator.is_unconditionally_stable() {
         sheet.at_most(format!("B1 largest energy: {name}"), 1.0 + 1e-9, energy);
@@ -161,7 +165,9 @@ fn judge(sheet: &mut Sheet, scheme: &Scheme, impact: &Record) {
 
 const CHOICE: &str = "
 What to choose. For impacts that the step resolves: the trapezoidal rule with the mass of the contact boundary moved
-inwards; it loses least. For everything else the default, damped(0.9): what a step cannot resolve dies out, and a bar
-that bounces keeps falling vibrations only for a while. Plain (C.5) with mass on the contact nodes is shown to be
-avoided: its multipliers alternate and feed energy into the bar.
+inwards. One impact keeps its energy, ten periods keep more of it than with any other stabilized scheme, and a step a
+quarter as long nearly all (B2). Plain (C.5) loses less still where the contact nodes have no mass, but nothing holds its
+energy back. With mass on those nodes it must be avoided: multipliers alternate, grow and feed energy into the bar. For
+impacts shorter than the step: the default, damped(0.9). It gives a smooth pressure, and takes the vibration that an impact
+leaves, so that bodies come to rest.
 ";
