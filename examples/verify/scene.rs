@@ -8,15 +8,6 @@ use foil2d::rapier::prelude::*;
 /// Acceleration of free fall (m/s²).
 pub const G: f64 = 9.81;
 
-/// `single` where rapier's own poses are `f32`, `double` in the `f64` build.
-pub fn by_precision(single: f64, double: f64) -> f64 {
-    if cfg!(feature = "f64") {
-        double
-    } else {
-        single
-    }
-}
-
 /// A vector in rapier's precision.
 pub fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x as Real, y as Real)
