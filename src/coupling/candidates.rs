@@ -68,6 +68,8 @@ fn segment_bounds(block: &FlexBlock, segment: usize) -> Bounds {
         block.start_position(b),
         block.position(a),
         block.position(b),
+        block.drift(a),
+        block.drift(b),
     ])
 }
 
@@ -265,7 +267,8 @@ fn one_sided(
         return;
     }
     for (index, &node) in points.model().mesh().boundary().nodes().iter().enumerate() {
-        let bounds = Bounds::of(&[points.start_position(node), points.position(node)]);
+        let ends = [points.position(node), points.drift(node)];
+        let bounds = Bounds::of(&[points.start_position(node), ends[0], ends[1]]);
         if bounds.intersects(&surface_box) && choose(points, index) {
             let key = ContactKey {
                 contactor: names.one,

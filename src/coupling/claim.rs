@@ -3,13 +3,13 @@
 //! From every flexible body the contact graph is walked through dynamic rigid bodies; all that are reached belong to the
 //! flexible stage for this step. Fixed and kinematic bodies are met but not passed through.
 
+use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box};
 use super::sets::RapierSets;
 use crate::body::FlexBodySet;
-use crate::math::{from_rapier, node_vec, to_rapier};
-use crate::rapier::math::{Real, Vector};
+use crate::math::{from_rapier, node_vec, rotation, to_rapier};
+use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
-use std::cmp::Ordering;
 use std::collections::{HashMap, HashSet};
 
 /// Who may touch whom.
@@ -78,13 +78,19 @@ impl Claims {
             let nodes = body.mesh().boundary().nodes();
             let mut swept = Aabb::new_invalid();
             let (mut length, mut travel) = (0.0, 0.0f64);
+            let state = body.state();
+            let turn = rotation(state.frame.angle);
             let mut last = node_vec(body.positions(), nodes[nodes.len() - 1]);
             for &node in nodes {
                 let position = node_vec(body.positions(), node);
                 let shift = dt * node_vec(body.velocities(), node);
                 swept.take_point(to_rapier(position));
+                // Vibrations that the step does not resolve move a node by its acceleration.
+                let own = turn * node_vec(&state.acceleration, node);
+                let bend = 0.5 * dt * dt * (state.frame.acceleration + own);
                 swept.take_point(to_rapier(position + shift));
-                travel = travel.max(shift.norm());
+                swept.take_point(to_rapier(position + shift + bend));
+                travel = travel.max(shift.norm()).max((shift + bend).norm());
                 length += (position - last).norm();
                 last = position;
             }
@@ -320,38 +326,6 @@ impl Claims {
     }
 }
 
-/// Order of two colliders by their places, which neither handles nor rapier's graphs change; by handle at the same place.
-fn order_of_colliders(
-    sets: &RapierSets<'_>,
-    one: ColliderHandle,
-    other: ColliderHandle,
-) -> Ordering {
-    let place = |handle| {
-        let collider: &Collider = sets.colliders.get(handle)?;
-        let pose = collider.position();
-        Some([pose.translation.x, pose.translation.y, pose.rotation.re])
-    };
-    order_of_numbers(
-        &place(one).unwrap_or_default(),
-        &place(other).unwrap_or_default(),
-    )
-    .then_with(|| one.into_raw_parts().cmp(&other.into_raw_parts()))
-}
-
-fn order_of_boxes(one: &Aabb, other: &Aabb) -> Ordering {
-    let corners = |aabb: &Aabb| [aabb.mins.x, aabb.mins.y, aabb.maxs.x, aabb.maxs.y];
-    order_of_numbers(&corners(one), &corners(other))
-}
-
-/// Lexicographic order.
-fn order_of_numbers(one: &[Real], other: &[Real]) -> Ordering {
-    let pairs = one.iter().zip(other);
-    pairs
-        .map(|(a, b)| a.total_cmp(b))
-        .find(|order| order.is_ne())
-        .unwrap_or(Ordering::Equal)
-}
-
 /// The dynamic rigid body of a collider, if the flexible stage can solve for it.
 pub(crate) fn claimable_parent(
     sets: &RapierSets<'_>,
@@ -414,31 +388,4 @@ fn joint_forbids(sets: &RapierSets<'_>, one: &Collider, other: &Collider) -> boo
     };
     let mut joints = sets.impulse_joints.joints_between(one, other);
     joints.any(|(_, joint)| !joint.data.contacts_enabled())
-}
-
-/// A box grown by a margin; one that is no number counts as none.
-fn loosened(aabb: Aabb, margin: Real) -> Aabb {
-    aabb.loosened(margin.max(0.0))
-}
-
-/// Pose of a collider on its body, up to date even where the user has moved the body since the last step.
-pub(super) fn placed_on(body: &RigidBody, collider: &Collider) -> Pose {
-    let offset = collider.position_wrt_parent().copied().unwrap_or_default();
-    *body.position() * offset
-}
-
-/// Box of a collider from where it is to where its velocity takes it.
-pub(crate) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) -> Aabb {
-    let Some(body) = collider.parent().and_then(|parent| bodies.get(parent)) else {
-        return collider.compute_aabb();
-    };
-    let aabb = collider.shape().compute_aabb(&placed_on(body, collider));
-    if body.is_fixed() {
-        return aabb;
-    }
-    let extents = aabb.half_extents();
-    let turn = (body.angvel().abs() * dt).min(1.0) * extents.length();
-    let shift: Vector = body.linvel() * dt;
-    let moved = Aabb::new(aabb.mins + shift, aabb.maxs + shift);
-    loosened(aabb.merged(&moved), turn + 0.01 * extents.length())
 }

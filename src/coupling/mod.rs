@@ -9,6 +9,7 @@ mod gather;
 mod hand_back;
 mod masters;
 mod nearby;
+mod places;
 mod reading;
 mod references;
 mod sets;

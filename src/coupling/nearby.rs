@@ -4,7 +4,8 @@
 //! a step without length none does, so bodies that collide far away would do so a little differently. Where flexible
 //! bodies meet each other and fixed colliders only, all that a claim needs is known without it.
 
-use super::claim::{Claims, placed_on, swept_box};
+use super::claim::Claims;
+use super::places::{placed_on, swept_box};
 use super::sets::RapierSets;
 use crate::rapier::parry::bounding_volume::BoundingVolume;
 use crate::rapier::prelude::*;

@@ -3,7 +3,7 @@
 use super::flex_block::FlexBlock;
 use crate::body::{FlexState, Frame};
 use crate::fe::model::{MassMatrix, Model};
-use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, set_node_vec};
+use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
 
 /// Energy of one motion of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -18,6 +18,15 @@ impl FlexBlock {
     /// Position of a node at the beginning of the step (m).
     pub fn start_position(&self, node: usize) -> Vec2 {
         node_vec(&self.start_position, node)
+    }
+
+    /// Where the velocity and acceleration of a node would take it (m).
+    pub fn drift(&self, node: usize) -> Vec2 {
+        let dt = self.step.dt;
+        let own = rotation(self.start_frame.angle) * node_vec(&self.start_acceleration, node);
+        let acceleration = self.start_frame.acceleration + own;
+        let start = node_vec(&self.start_position, node);
+        start + dt * node_vec(&self.start_velocity, node) + 0.5 * dt * dt * acceleration
     }
 
     /// Velocity at a node at the beginning of the step (m/s): that of the mass around a massless one.
