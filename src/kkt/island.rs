@@ -14,8 +14,11 @@ use thiserror::Error;
 /// Why an island cannot be solved.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum KktError {
-    /// The effective matrix of a flexible body is not positive definite.
-    #[error("flexible body {body}: {source}")]
+    /// The effective matrix of a flexible body is not positive definite: the body has no mass somewhere, or its cells are so
+    /// small and stiff for this step length that rounding hides their mass.
+    #[error(
+        "flexible body {body}: {source}; if its cells are very small and stiff, shorten the step or coarsen its mesh"
+    )]
     Factorization {
         /// Index of the body in its set.
         body: u32,
