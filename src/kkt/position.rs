@@ -291,15 +291,24 @@ impl ActiveContact {
     ///
     /// Returns whether it did.
     fn allow_overlap(&mut self, kept: f64, slop: f64, blocks: &[Block]) -> bool {
-        let began =
-            self.kinematics.gap - self.kinematics.normal.dot(&moved(&self.kinematics, blocks));
-        if began < -slop {
+        let Kinematics { gap, normal, .. } = self.kinematics;
+        // Along the levers, and as the points really moved: a turning body may have come by either.
+        let travelled = self.kinematics.relative(blocks, |block, grip| {
+            block.position(grip.point) - block.start_position(grip.point)
+        });
+        let [linear, travelled] =
+            [moved(&self.kinematics, blocks), travelled].map(|path| normal.dot(&path));
+        let began = gap - linear.min(travelled);
+        // What mostly came within the step is an impact, where a turn blurs its beginning.
+        let is_clear = (linear - travelled).abs() <= slop;
+        let is_overlap = began < -slop && (is_clear || began < 0.5 * gap);
+        if is_overlap {
             self.allowance = kept * began;
             self.kinematics.gap -= self.allowance;
             self.measured.gap = self.kinematics.gap;
             self.known = self.known.map(|(gap, at)| (gap - self.allowance, at));
         }
-        began < -slop
+        is_overlap
     }
 
     fn new(

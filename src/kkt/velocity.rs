@@ -154,7 +154,9 @@ impl Island {
                 }
             });
             let sticks = contact.status[1] == Status::Stick;
-            if law.friction > 0.0 && (contact.is_hard || sticks) {
+            // Forward increments (b0 = 0) have friction in their velocities already.
+            let takes_back = settings.b0 > 0.0;
+            if law.friction > 0.0 && (contact.is_hard || sticks || takes_back) {
                 self.rows.push(RowDirection {
                     contact: index,
                     direction: kinematics.tangent(),
@@ -165,8 +167,15 @@ impl Island {
                         normal: normal_row,
                         coefficient: law.friction,
                     }
-                } else {
+                } else if sticks {
                     RowKind::Bilateral
+                } else {
+                    // Friction that has turned the slip round is taken back, as far as it acted.
+                    let back = -settings.dt * contact.multiplier[1];
+                    RowKind::Box {
+                        low: back.min(0.0),
+                        high: back.max(0.0),
+                    }
                 });
             }
         }
