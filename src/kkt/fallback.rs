@@ -49,6 +49,9 @@ impl Island {
 
     /// Holds the island if contact has flung a member away faster than any collision could.
     pub(super) fn hold_if_flung(&mut self, dt: f64, summary: &mut IslandSummary) {
+        if self.contacts.is_empty() {
+            return;
+        }
         let (mut before, mut after) = (0.0f64, 0.0f64);
         for block in &self.blocks {
             if let Block::Flex(block) = block {

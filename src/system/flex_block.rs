@@ -107,6 +107,7 @@ pub struct FlexBlock {
     pub(super) has_contact_force: bool,
     /// The contact forces of the last solve, and the frame's angle in the last one from the beginning.
     pub(super) solved_force: Vec<f64>,
+    pub(super) has_solved_force: bool,
     pub(super) solved_angle: Option<f64>,
     /// Resultant of the contact forces (N).
     pub(super) contact_total: Vec2,
@@ -192,6 +193,7 @@ impl FlexBlock {
             contact_force: zeros(),
             has_contact_force: false,
             solved_force: zeros(),
+            has_solved_force: false,
             solved_angle: None,
             contact_total: Vec2::zeros(),
             contact_moment: 0.0,
@@ -279,15 +281,18 @@ impl FlexBlock {
         self.start_torque = state.torque;
         self.start_energy = [state.kinetic_energy, state.elastic_energy];
         self.prescribed.copy_from_slice(load.prescribed);
-        let is_uniform = load.force.iter().all(|force| *force == 0.0);
-        self.uniform = is_uniform.then_some(load.gravity);
         for (node, mass) in self.arms.node_mass.iter().enumerate() {
             for axis in 0..2 {
                 let dof = 2 * node + axis;
                 self.force[dof] = load.force[dof] + mass * load.gravity[axis];
             }
         }
-        self.force_total = sum_of(load.force) + self.arms.mass * load.gravity;
+        // Only the balances of a free body ask for these.
+        if self.kind == Frame::Free {
+            let is_uniform = load.force.iter().all(|force| *force == 0.0);
+            self.uniform = is_uniform.then_some(load.gravity);
+            self.force_total = sum_of(load.force) + self.arms.mass * load.gravity;
+        }
     }
 
     fn predict_operators(&mut self, state: &FlexState) {
@@ -299,8 +304,10 @@ impl FlexBlock {
             &mut self.rate_q,
         );
         // The iterate starts from where the body is: the operators of unresolved modes are large and cancel in the solve.
-        self.displacement.copy_from_slice(&state.displacement);
-        self.rate.copy_from_slice(&state.rate);
+        if self.kind != Frame::Fixed {
+            self.displacement.copy_from_slice(&state.displacement);
+            self.rate.copy_from_slice(&state.rate);
+        }
         self.is_linear = false;
         self.solved_angle = None;
         self.inertia = self.arms.polar;
@@ -309,8 +316,10 @@ impl FlexBlock {
         if self.kind != Frame::Fixed {
             self.start_momentum =
                 self.angular_momentum_of(&self.start_frame, &state.displacement, &state.rate);
+            self.place();
+        } else {
+            self.position.copy_from_slice(&state.position);
         }
-        self.place();
     }
 
     /// Writes the accelerations that a new body's loads and spin give it from an unstrained start.

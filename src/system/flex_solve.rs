@@ -37,7 +37,10 @@ impl FlexBlock {
         } else {
             self.solve_anew();
         }
-        self.solved_force.copy_from_slice(&self.contact_force);
+        if self.has_contact_force || self.has_solved_force {
+            self.solved_force.copy_from_slice(&self.contact_force);
+            self.has_solved_force = self.has_contact_force;
+        }
         self.correct()
     }
 
