@@ -69,11 +69,8 @@ impl FlexPipeline {
     pub(super) fn check_finite(&self, flex_bodies: &FlexBodySet) -> Result<(), StepError> {
         for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
             if let (Block::Flex(block), Some(index)) = (block, index) {
-                // A sum of squares is finite only if every term is.
-                let balance = block.end_balance();
-                let mut motion = block.positions().iter().chain(block.velocities());
-                let is_finite = (balance.kinetic + balance.elastic).is_finite()
-                    && motion.all(|&value| is_held(value));
+                let holds = |dofs: &[f64]| dofs.iter().all(|&value| is_held(value));
+                let is_finite = holds(block.positions()) && holds(block.velocities());
                 if let (false, Some((handle, _))) = (is_finite, flex_bodies.at_index(*index)) {
                     return Err(StepError::NotFinite(handle));
                 }
