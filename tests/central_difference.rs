@@ -535,29 +535,6 @@ fn gauss_seidel_slides_a_block_like_the_direct_solver() {
     assert!(off < 1e-8, "{off}");
 }
 
-/// Time of a step over the size of the mesh, in one run: a bench in the guise of a test, because it times.
-#[test]
-#[ignore = "measures time: run alone, with --release"]
-fn the_cost_of_a_step_is_linear_in_the_mesh() {
-    let sizes = [22usize, 70, 223];
-    let mut dofs = Vec::new();
-    let mut times = Vec::new();
-    for side in sizes {
-        let mut scene = explicit(Scene::new(1e-5));
-        scene.ground(0.5);
-        let body = scene.flexible(rubber(side));
-        scene.steps(20);
-        let n_steps = 4_000_000 / (side * side);
-        let start = std::time::Instant::now();
-        scene.steps(n_steps);
-        times.push(start.elapsed().as_secs_f64() / n_steps as f64);
-        dofs.push(2.0 * scene.body(body).n_nodes() as f64);
-    }
-    let exponent = order(&dofs, &times);
-    println!("{dofs:?} dofs: {times:?} s per step, exponent {exponent}");
-    assert!(exponent < 1.1, "exponent {exponent}");
-}
-
 /// Both surfaces without mass, and one of them with: momentum goes over to the last digit.
 #[test]
 fn two_explicit_bodies_that_collide_keep_momentum() {

@@ -1,8 +1,9 @@
-//! The velocity stage: impulses at contacts between masses, and at massless surfaces where the step is longer than the
-//! impact.
+//! The velocity stage: impulses at contacts of rigid bodies, at surfaces with mass, and at massless ones where the step is
+//! longer than the impact.
 //!
-//! The position stage leaves a multiplier `p` per contact. Through a massless surface `p` is the force of a spring, and
-//! acts as (C.5) says. Between masses it only moved the positions; the velocity obeys `0 <= P ⊥ n·v' + e n·v >= 0`.
+//! The position stage leaves a multiplier `p` per contact. On a flexible body it acts as (C.5) says, and a surface with mass
+//! holds its relative velocity besides. Between rigid bodies it only moved the positions; the velocity obeys
+//! `0 <= P ⊥ n·v' + e n·v >= 0`.
 //! A flexible body that is stiff on the scale of the step behaves as a rigid one: its share of the contact's mobility is
 //! then rigid, and the same condition, weighted by that share, replaces the vibration that the step cannot resolve.
 
