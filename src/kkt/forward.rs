@@ -212,6 +212,7 @@ impl Island {
             of,
             &mut self.delassus,
         );
+        self.acted.clear();
         self.solve_rows()?;
         // T(v + dt/2 M⁻¹Gᵀp) - T(v) = dt/2 p·(G v + dt/4 W p).
         let (n, mut gain) = (self.rows.len(), 0.0);

@@ -78,6 +78,8 @@ pub struct ActiveContact {
     pub multiplier: [f64; 2],
     /// Impulse of the velocity stage, normal and tangential (N s).
     pub impulse: [f64; 2],
+    /// Relative velocity along the normal and the tangent after the velocity stage (m/s).
+    pub(super) parting: [f64; 2],
     /// Status of the normal and of the friction row.
     pub status: [Status; 2],
     /// Whether it is one of rigid bodies only.
@@ -188,6 +190,8 @@ pub struct Island {
     pub(super) free: Vec<f64>,
     pub(super) delassus: Vec<f64>,
     pub(super) multipliers: Vec<f64>,
+    /// What has acted already of the rows' multipliers.
+    pub(super) acted: Vec<f64>,
     pub(super) statuses: Vec<Status>,
     pub(super) wrenches: Vec<[f64; 3]>,
     pub(super) groups: Vec<usize>,

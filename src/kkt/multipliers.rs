@@ -46,6 +46,7 @@ impl Island {
             delassus: &self.delassus,
             free: &self.free,
             rows: &self.kinds,
+            acted: &[],
         };
         let outcome = self
             .solver

@@ -346,6 +346,7 @@ impl ActiveContact {
             applied: kinematics,
             multiplier: [remembered.normal, remembered.tangent],
             impulse: [0.0; 2],
+            parting: [0.0; 2],
             status: [normal, tangential],
             allowance: 0.0,
             known: Some((kinematics.gap, moved(&kinematics, blocks))),

@@ -12,6 +12,7 @@ use super::island::{Island, KktError, SolveSettings};
 use super::multipliers::prepare;
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
+use crate::math::Vec2;
 use crate::system::{Block, Response};
 
 /// Share of rigid mobility below which an impact counts as resolved, and above which as unresolved.
@@ -48,11 +49,7 @@ impl Island {
             return Ok(false);
         }
         self.solve_rows()?;
-        for (row, direction) in self.rows.iter().enumerate() {
-            let contact = &mut self.contacts[direction.contact];
-            let is_normal = direction.direction == contact.kinematics.normal;
-            contact.impulse[usize::from(!is_normal)] = self.multipliers[row];
-        }
+        self.read_impulses();
         self.clear_impulses();
         self.gather_rows(Response::Velocity);
         self.add_to_rigid(Response::Velocity, 1.0);
@@ -124,12 +121,13 @@ impl Island {
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
-        for (index, contact) in self.contacts.iter().enumerate() {
+        for index in 0..self.contacts.len() {
+            let contact = self.contacts[index];
             if !contact.is_closed() || contact.holds_velocity() == 0.0 {
                 continue;
             }
             let law = self.candidates[contact.candidate].law;
-            let kinematics = &contact.kinematics;
+            let kinematics = contact.kinematics;
             let velocity = kinematics.relative(&self.blocks, |block, grip| block.velocity(grip));
             let rebound = law.rebound(contact.approach, settings.restitution_threshold);
             // A resolved impact rebounds by its elasticity.
@@ -139,45 +137,21 @@ impl Island {
             } else {
                 rebound
             };
-            let normal_row = self.rows.len();
-            self.rows.push(RowDirection {
-                contact: index,
-                direction: kinematics.normal,
-            });
-            self.free.push(velocity.dot(&kinematics.normal) - rebound);
-            self.kinds.push(if contact.is_hard {
-                RowKind::Unilateral
-            } else {
-                // The multiplier has acted already; together they may not pull.
-                RowKind::Box {
-                    low: -settings.dt * contact.multiplier[0],
-                    high: f64::INFINITY,
-                }
-            });
-            let sticks = contact.status[1] == Status::Stick;
-            // Forward increments (b0 = 0) have friction in their velocities already.
-            let takes_back = settings.b0 > 0.0;
-            if law.friction > 0.0 && (contact.is_hard || sticks || takes_back) {
-                self.rows.push(RowDirection {
-                    contact: index,
-                    direction: kinematics.tangent(),
-                });
-                self.free.push(velocity.dot(&kinematics.tangent()));
-                self.kinds.push(if contact.is_hard {
-                    RowKind::Friction {
-                        normal: normal_row,
-                        coefficient: law.friction,
-                    }
-                } else if sticks {
-                    RowKind::Bilateral
-                } else {
-                    // Friction that has turned the slip round is taken back, as far as it acted.
-                    let back = -settings.dt * contact.multiplier[1];
-                    RowKind::Box {
-                        low: back.min(0.0),
-                        high: back.max(0.0),
-                    }
-                });
+            let normal = self.rows.len();
+            self.contacts[index].parting = [rebound, 0.0];
+            self.push_row(
+                index,
+                kinematics.normal,
+                velocity.dot(&kinematics.normal) - rebound,
+                RowKind::Unilateral,
+            );
+            if law.friction > 0.0 {
+                let tangent = kinematics.tangent();
+                let kind = RowKind::Friction {
+                    normal,
+                    coefficient: law.friction,
+                };
+                self.push_row(index, tangent, velocity.dot(&tangent), kind);
             }
         }
         let contacts = &self.contacts;
@@ -189,6 +163,43 @@ impl Island {
             &mut self.delassus,
         );
         self.soften();
+        self.list_acted(settings.b1);
+    }
+
+    fn push_row(&mut self, contact: usize, direction: Vec2, free: f64, kind: RowKind) {
+        self.rows.push(RowDirection { contact, direction });
+        self.free.push(free);
+        self.kinds.push(kind);
+    }
+
+    /// Lists what has acted already of the soft rows' multipliers: `scale` times those of the position stage.
+    fn list_acted(&mut self, scale: f64) {
+        self.acted.clear();
+        for direction in &self.rows {
+            let contact = &self.contacts[direction.contact];
+            let which = usize::from(direction.direction != contact.kinematics.normal);
+            let acted = if contact.is_hard {
+                0.0
+            } else {
+                scale * contact.multiplier[which]
+            };
+            self.acted.push(acted);
+        }
+    }
+
+    /// Leaves impulses and the velocities of rows after them on the contacts.
+    fn read_impulses(&mut self) {
+        let n = self.rows.len();
+        for (row, direction) in self.rows.iter().enumerate() {
+            let response = self.delassus[row * n..(row + 1) * n].iter().zip(&self.multipliers);
+            let softened: f64 = self.free[row] + response.map(|(w, p)| w * p).sum::<f64>();
+            let contact = &mut self.contacts[direction.contact];
+            let which = usize::from(direction.direction != contact.kinematics.normal);
+            let impulse = self.multipliers[row];
+            let share = if contact.is_hard { 1.0 } else { contact.holds_velocity().max(1e-12) };
+            contact.parting[which] += softened - (1.0 - share) * self.delassus[row * n + row] * impulse;
+            contact.impulse[which] = impulse;
+        }
     }
 
     /// Weights soft rows: `W_ii (1 - φ)/φ` on the diagonal lets a resolved contact keep its velocity.
@@ -213,6 +224,7 @@ impl Island {
             delassus: &self.delassus,
             free: &self.free,
             rows: &self.kinds,
+            acted: &self.acted,
         };
         self.solver
             .solve(&problem, &mut self.multipliers, &mut self.statuses)?;
@@ -290,11 +302,12 @@ impl Island {
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
-        for (index, contact) in self.contacts.iter().enumerate() {
+        for index in 0..self.contacts.len() {
+            let contact = self.contacts[index];
             if contact.is_hard || !contact.is_closed() || contact.holds_velocity() == 0.0 {
                 continue;
             }
-            let kinematics = &contact.kinematics;
+            let kinematics = contact.kinematics;
             let mut acceleration =
                 kinematics.relative(&self.blocks, |block, grip| block.smooth_acceleration(grip));
             for a in kinematics.attachments() {
@@ -302,18 +315,18 @@ impl Island {
                     acceleration += a.weight * block.respond(a.grip.lever, self.wrenches[a.block]);
                 }
             }
-            let sticks = contact.status[1] == Status::Stick;
-            let directions = [
-                Some(kinematics.normal),
-                sticks.then(|| kinematics.tangent()),
-            ];
-            for direction in directions.into_iter().flatten() {
-                self.rows.push(RowDirection {
-                    contact: index,
-                    direction,
-                });
-                self.free.push(acceleration.dot(&direction));
-                self.kinds.push(RowKind::Bilateral);
+            let normal = self.rows.len();
+            let along = acceleration.dot(&kinematics.normal) + contact.parting[0] / settings.dt;
+            self.push_row(index, kinematics.normal, along, RowKind::Unilateral);
+            let coefficient = self.candidates[contact.candidate].law.friction;
+            if coefficient > 0.0 {
+                let tangent = kinematics.tangent();
+                let kind = RowKind::Friction {
+                    normal,
+                    coefficient,
+                };
+                let along = acceleration.dot(&tangent) + contact.parting[1] / settings.dt;
+                self.push_row(index, tangent, along, kind);
             }
         }
         if self.rows.is_empty() {
@@ -328,6 +341,7 @@ impl Island {
             &mut self.delassus,
         );
         self.soften();
+        self.list_acted(1.0);
         self.solve_rows()?;
         self.gather_rows(Response::Acceleration);
         self.add_to_rigid(Response::Acceleration, 1.0);

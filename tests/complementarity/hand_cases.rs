@@ -197,6 +197,7 @@ fn data_that_states_no_problem_is_refused_with_its_place() {
             delassus,
             free,
             rows,
+            acted: &[],
         };
         let answer = solver.solve(&problem, &mut multipliers, &mut status);
         assert_eq!(

@@ -65,6 +65,7 @@ impl Case {
             delassus: &self.delassus,
             free: &self.free,
             rows: &self.rows,
+            acted: &[],
         }
     }
 

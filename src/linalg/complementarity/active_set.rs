@@ -46,7 +46,7 @@ pub(super) enum Redundancy {
     LeastChange,
 }
 
-/// A slipping friction row: `p_row = factor * p_normal`.
+/// A slipping friction row: `p_row = factor * p_normal`, of the whole multipliers.
 #[derive(Debug, Clone, Copy)]
 struct Sliding {
     row: usize,
@@ -170,8 +170,14 @@ impl ActiveSet {
                 (Status::SlipPositive, RowKind::Box { high, .. }) => high,
                 (Status::SlipNegative, RowKind::Box { low, .. }) => low,
                 _ if !problem.is_movable(row) => problem.idle_multiplier(row),
-                _ => 0.0,
+                _ => 0.0 - problem.acted(row),
             };
+        }
+        for &row in &self.unknowns {
+            self.multipliers[row] = 0.0;
+        }
+        for slip in &self.sliding {
+            self.multipliers[slip.row] += slip.factor * problem.acted(slip.normal);
         }
         for (load, &row) in self.right_side.iter_mut().zip(&self.unknowns) {
             *load = -problem.velocity(row, &self.multipliers[..problem.n_rows()]);
@@ -181,7 +187,8 @@ impl ActiveSet {
             self.multipliers[row] = value;
         }
         for slip in &self.sliding {
-            self.multipliers[slip.row] = slip.factor * self.multipliers[slip.normal];
+            let normal = self.multipliers[slip.normal] + problem.acted(slip.normal);
+            self.multipliers[slip.row] = slip.factor * normal - problem.acted(slip.row);
         }
         redundant
     }

@@ -63,6 +63,7 @@ mod tests {
                     coefficient: 0.25,
                 },
             ],
+            acted: &[],
         };
         let mut multipliers = [0.0; 2];
         let n_sweeps = problem

@@ -74,10 +74,14 @@ impl Lemke {
         self.unknowns.clear();
         self.offset.clear();
         for row in 0..problem.n_rows() {
-            self.offset.push(problem.idle_multiplier(row));
             if !problem.is_movable(row) {
+                self.offset.push(problem.idle_multiplier(row));
                 continue;
             }
+            self.offset.push(match problem.rows[row] {
+                RowKind::Box { .. } => problem.idle_multiplier(row),
+                _ => 0.0 - problem.acted(row),
+            });
             let push = Unknown::Force { row, sign: 1.0 };
             let pull = Unknown::Force { row, sign: -1.0 };
             match problem.rows[row] {

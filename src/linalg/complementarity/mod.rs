@@ -21,6 +21,7 @@
 //!     delassus: &[0.25, 0.0, 0.0, 0.25],
 //!     free: &[-3.0, 10.0],
 //!     rows: &[RowKind::Unilateral, RowKind::Friction { normal: 0, coefficient: 0.5 }],
+//!     acted: &[],
 //! };
 //! let (mut impulses, mut status) = ([0.0; 2], [Status::Open; 2]);
 //! let outcome = Solver::new().solve(&problem, &mut impulses, &mut status)?;

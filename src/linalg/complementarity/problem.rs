@@ -57,6 +57,9 @@ pub struct Problem<'a> {
     pub free: &'a [f64],
     /// The law of each row, shape `(n)`.
     pub rows: &'a [RowKind],
+    /// Multipliers that have acted already, and are part of `b`, shape `(n)`, or empty if there are none. Contacts and
+    /// friction obey their laws with the whole of `p + acted`; bounds of a [`RowKind::Box`] hold for `p`.
+    pub acted: &'a [f64],
 }
 
 /// Data that states no problem.
@@ -116,7 +119,7 @@ impl<'a> Problem<'a> {
     /// Checks every number once, so that the solvers need not.
     ///
     /// # Panics
-    /// If the shapes of the three slices do not agree.
+    /// If the shapes of the slices do not agree.
     pub(super) fn check(&self) -> Result<Checked<'a>, ComplementarityError> {
         let n = self.rows.len();
         assert_eq!(
@@ -128,6 +131,10 @@ impl<'a> Problem<'a> {
             self.delassus.len(),
             n * n,
             "a problem of {n} rows needs an n x n matrix"
+        );
+        assert!(
+            self.acted.is_empty() || self.acted.len() == n,
+            "a problem needs no acted multipliers or one per row"
         );
         if let Some(entry) = self.delassus.iter().position(|value| !value.is_finite()) {
             let (row, column, value) = (entry / n, entry % n, self.delassus[entry]);
@@ -148,6 +155,7 @@ impl<'a> Problem<'a> {
             delassus: self.delassus,
             free: self.free,
             rows: self.rows,
+            acted: self.acted,
             floor: IMMOVABLE * largest,
         })
     }
@@ -184,6 +192,7 @@ pub(super) struct Checked<'a> {
     pub delassus: &'a [f64],
     pub free: &'a [f64],
     pub rows: &'a [RowKind],
+    acted: &'a [f64],
     /// Diagonal entries up to this value mean an immovable row.
     floor: f64,
 }
@@ -211,23 +220,34 @@ impl<'a> Checked<'a> {
         super::dense::dot(self.row(row), multipliers) + self.free[row]
     }
 
-    /// The admissible multiplier nearest to `value`, friction bounds taken from `normal_multiplier`.
+    /// What has acted already of a contact's or friction's multiplier.
+    pub fn acted(&self, row: usize) -> f64 {
+        match self.rows[row] {
+            RowKind::Unilateral | RowKind::Friction { .. } => {
+                self.acted.get(row).copied().unwrap_or(0.0)
+            }
+            RowKind::Bilateral | RowKind::Box { .. } => 0.0,
+        }
+    }
+
+    /// The admissible multiplier nearest to `value`, friction bounds taken from the whole `normal_multiplier`.
     pub fn project(&self, row: usize, value: f64, normal_multiplier: f64) -> f64 {
+        let acted = self.acted(row);
         match self.rows[row] {
             RowKind::Bilateral => value,
-            RowKind::Unilateral => value.max(0.0),
+            RowKind::Unilateral => value.max(0.0 - acted),
             RowKind::Friction { coefficient, .. } => {
                 let bound = coefficient * normal_multiplier.max(0.0);
-                value.max(-bound).min(bound)
+                value.max(-bound - acted).min(bound - acted)
             }
             RowKind::Box { low, high } => value.max(low).min(high),
         }
     }
 
-    /// The multiplier of the normal row of a friction row; zero for any other row.
+    /// The whole multiplier of the normal row of a friction row; zero for any other row.
     pub fn normal_multiplier(&self, row: usize, multipliers: &[f64]) -> f64 {
         match self.rows[row] {
-            RowKind::Friction { normal, .. } => multipliers[normal],
+            RowKind::Friction { normal, .. } => multipliers[normal] + self.acted(normal),
             _ => 0.0,
         }
     }

@@ -1,9 +1,9 @@
 //! Reading, repairing and comparing statuses: which piece of its law, `p_i = proj_i(p_i - w_i / W_ii)`,
-//! a row is on.
+//! a row is on, with the whole of its multiplier.
 
 use super::problem::{Checked, RowKind, Status};
 
-/// Reads the statuses from `p_i - w_i / W_ii`; true if one of them changed.
+/// Reads the statuses from `p_i - w_i / W_ii`, `p_i` with what has acted; true if one of them changed.
 ///
 /// A status is kept while it is wrong by less than `slack` (in square roots of energy, as in
 /// [`Measure::scale`](super::residual::Measure::scale)): round-off must not open and close contacts that carry nothing.
@@ -14,7 +14,9 @@ pub(super) fn identify(
     slack: f64,
     status: &mut [Status],
 ) -> bool {
-    let moved = |row: usize| multipliers[row] - velocity(row) / problem.diagonal(row);
+    let moved = |row: usize| {
+        multipliers[row] + problem.acted(row) - velocity(row) / problem.diagonal(row)
+    };
     let mut changed = false;
     // friction last: whether it can act depends on the new status of its normal
     for friction_pass in [false, true] {
