@@ -111,8 +111,8 @@ fn a_sliding_block_stops_after_v_squared_over_2_mu_g() {
         assert_lawful(watch(&mut scene, (1.5 * rate) as usize));
         let way = scene.body(body).centre_of_mass()[0] - start;
         let exact = speed * speed / 2.0 / mu / G;
-        // One step more or less at full speed.
-        let allowed = speed * scene.dt() + 1e-3;
+        // A soft block sways, and stops with its sway; a stiff one is a point mass but for rapier's rounding.
+        let allowed = if young < 1e7 { 1e-2 } else { 1e-4 } * exact;
         assert!(
             (way - exact).abs() < allowed,
             "E {young:e}, dt 1/{rate}: {way} m, not {exact} m"
@@ -155,7 +155,7 @@ fn a_rigid_box_slides_and_stops_on_a_flexible_beam() {
         let way = f64::from(body.translation().x) - 1.0;
         let exact = speed * speed / 2.0 / mu / G;
         assert!(
-            (way - exact).abs() < speed / rate,
+            (way - exact).abs() < 1e-4 * exact,
             "dt 1/{rate}: {way} m, not {exact} m"
         );
         assert!(
@@ -209,4 +209,63 @@ fn a_disc_rolls_down_a_flexible_slab() {
             }
         }
     }
+}
+
+/// Drops a spinning block of 0.2 m from 0.4 m; returns its largest energy over the one it began with, and how far the impulses of
+/// the contact forces are from its momentum and weight, over `m g t`.
+fn drop_spinning(young: f64, spin: f64, rate: f64) -> [f64; 2] {
+    let (mu, seconds) = (0.5, 1.5);
+    let mut scene = Scene::new(1.0 / rate);
+    scene.ground(mu);
+    let material = LinearElastic::plane_stress(young, 0.3)
+        .density(1000.0)
+        .rayleigh(1e-4);
+    let body = scene.flexible(
+        FlexBodyBuilder::rectangle([0.2, 0.2], [8, 8])
+            .material(material)
+            .friction(mu)
+            .translation([-0.1, 0.4])
+            .angvel(spin),
+    );
+    let n = (seconds * rate) as usize;
+    let start = scene.report().energy().total();
+    let (mut highest, mut first) = (0.0f64, start);
+    let mut impulse = [0.0; 2];
+    for step in 0..n {
+        let total = scene.step().energy().total();
+        first = if step == 0 { total } else { first };
+        highest = highest.max(total / first);
+        let force = scene.body(body).total_contact_force();
+        impulse = [0, 1].map(|axis| impulse[axis] + force[axis] * scene.dt());
+    }
+    let body = scene.body(body);
+    let [vx, vy] = body.linvel();
+    let weight = body.mass() * G;
+    // The end of the last force acts in the step to come.
+    let late = (1.0 - Beta2::default().beta1()) * scene.dt() * weight;
+    let y = impulse[1] - body.mass() * vy - weight * n as f64 * scene.dt();
+    let x = impulse[0] - body.mass() * vx;
+    let open = x.hypot(y).min(x.hypot(y - late));
+    [highest, open / (weight * seconds)]
+}
+
+#[test]
+fn friction_of_an_impact_acts_once_and_the_contact_forces_account_for_it() {
+    let mut findings = Findings::default();
+    for (young, spins) in [
+        (1e7, [0.0, 5.0, 11.0, 30.0]),
+        (1e9, [3.0, 21.0, 22.0, 26.0]),
+    ] {
+        for rate in [60.0, 240.0] {
+            for spin in spins {
+                let [energy, open] = drop_spinning(young, spin, rate);
+                let case = format!("E {young:e}, {spin} rad/s, dt 1/{rate}");
+                // An impact much shorter than the step may put some into a coarse vibration before it is taken back.
+                let most = if rate < 100.0 { 1.2 } else { 1.0 + 1e-9 };
+                findings.check(energy <= most, || format!("{case}: energy {energy}"));
+                findings.check(open < 1e-4, || format!("{case}: impulse off by {open:e}"));
+            }
+        }
+    }
+    findings.report();
 }

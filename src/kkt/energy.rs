@@ -116,7 +116,9 @@ impl Island {
         *reserve -= gain;
         let band = if touches { ROUND_OFF } else { FLIGHT_BAND };
         let debt = -*reserve - band * (kinetic + elastic);
-        if debt <= 0.0 {
+        // At rest under load there are only rounding errors to take.
+        let is_still = kinetic <= ROUND_OFF * elastic;
+        if debt <= 0.0 || is_still {
             return;
         }
         let mut taken = if touches {
@@ -160,6 +162,9 @@ impl Island {
         let curvature = 0.5 * (after + mirrored) - before;
         let slope = 0.5 * (after - mirrored);
         let step = step_of_parabola(curvature, slope, excess);
+        for (row, impulse) in self.rows.iter().zip(&self.multipliers) {
+            self.contacts[row.contact].impulse[0] += step * impulse;
+        }
         before - self.add_responses(1.0 + step)
     }
 

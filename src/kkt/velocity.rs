@@ -191,13 +191,20 @@ impl Island {
     fn read_impulses(&mut self) {
         let n = self.rows.len();
         for (row, direction) in self.rows.iter().enumerate() {
-            let response = self.delassus[row * n..(row + 1) * n].iter().zip(&self.multipliers);
+            let response = self.delassus[row * n..(row + 1) * n]
+                .iter()
+                .zip(&self.multipliers);
             let softened: f64 = self.free[row] + response.map(|(w, p)| w * p).sum::<f64>();
             let contact = &mut self.contacts[direction.contact];
             let which = usize::from(direction.direction != contact.kinematics.normal);
             let impulse = self.multipliers[row];
-            let share = if contact.is_hard { 1.0 } else { contact.holds_velocity().max(1e-12) };
-            contact.parting[which] += softened - (1.0 - share) * self.delassus[row * n + row] * impulse;
+            let share = if contact.is_hard {
+                1.0
+            } else {
+                contact.holds_velocity().max(1e-12)
+            };
+            contact.parting[which] +=
+                softened - (1.0 - share) * self.delassus[row * n + row] * impulse;
             contact.impulse[which] = impulse;
         }
     }
@@ -343,6 +350,13 @@ impl Island {
         self.soften();
         self.list_acted(1.0);
         self.solve_rows()?;
+        // What the stored acceleration loses will not act in the next step.
+        let late = settings.dt - settings.b1;
+        for (row, direction) in self.rows.iter().enumerate() {
+            let contact = &mut self.contacts[direction.contact];
+            let which = usize::from(direction.direction != contact.kinematics.normal);
+            contact.impulse[which] += late * self.multipliers[row];
+        }
         self.gather_rows(Response::Acceleration);
         self.add_to_rigid(Response::Acceleration, 1.0);
         Ok(())

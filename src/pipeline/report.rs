@@ -22,7 +22,10 @@ pub struct ContactReport {
     pub normal: [f64; 2],
     /// Gap (m), negative for overlap.
     pub gap: f64,
-    /// Compressive force on the contactor along the normal, mean over the step (N).
+    /// Compressive force on the contactor along the normal (N): the impulse that the step adds to the bodies over its length. The
+    /// part `1 - β1` of a force that lasts acts in the next step, so that sums over time, not single steps, balance momentum.
+    /// Negative where energy that the last step's force had added is taken back; at a contact that has just opened, only
+    /// [`FlexBody::total_contact_force`](crate::body::FlexBody::total_contact_force) knows of that.
     pub normal_force: f64,
     /// Force on the contactor along the tangent, a quarter turn counter-clockwise from the normal (N).
     pub tangential_force: f64,

@@ -1,7 +1,9 @@
 //! What must not change the answer: order, units, mirror images, the warm start.
 
 use crate::support::{Case, Numbers, assert_close, random_contacts};
-use foil2d::linalg::complementarity::{RowKind, Solver, Status, natural_map_residual};
+use foil2d::linalg::complementarity::{
+    Method, Problem, RowKind, Solver, Status, natural_map_residual,
+};
 
 /// Well-posed contacts: as many bodies as contacts and little friction, so that the answer is unique.
 fn cases() -> impl Iterator<Item = Case> {
@@ -183,5 +185,41 @@ fn a_wrong_warm_start_leads_to_the_same_answer() {
             .fold(1.0_f64, |size, p| size.max(p.abs()));
         assert_close(&guess, &multipliers, 1e-11 * size);
         assert_eq!(guessed, status, "seed {seed}");
+    }
+}
+
+#[test]
+fn it_does_not_matter_how_much_of_a_contact_has_acted_already() {
+    for (seed, case) in cases().enumerate() {
+        let n = case.rows.len();
+        let (whole, whole_status, _) = case.solve();
+        let mut numbers = Numbers(seed as u64);
+        let size = whole.iter().fold(1.0_f64, |size, p| size.max(p.abs()));
+        let acted: Vec<f64> = (0..n).map(|_| size * numbers.signed()).collect();
+        let free = case.velocities(&acted);
+        let problem = Problem {
+            delassus: &case.delassus,
+            free: &free,
+            rows: &case.rows,
+            acted: &acted,
+        };
+        for method in [Method::ActiveSet, Method::GaussSeidel] {
+            let mut solver = Solver::new();
+            solver.set_first(method);
+            let (mut rest, mut status) = (vec![0.0; n], vec![Status::Open; n]);
+            let outcome = solver
+                .solve(&problem, &mut rest, &mut status)
+                .expect("the data of the case is finite");
+            let residual = outcome.residual;
+            assert!(residual <= 1e-10, "seed {seed}, {method:?}: {residual:e}");
+            assert_eq!(status, whole_status, "seed {seed}, {method:?}");
+            for (row, (rest, acted)) in rest.iter().zip(&acted).enumerate() {
+                let difference = (rest + acted - whole[row]).abs();
+                assert!(
+                    difference <= 1e-8 * size,
+                    "seed {seed}, {method:?}, row {row}: {difference:e}"
+                );
+            }
+        }
     }
 }

@@ -274,3 +274,34 @@ fn fill_row(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::problem::{Problem, RowKind};
+    use super::*;
+
+    #[test]
+    fn a_path_counts_what_has_acted_already() {
+        // W p + b = 0 for the normal row with p_t = -p_n / 4: p = (4, -1), of which (6, 2) has acted
+        let rows = [
+            RowKind::Unilateral,
+            RowKind::Friction {
+                normal: 0,
+                coefficient: 0.25,
+            },
+        ];
+        let problem = Problem {
+            delassus: &[3.0, 1.0, 1.0, 2.0],
+            free: &[-11.0 + 20.0, 20.0 + 10.0],
+            rows: &rows,
+            acted: &[6.0, 2.0],
+        };
+        let problem = problem.check().expect("the data is finite");
+        let mut rest = [0.0; 2];
+        let mut n_pivots = 0;
+        let is_found = Lemke::default().solve(problem, 0, &mut rest, &mut n_pivots);
+        assert!(is_found && n_pivots > 0);
+        let off = (rest[0] + 2.0).abs().max((rest[1] + 3.0).abs());
+        assert!(off <= 1e-12, "{rest:?}");
+    }
+}

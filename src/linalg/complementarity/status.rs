@@ -14,9 +14,8 @@ pub(super) fn identify(
     slack: f64,
     status: &mut [Status],
 ) -> bool {
-    let moved = |row: usize| {
-        multipliers[row] + problem.acted(row) - velocity(row) / problem.diagonal(row)
-    };
+    let moved =
+        |row: usize| multipliers[row] + problem.acted(row) - velocity(row) / problem.diagonal(row);
     let mut changed = false;
     // friction last: whether it can act depends on the new status of its normal
     for friction_pass in [false, true] {
