@@ -6,6 +6,10 @@
 //! `0 <= P ⊥ n·v' + e n·v >= 0`.
 //! A flexible body that is stiff on the scale of the step behaves as a rigid one: its share of the contact's mobility is
 //! then rigid, and the same condition, weighted by that share, replaces the vibration that the step cannot resolve.
+//!
+//! Impulses `P` and the forces `A` that change the stored accelerations come on top of what the multipliers have done. The laws,
+//! Coulomb's among them, hold for the whole: `b1 p + P` in velocities, `p + A` in accelerations. A contact that slides or parts
+//! at the end of the step does so in the next: its row there is the acceleration that would end this motion within a step.
 
 use super::delassus::{RowDirection, assemble};
 use super::island::{Island, KktError, SolveSettings};
