@@ -90,7 +90,8 @@ impl Claims {
                 let bend = 0.5 * dt * dt * (state.frame.acceleration + own);
                 swept.take_point(to_rapier(position + shift));
                 swept.take_point(to_rapier(position + shift + bend));
-                travel = travel.max(shift.norm()).max((shift + bend).norm());
+                let ways = [shift.norm_squared(), (shift + bend).norm_squared()];
+                travel = travel.max(ways[0]).max(ways[1]);
                 length += (position - last).norm();
                 last = position;
             }
@@ -102,7 +103,7 @@ impl Claims {
                 index,
                 collider: body.collider_handle(),
                 swept,
-                travel: travel as Real,
+                travel: travel.sqrt() as Real,
                 edge,
             });
         }

@@ -145,16 +145,21 @@ impl FlexBlock {
         let is_direct = self.kind == Frame::Fixed && rayleigh.stiffness == 0.0 && !is_moved;
         self.end_elastic = match self.model.mass() {
             MassMatrix::Lumped(mass) if is_direct => {
-                let mut twice = 0.0;
-                for (dof, u) in self.displacement.iter().enumerate() {
-                    let acceleration = self.start_acceleration[dof]
-                        + self.increment[dof]
-                        + rayleigh.mass * self.velocity[dof];
-                    let inner =
-                        self.force[dof] + self.contact_force[dof] - mass[dof / 2] * acceleration;
-                    twice += u * inner;
+                let n = self.n_dofs();
+                let (start, increment) = (&self.start_acceleration[..n], &self.increment[..n]);
+                let (velocity, u) = (&self.velocity[..n], &self.displacement[..n]);
+                let (applied, contact) = (&self.force[..n], &self.contact_force[..n]);
+                let mut twice = [0.0; 2];
+                for (node, mass) in mass[..n / 2].iter().enumerate() {
+                    for axis in 0..2 {
+                        let dof = 2 * node + axis;
+                        let acceleration =
+                            start[dof] + increment[dof] + rayleigh.mass * velocity[dof];
+                        let inner = applied[dof] + contact[dof] - mass * acceleration;
+                        twice[axis] += u[dof] * inner;
+                    }
                 }
-                0.5 * twice
+                0.5 * (twice[0] + twice[1])
             }
             _ => self.model.elastic_energy(&self.displacement),
         };

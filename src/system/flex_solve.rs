@@ -76,13 +76,17 @@ impl FlexBlock {
         let rayleigh = self.model.rayleigh();
         let Weights { b0, b1 } = self.step.weights;
         let (s, alpha) = (b0 + rayleigh.stiffness * b1, rayleigh.mass);
-        let kept = 1.0 + alpha * b1;
-        for dof in 0..self.local.len() {
-            let star = (self.displacement_q[dof] + rayleigh.stiffness * self.rate_q[dof]) / s;
-            self.increment[dof] = -star;
+        let (per_s, kept) = (s.recip(), 1.0 + alpha * b1);
+        // Slices of one length, so that the loop runs in vectors.
+        let n = self.n_dofs();
+        let (u, v) = (&self.displacement_q[..n], &self.rate_q[..n]);
+        let start = &self.start_acceleration[..n];
+        let (increment, scratch) = (&mut self.increment[..n], &mut self.scratch[..n]);
+        for dof in 0..n {
+            let star = (u[dof] + rayleigh.stiffness * v[dof]) * per_s;
+            increment[dof] = -star;
             // Accelerations before the increment, less what the stiffness would give back.
-            self.scratch[dof] =
-                self.start_acceleration[dof] + alpha * self.rate_q[dof] - kept * star;
+            scratch[dof] = start[dof] + alpha * v[dof] - kept * star;
         }
         self.load_forces(alpha);
         self.model
@@ -197,14 +201,9 @@ impl FlexBlock {
 
     /// Applies the increments of the iterate; see [`FlexBlock::solve`].
     fn correct(&mut self) -> f64 {
-        let Weights { b0, b1 } = self.step.weights;
         if self.kind == Frame::Fixed {
-            let rest = self.model.rest_positions();
-            for (dof, &increment) in self.increment.iter().enumerate() {
-                self.displacement[dof] = self.displacement_q[dof] + b0 * increment;
-                self.rate[dof] = self.rate_q[dof] + b1 * increment;
-                self.position[dof] = rest[dof] + self.displacement[dof];
-            }
+            self.advance_displacements();
+            self.place();
             return 0.0;
         }
         let (_, turn) = self.arms.split(self.kind, &mut self.increment);
@@ -223,6 +222,18 @@ impl FlexBlock {
         turned * (self.reach() / self.size).min(1.0)
     }
 
+    /// Applies the increments to displacements and rates in the frame.
+    fn advance_displacements(&mut self) {
+        let Weights { b0, b1 } = self.step.weights;
+        let n = self.n_dofs();
+        let (u, v) = (&self.displacement_q[..n], &self.rate_q[..n]);
+        let (displacement, rate) = (&mut self.displacement[..n], &mut self.rate[..n]);
+        for (dof, increment) in self.increment[..n].iter().enumerate() {
+            displacement[dof] = u[dof] + b0 * increment;
+            rate[dof] = v[dof] + b1 * increment;
+        }
+    }
+
     /// Largest displacement in the frame (m).
     fn reach(&self) -> f64 {
         let all = self.displacement.iter();
@@ -234,10 +245,7 @@ impl FlexBlock {
     /// The centre follows the balance of momentum, which (C.5) holds too, but to the rounding of stiff elastic forces.
     fn advance(&mut self, turn: f64) {
         let Weights { b0, b1 } = self.step.weights;
-        for (dof, increment) in self.increment.iter().enumerate() {
-            self.displacement[dof] = self.displacement_q[dof] + b0 * increment;
-            self.rate[dof] = self.rate_q[dof] + b1 * increment;
-        }
+        self.advance_displacements();
         let shift = match self.kind {
             Frame::Free => {
                 let alpha = self.model.rayleigh().mass;
