@@ -57,6 +57,7 @@ pub struct FlexBodyBuilder {
     pub(super) gravity_scale: f64,
     pub(super) contact: ContactSettings,
     pub(super) user_data: u128,
+    pub(crate) can_sleep: bool,
 }
 
 impl FlexBodyBuilder {
@@ -117,6 +118,7 @@ impl FlexBodyBuilder {
             gravity_scale: 1.0,
             contact: ContactSettings::default(),
             user_data: 0,
+            can_sleep: true,
         }
     }
 
@@ -251,6 +253,15 @@ impl FlexBodyBuilder {
     /// Events rapier reports for the body's surface.
     pub fn active_events(mut self, events: ActiveEvents) -> Self {
         self.contact.active_events = events;
+        self
+    }
+
+    /// Whether the body may fall asleep when it, and all that it touches, has come to rest: yes by default.
+    ///
+    /// It rests when its fastest node is slower than a tenth of the threshold of its rapier body,
+    /// [`RigidBodyActivation`](crate::rapier::prelude::RigidBodyActivation), for as long as that says.
+    pub fn can_sleep(mut self, can_sleep: bool) -> Self {
+        self.can_sleep = can_sleep;
         self
     }
 

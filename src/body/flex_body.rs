@@ -1,7 +1,6 @@
 //! A flexible body: its model, its committed motion, its loads, and what the last step told about it.
 
 use super::contact_settings::ContactSettings;
-use super::error::{FlexBodyError, check_finite, check_held};
 use super::frame::{Arms, Frame};
 use super::state::{BodyEnergy, FlexState};
 use crate::fe::mesh::Mesh;
@@ -17,15 +16,15 @@ pub struct FlexBody {
     model: Arc<Model>,
     frame: Frame,
     arms: Arms,
-    is_fixed: Vec<bool>,
-    prescribed: Vec<f64>,
-    nodal_force: Vec<f64>,
-    body_force: Vec2,
-    gravity_scale: f64,
+    pub(super) is_fixed: Vec<bool>,
+    pub(super) prescribed: Vec<f64>,
+    pub(super) nodal_force: Vec<f64>,
+    pub(super) body_force: Vec2,
+    pub(super) gravity_scale: f64,
     contact: ContactSettings,
     /// Anything the user wants to keep with the body.
     pub user_data: u128,
-    state: FlexState,
+    pub(super) state: FlexState,
     is_started: bool,
     contact_force: Vec<f64>,
     reaction: Vec<f64>,
@@ -33,6 +32,7 @@ pub struct FlexBody {
     pub(super) frequency: OnceLock<f64>,
     carrier: RigidBodyHandle,
     collider: ColliderHandle,
+    pub(super) is_disturbed: bool,
 }
 
 impl FlexBody {
@@ -63,6 +63,7 @@ impl FlexBody {
             frequency: OnceLock::new(),
             carrier: RigidBodyHandle::invalid(),
             collider: ColliderHandle::invalid(),
+            is_disturbed: false,
             model,
         }
     }
@@ -78,7 +79,7 @@ impl FlexBody {
     }
 
     /// Brings the split and the kinetic energy up to date with the nodal velocities.
-    fn velocity_changed(&mut self) {
+    pub(super) fn velocity_changed(&mut self) {
         // Not the old centre's: what was refused for its size would leave its rounding.
         let near = node_vec(&self.state.velocity, 0);
         self.state.frame.velocity = self.arms.centre(self.frame, &self.state.velocity, near);
@@ -289,90 +290,6 @@ impl FlexBody {
     pub fn body_force(&self) -> [f64; 2] {
         self.body_force.into()
     }
-
-    /// Sets a constant force on a node (N), until it is set again.
-    ///
-    /// # Errors
-    /// If the node does not exist or the force is not finite.
-    pub fn set_nodal_force(&mut self, node: usize, force: [f64; 2]) -> Result<(), FlexBodyError> {
-        self.check_node(node)?;
-        check_finite("the force", &force)?;
-        self.nodal_force[2 * node..2 * node + 2].copy_from_slice(&force);
-        Ok(())
-    }
-
-    /// Sets the force per mass besides gravity (m/s²).
-    ///
-    /// # Errors
-    /// If it is not finite.
-    pub fn set_body_force(&mut self, acceleration: [f64; 2]) -> Result<(), FlexBodyError> {
-        check_finite("the body force", &acceleration)?;
-        self.body_force = acceleration.into();
-        Ok(())
-    }
-
-    /// Sets the factor on the world's gravity (-).
-    ///
-    /// # Errors
-    /// If it is not finite.
-    pub fn set_gravity_scale(&mut self, scale: f64) -> Result<(), FlexBodyError> {
-        check_finite("the gravity scale", &[scale])?;
-        self.gravity_scale = scale;
-        Ok(())
-    }
-
-    /// Prescribes the displacement of a pinned node (m); directions that are not pinned are ignored.
-    ///
-    /// # Errors
-    /// If the node does not exist, is not pinned, or rapier's precision cannot hold the displacement.
-    pub fn set_pin_displacement(
-        &mut self,
-        node: usize,
-        displacement: [f64; 2],
-    ) -> Result<(), FlexBodyError> {
-        self.check_node(node)?;
-        if !(self.is_fixed[2 * node] || self.is_fixed[2 * node + 1]) {
-            return Err(FlexBodyError::NotPinned(node));
-        }
-        check_held("the displacement", &displacement)?;
-        self.prescribed[2 * node..2 * node + 2].copy_from_slice(&displacement);
-        Ok(())
-    }
-
-    /// Sets all nodal velocities, interleaved (m/s); pinned directions stay at rest.
-    ///
-    /// # Errors
-    /// If the length is not two per node or rapier's precision cannot hold a velocity.
-    pub fn set_velocities(&mut self, velocities: &[f64]) -> Result<(), FlexBodyError> {
-        if velocities.len() != self.state.velocity.len() {
-            return Err(FlexBodyError::Length {
-                name: "the velocities",
-                found: velocities.len(),
-                n_nodes: self.n_nodes(),
-            });
-        }
-        check_held("the velocities", velocities)?;
-        for ((own, &new), &is_fixed) in self
-            .state
-            .velocity
-            .iter_mut()
-            .zip(velocities)
-            .zip(&self.is_fixed)
-        {
-            *own = if is_fixed { 0.0 } else { new };
-        }
-        self.velocity_changed();
-        Ok(())
-    }
-
-    fn check_node(&self, node: usize) -> Result<(), FlexBodyError> {
-        let n_nodes = self.n_nodes();
-        if node < n_nodes {
-            Ok(())
-        } else {
-            Err(FlexBodyError::Node { node, n_nodes })
-        }
-    }
 }
 
 /// Access for the step.
@@ -380,6 +297,20 @@ impl FlexBody {
     pub(crate) fn bind(&mut self, carrier: RigidBodyHandle, collider: ColliderHandle) {
         self.carrier = carrier;
         self.collider = collider;
+    }
+
+    /// Whether the user has changed something since the last step.
+    pub(crate) fn is_disturbed(&self) -> bool {
+        self.is_disturbed
+    }
+
+    pub(crate) fn clear_disturbance(&mut self) {
+        self.is_disturbed = false;
+    }
+
+    /// Takes what motion is left when the body falls asleep.
+    pub(crate) fn stop(&mut self) {
+        self.state.stop();
     }
 
     pub(crate) fn nodal_force(&self) -> &[f64] {

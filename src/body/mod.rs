@@ -11,6 +11,7 @@ mod handle;
 mod pin;
 mod set;
 mod state;
+mod steering;
 
 pub use builder::{ContactInertia, FlexBodyBuilder};
 pub use contact_settings::ContactSettings;

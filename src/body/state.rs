@@ -95,6 +95,15 @@ impl FlexState {
         self.torque = 0.0;
     }
 
+    /// Forgets all velocities and accelerations.
+    pub(super) fn stop(&mut self) {
+        self.velocity.fill(0.0);
+        self.rate.fill(0.0);
+        (self.frame.velocity, self.frame.spin) = (Vec2::zeros(), 0.0);
+        self.kinetic_energy = 0.0;
+        self.clear_accelerations();
+    }
+
     /// Splits world positions into the placement of the frame, whose centre is known, and displacements in it.
     ///
     /// Round-off would otherwise leave a rigid part in `u`, which a spinning frame would fling outwards.

@@ -34,12 +34,13 @@ impl FlexBodySet {
         bodies: &mut RigidBodySet,
         colliders: &mut ColliderSet,
     ) -> Result<FlexBodyHandle, BuildError> {
+        let can_sleep = builder.can_sleep;
         let mut body = builder.build()?;
         let carrier = bodies.insert(
             RigidBodyBuilder::dynamic()
                 .locked_axes(LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED)
                 .gravity_scale(0.0)
-                .can_sleep(false),
+                .can_sleep(can_sleep),
         );
         let contact = *body.contact_settings();
         let collider = ColliderBuilder::new(SharedShape::new(surface(&body)))
@@ -94,15 +95,28 @@ pub(crate) fn is_carried(body: &FlexBody, bodies: &RigidBodySet, colliders: &Col
     let is_at_origin = *carrier.position() == Pose::IDENTITY
         && collider.position_wrt_parent() == Some(&Pose::IDENTITY);
     let surface = collider.shape().as_polyline();
-    let nodes = body.mesh().boundary().nodes();
     is_at_origin
         && collider.parent() == Some(body.rigid_body_handle())
         && surface.is_some_and(|polyline| {
             let vertices = polyline.vertices();
-            let mut pairs = nodes.iter().zip(vertices);
-            vertices.len() == nodes.len()
-                && pairs.all(|(&node, old)| *old == to_rapier(node_vec(body.positions(), node)))
+            vertices.len() == body.mesh().boundary().nodes().len() && is_placed(body, vertices)
         })
+}
+
+/// How far the surface in rapier may lag behind the body, over the size of the coordinates: every write wakes what touches it, and
+/// a body at rest still moves by rounding.
+const LAG: f64 = if size_of::<Real>() == 4 { 1e-7 } else { 1e-12 };
+
+/// Whether these vertices are where the nodes are.
+fn is_placed(body: &FlexBody, vertices: &[Vector]) -> bool {
+    let nodes = body.mesh().boundary().nodes();
+    let reach = |reach: Real, vertex: &Vector| reach.max(vertex.x.abs()).max(vertex.y.abs());
+    let lag = (LAG * f64::from(vertices.iter().fold(0.0, reach))) as Real;
+    let mut pairs = nodes.iter().zip(vertices);
+    pairs.all(|(&node, old)| {
+        let off = to_rapier(node_vec(body.positions(), node)) - *old;
+        off.x.abs() <= lag && off.y.abs() <= lag
+    })
 }
 
 /// The surface of a body as a closed polyline, material on the left.
@@ -125,8 +139,8 @@ fn surface(body: &FlexBody) -> Polyline {
     Polyline::with_flags(vertices, Some(segments), PolylineFlags::DEFORMABLE)
 }
 
-/// Writes the committed positions over the surface in rapier, if they changed at rapier's precision, and tells the broad
-/// phase, so that queries see them at once.
+/// Writes the committed positions over the surface in rapier, if they changed, and tells the broad phase, so that queries see them
+/// at once.
 pub(crate) fn write_surface(
     body: &FlexBody,
     colliders: &mut ColliderSet,
@@ -135,16 +149,10 @@ pub(crate) fn write_surface(
 ) {
     let handle = body.collider_handle();
     let nodes = body.mesh().boundary().nodes();
-    let moved = |vertices: &[Vector]| {
-        nodes
-            .iter()
-            .zip(vertices)
-            .any(|(&node, old)| *old != to_rapier(node_vec(body.positions(), node)))
-    };
     let current = colliders
         .get(handle)
         .and_then(|collider| collider.shape().as_polyline());
-    if !current.is_some_and(|polyline| moved(polyline.vertices())) {
+    if !current.is_some_and(|polyline| !is_placed(body, polyline.vertices())) {
         return;
     }
     let Some(collider) = colliders.get_mut(handle) else {

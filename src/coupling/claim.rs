@@ -5,6 +5,7 @@
 
 use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box};
 use super::sets::RapierSets;
+use super::sleep::Sleeper;
 use crate::body::FlexBodySet;
 use crate::math::{from_rapier, node_vec, rotation, to_rapier};
 use crate::rapier::math::Real;
@@ -55,6 +56,9 @@ pub(crate) struct Claims {
     /// What the swept boxes meet, by flexible body.
     pub(super) swept_hits: Vec<(usize, ColliderHandle)>,
     neighbours: Vec<ColliderHandle>,
+    /// Flexible bodies that sleep, and take no part.
+    pub(super) asleep: Vec<Sleeper>,
+    pub(super) woken: Vec<RigidBodyHandle>,
 }
 
 impl Claims {
@@ -74,7 +78,12 @@ impl Claims {
         let dt = f64::from(sets.integration_parameters.dt);
         self.flex.clear();
         self.flex_of_collider.clear();
+        self.asleep.clear();
         for (handle, body) in flex_bodies.iter() {
+            if let Some(sleeper) = Sleeper::new(handle.into_raw_parts().0, body, sets) {
+                self.asleep.push(sleeper);
+                continue;
+            }
             let nodes = body.mesh().boundary().nodes();
             let mut swept = Aabb::new_invalid();
             let (mut length, mut travel) = (0.0, 0.0f64);
@@ -228,6 +237,9 @@ impl Claims {
             }
             return;
         }
+        if self.is_sleeping_surface(other) {
+            return;
+        }
         let Some(collider) = sets.colliders.get(other) else {
             return;
         };
@@ -268,7 +280,7 @@ impl Claims {
                 .colliders
                 .get(other)
                 .is_some_and(|collider| swept_box(sets.bodies, collider, dt).intersects(&own_box));
-            if (touches || near) && !self.flex_of_collider.contains_key(&other) {
+            if (touches || near) && !self.is_surface(other) {
                 self.neighbours.push(other);
             }
         }

@@ -72,6 +72,11 @@ impl Gatherer {
         }
     }
 
+    /// Keeps the reference faces of owners that sleep.
+    pub fn keep(&mut self, sleeps: impl Fn(Owner) -> bool) {
+        self.references.keep(sleeps);
+    }
+
     /// The rebuildable half of a body, if it took part in a step.
     pub fn block(&self, index: u32) -> Option<&FlexBlock> {
         self.pool.get(index as usize)?.as_deref()

@@ -5,7 +5,7 @@
 
 use super::masters::Masters;
 use super::sets::RapierSets;
-use crate::math::{from_rapier, to_rapier};
+use crate::math::{Vec2, from_rapier, to_rapier};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use crate::system::RigidMotion;
@@ -65,15 +65,19 @@ pub(crate) fn land(landings: &[Landing], sets: &mut RapierSets<'_>, masters: &mu
         let Some(body) = sets.bodies.get_mut(landing.handle) else {
             continue;
         };
+        let mut motion = landing.motion;
+        if body.is_sleeping() {
+            (motion.velocity, motion.spin) = (Vec2::zeros(), 0.0);
+        }
         body.set_locked_axes(landing.axes, false);
-        body.set_linvel(to_rapier(landing.motion.velocity), false);
-        body.set_angvel(landing.motion.spin as Real, false);
-        let missed = from_rapier(body.center_of_mass()) - landing.motion.centre;
-        if missed.norm() <= LANDING_TOLERANCE * (1.0 + landing.motion.centre.norm()) {
-            masters.keep(landing.handle, landing.motion, landing.acceleration, body);
+        body.set_linvel(to_rapier(motion.velocity), false);
+        body.set_angvel(motion.spin as Real, false);
+        let missed = from_rapier(body.center_of_mass()) - motion.centre;
+        if missed.norm() <= LANDING_TOLERANCE * (1.0 + motion.centre.norm()) {
+            masters.keep(landing.handle, motion, landing.acceleration, body);
         }
     }
-    masters.turn_over();
+    masters.turn_over(sets.bodies);
 }
 
 /// A landing this exact, relative to the distance from the origin, is rapier's rounding and no clamp.

@@ -68,8 +68,13 @@ impl Masters {
         self.next.insert(handle, master);
     }
 
-    /// Makes the motions kept since the last call those of the last step.
-    pub fn turn_over(&mut self) {
+    /// Makes the motions kept since the last call those of the last step. Those of bodies that sleep stay.
+    pub fn turn_over(&mut self, bodies: &RigidBodySet) {
+        for (handle, master) in &self.last {
+            if bodies.get(*handle).is_some_and(RigidBody::is_sleeping) {
+                self.next.entry(*handle).or_insert(*master);
+            }
+        }
         std::mem::swap(&mut self.last, &mut self.next);
         self.next.clear();
     }

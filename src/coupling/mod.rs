@@ -14,6 +14,7 @@ mod reading;
 mod references;
 mod sets;
 mod shapes;
+mod sleep;
 
 pub(crate) use carrier::{is_carried, write_surface};
 pub(crate) use claim::Claims;
@@ -22,3 +23,4 @@ pub(crate) use hand_back::{Landing, hand_back, land};
 pub(crate) use masters::Masters;
 pub(crate) use reading::{GatherError, is_held_motion};
 pub use sets::RapierSets;
+pub(crate) use sleep::{is_all_asleep, is_asleep, settle, wake_disturbed};

@@ -23,7 +23,7 @@ impl Claims {
         };
         let dt = sets.integration_parameters.dt;
         for (handle, collider) in sets.colliders.iter() {
-            if self.flex_of_collider.contains_key(&handle) {
+            if self.is_surface(handle) {
                 continue;
             }
             let swept = swept_box(sets.bodies, collider, dt);

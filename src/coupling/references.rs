@@ -44,6 +44,15 @@ impl References {
         self.next.clear();
     }
 
+    /// Keeps references of the last step that nobody noted anew, of owners that `sleeps` names.
+    pub fn keep(&mut self, sleeps: impl Fn(Owner) -> bool) {
+        for (key, reference) in &self.last {
+            if key.iter().any(|&(owner, _)| sleeps(owner)) {
+                self.next.entry(*key).or_insert(*reference);
+            }
+        }
+    }
+
     /// Throws away what was noted since the last turn-over.
     pub fn discard_notes(&mut self) {
         self.next.clear();

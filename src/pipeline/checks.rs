@@ -3,7 +3,7 @@
 use super::error::StepError;
 use super::flex_pipeline::FlexPipeline;
 use crate::body::{FlexBody, FlexBodyError, FlexBodySet};
-use crate::coupling::{RapierSets, is_carried, is_held_motion};
+use crate::coupling::{RapierSets, is_asleep, is_carried, is_held_motion};
 use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
 use crate::math::{from_rapier, is_held};
@@ -32,6 +32,9 @@ impl FlexPipeline {
             return Err(StepError::Gravity(gravity.into()));
         }
         for (handle, body) in flex_bodies.iter() {
+            if is_asleep(body, sets.bodies) {
+                continue;
+            }
             if !is_carried(body, sets.bodies, sets.colliders) {
                 return Err(FlexBodyError::NoCarrier(handle).into());
             }

@@ -5,7 +5,8 @@ use super::report::StepReport;
 use crate::body::FlexBodySet;
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
-    Claims, GatherSettings, Gatherer, Landing, Masters, RapierSets, hand_back, land, write_surface,
+    Claims, GatherSettings, Gatherer, Landing, Masters, RapierSets, hand_back, is_all_asleep, land,
+    settle, wake_disturbed, write_surface,
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ImpactTreatment, Island, SolveSettings};
@@ -219,7 +220,18 @@ impl FlexPipeline {
         let mut clock = Clock::start();
         let dissipated = self.report.energy.dissipated;
         let step = self.check(&sets, flex_bodies)?;
+        if step.dt > 0.0 && is_all_asleep(&sets, flex_bodies) {
+            sets.step();
+            self.report.note_quarantine(&sets);
+            self.report.n_asleep = flex_bodies.len();
+            return Ok(&self.report);
+        }
+        wake_disturbed(&mut sets, flex_bodies);
         self.claims.look_ahead(&sets, flex_bodies);
+        while self.claims.wake_met(&mut sets) {
+            self.claims.look_ahead(&sets, flex_bodies);
+        }
+        self.report.n_asleep = self.claims.n_asleep();
         let is_detected = step.dt == 0.0 || self.claims.needs_detection(&sets);
         clock.lap(&mut self.report.times.claim);
         if is_detected {
@@ -344,6 +356,12 @@ impl FlexPipeline {
 
     /// Makes the solved motions the committed ones and writes the surfaces.
     fn commit(&mut self, sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet) {
+        if self.claims.n_asleep() > 0 {
+            let claims = &self.claims;
+            self.gatherer.keep(|owner| claims.sleeps(sets, owner));
+            self.memory
+                .keep(|key| claims.sleeps(sets, key.contactor) || claims.sleeps(sets, key.target));
+        }
         self.memory.turn_over();
         self.gatherer.turn_over(true);
         for &(index, reserve) in &self.reserves {
@@ -362,6 +380,7 @@ impl FlexPipeline {
                 sets.broad_phase,
                 sets.integration_parameters,
             );
+            settle(body, sets);
         }
     }
 }

@@ -97,6 +97,7 @@ pub struct StepReport {
     pub(super) energy_limited: f64,
     pub(super) n_islands: usize,
     pub(super) n_claimed: usize,
+    pub(super) n_asleep: usize,
     pub(super) n_newton: usize,
     pub(super) n_linearized: usize,
     pub(super) n_held: usize,
@@ -161,6 +162,11 @@ impl StepReport {
     /// Rigid bodies claimed.
     pub fn n_claimed(&self) -> usize {
         self.n_claimed
+    }
+
+    /// Flexible bodies that slept through the step. Energies, momentum and contacts are those of what was awake.
+    pub fn n_asleep(&self) -> usize {
+        self.n_asleep
     }
 
     /// Most Newton iterations of an island.

@@ -41,6 +41,15 @@ impl ContactMemory {
         self.next.clear();
     }
 
+    /// Keeps the states of the last step that nobody noted anew and that `sleeps` names.
+    pub fn keep(&mut self, sleeps: impl Fn(&ContactKey) -> bool) {
+        for (key, state) in &self.last {
+            if sleeps(key) {
+                self.next.entry(*key).or_insert(*state);
+            }
+        }
+    }
+
     /// Throws away what was noted since the last turn-over.
     pub fn discard_notes(&mut self) {
         self.next.clear();

@@ -1,0 +1,171 @@
+//! Sleep: what has come to rest sleeps with its island in rapier and is not solved; its motion and its contact forces wait.
+//!
+//! A carrier never moves, so rapier would let it sleep at once: its timer is set back while a node of the body moves. What
+//! rapier wakes is awake here too. What is awake and comes near a sleeper wakes it before they touch.
+
+use super::claim::Claims;
+use super::places::swept_box;
+use super::sets::RapierSets;
+use crate::body::{FlexBody, FlexBodySet};
+use crate::constraint::contact::Owner;
+use crate::math::node_vec;
+use crate::rapier::math::Real;
+use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
+use crate::rapier::prelude::*;
+
+/// Speed of the fastest node of a body at rest, over rapier's threshold: a slow swing is no rest.
+const STILL: f64 = 0.1;
+
+/// Part of the time until sleep at which the timer of a body that moves is set back: not in every step, for rapier then looks at
+/// the body again.
+const SET_BACK: Real = 0.5;
+
+/// A flexible body whose carrier sleeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sleeper {
+    /// Slot in the set.
+    pub index: u32,
+    carrier: RigidBodyHandle,
+    collider: ColliderHandle,
+    surface: Aabb,
+}
+
+impl Sleeper {
+    /// The sleeper that a body is, unless it is awake.
+    pub fn new(index: u32, body: &FlexBody, sets: &RapierSets<'_>) -> Option<Self> {
+        let collider = sets.colliders.get(body.collider_handle())?;
+        is_asleep(body, sets.bodies).then(|| Self {
+            index,
+            carrier: body.rigid_body_handle(),
+            collider: body.collider_handle(),
+            surface: collider.compute_aabb(),
+        })
+    }
+}
+
+/// Whether the carrier of a body sleeps.
+pub(crate) fn is_asleep(body: &FlexBody, bodies: &RigidBodySet) -> bool {
+    let carrier = bodies.get(body.rigid_body_handle());
+    carrier.is_some_and(RigidBody::is_sleeping)
+}
+
+/// Whether all that could move sleeps, so that there is nothing to do.
+pub(crate) fn is_all_asleep(sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
+    let is_quiet = |body: &FlexBody| !body.is_disturbed() && is_asleep(body, sets.bodies);
+    let rests = |body: &RigidBody| body.is_fixed() || body.is_sleeping() || !body.is_enabled();
+    flex_bodies.iter().all(|(_, body)| is_quiet(body))
+        && sets.bodies.iter().all(|(_, body)| rests(body))
+}
+
+/// Wakes the bodies that the user changed.
+pub(crate) fn wake_disturbed(sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet) {
+    for (_, body) in flex_bodies.iter_mut() {
+        if body.is_disturbed() {
+            body.clear_disturbance();
+            sets.islands
+                .wake_up(sets.bodies, body.rigid_body_handle(), true);
+        }
+    }
+}
+
+impl Claims {
+    /// Whether a collider is the surface of a flexible body, awake or not.
+    pub fn is_surface(&self, collider: ColliderHandle) -> bool {
+        self.flex_of_collider.contains_key(&collider) || self.is_sleeping_surface(collider)
+    }
+
+    pub(super) fn is_sleeping_surface(&self, collider: ColliderHandle) -> bool {
+        let mut sleepers = self.asleep.iter();
+        sleepers.any(|sleeper| sleeper.collider == collider)
+    }
+
+    /// Wakes sleepers that something awake may meet in the step; returns whether there were any, with which the look-ahead has
+    /// to begin anew.
+    pub fn wake_met(&mut self, sets: &mut RapierSets<'_>) -> bool {
+        self.woken.clear();
+        for sleeper in &self.asleep {
+            if self.is_met(sets, sleeper) {
+                self.woken.push(sleeper.carrier);
+            }
+        }
+        for &carrier in &self.woken {
+            sets.islands.wake_up(sets.bodies, carrier, true);
+        }
+        !self.woken.is_empty()
+    }
+
+    fn is_met(&self, sets: &RapierSets<'_>, sleeper: &Sleeper) -> bool {
+        let dt = sets.integration_parameters.dt;
+        let near = |other: &Aabb| {
+            other.intersects(&sleeper.surface) && reaches(sets, sleeper.collider, other)
+        };
+        if self.flex.iter().any(|flex| near(&flex.swept)) {
+            return true;
+        }
+        sets.colliders.iter().any(|(handle, collider)| {
+            !self.is_surface(handle)
+                && is_awake(sets, collider)
+                && near(&swept_box(sets.bodies, collider, dt))
+        })
+    }
+
+    /// How many flexible bodies sleep.
+    pub fn n_asleep(&self) -> usize {
+        self.asleep.len()
+    }
+
+    /// Whether an owner's body sleeps.
+    pub fn sleeps(&self, sets: &RapierSets<'_>, owner: Owner) -> bool {
+        match owner {
+            Owner::Flex(index) => self.asleep.iter().any(|sleeper| sleeper.index == index),
+            Owner::Collider(index) => {
+                let collider = sets.colliders.get_unknown_gen(index);
+                let parent = collider.and_then(|(collider, _)| collider.parent());
+                let body = parent.and_then(|parent| sets.bodies.get(parent));
+                body.is_some_and(RigidBody::is_sleeping)
+            }
+        }
+    }
+}
+
+/// Whether a box meets a segment of a surface.
+fn reaches(sets: &RapierSets<'_>, surface: ColliderHandle, other: &Aabb) -> bool {
+    let shape = sets.colliders.get(surface).map(Collider::shape);
+    let polyline = shape.and_then(|shape| shape.as_polyline());
+    polyline.is_none_or(|polyline| polyline.bvh().intersect_aabb(other).next().is_some())
+}
+
+/// Whether a collider belongs to a body that may move.
+fn is_awake(sets: &RapierSets<'_>, collider: &Collider) -> bool {
+    let parent = collider.parent().and_then(|parent| sets.bodies.get(parent));
+    collider.is_enabled()
+        && !collider.is_sensor()
+        && parent.is_some_and(|body| !body.is_fixed() && !body.is_sleeping())
+}
+
+/// Keeps a carrier awake while its body moves, and stops the body when rapier has put the carrier to sleep.
+pub(crate) fn settle(body: &mut FlexBody, sets: &mut RapierSets<'_>) {
+    let handle = body.rigid_body_handle();
+    let Some(carrier) = sets.bodies.get(handle) else {
+        return;
+    };
+    if carrier.is_sleeping() {
+        body.stop();
+        return;
+    }
+    let activation = carrier.activation();
+    let threshold =
+        activation.normalized_linear_threshold * sets.integration_parameters.length_unit;
+    let is_due = activation.time_since_can_sleep >= SET_BACK * activation.time_until_sleep;
+    if threshold < 0.0 || !is_due {
+        return;
+    }
+    let fastest = (0..body.n_nodes())
+        .map(|node| node_vec(body.velocities(), node).norm_squared())
+        .fold(0.0, f64::max);
+    if fastest.sqrt() > STILL * f64::from(threshold)
+        && let Some(carrier) = sets.bodies.get_mut(handle)
+    {
+        carrier.activation_mut().time_since_can_sleep = 0.0;
+    }
+}

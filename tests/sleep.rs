@@ -1,0 +1,206 @@
+//! Sleep: what rests sleeps with its island, wakes when it is met or changed, and loses nothing by it.
+
+mod common;
+
+use common::*;
+
+fn block(young: f64) -> FlexBodyBuilder {
+    FlexBodyBuilder::rectangle([0.5, 0.25], [6, 3]).material(
+        LinearElastic::plane_stress(young, 0.3)
+            .density(1000.0)
+            .rayleigh(1e-3),
+    )
+}
+
+fn sleeps(scene: &Scene, body: FlexBodyHandle) -> bool {
+    scene.world.bodies[scene.body(body).rigid_body_handle()].is_sleeping()
+}
+
+/// Steps until all that can sleep does; returns the time it took (s), if that was less than `limit`.
+fn settle(scene: &mut Scene, limit: f64) -> Option<f64> {
+    let steps = (limit / scene.dt()) as usize;
+    (0..steps)
+        .find(|_| {
+            scene.step();
+            let mut bodies = scene.world.bodies.iter();
+            bodies.all(|(_, body)| body.is_fixed() || body.is_sleeping())
+        })
+        .map(|step| step as f64 * scene.dt())
+}
+
+/// Blocks and boxes in `n` piles of their own: block, box, block, box.
+fn piles(n: usize) -> (Scene, Vec<FlexBodyHandle>, Vec<RigidBodyHandle>) {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    let (mut flexible, mut rigid) = (Vec::new(), Vec::new());
+    for pile in 0..n {
+        let x = pile as f64 - 0.5 * n as f64;
+        for level in 0..2 {
+            let y = 0.5 * f64::from(level);
+            flexible.push(scene.flexible(block(1e7).translation([x, y + 0.01])));
+            let at = vec2(x + 0.25, y + 0.40);
+            let (body, _) = scene.world.insert(
+                RigidBodyBuilder::dynamic().translation(at),
+                ColliderBuilder::cuboid(real(0.2), real(0.1)).density(real(500.0)),
+            );
+            rigid.push(body);
+        }
+    }
+    (scene, flexible, rigid)
+}
+
+#[test]
+fn a_settled_pile_sleeps_within_five_seconds_and_a_touch_wakes_it() {
+    let (mut scene, flexible, rigid) = piles(10);
+    assert!(
+        settle(&mut scene, 5.0).is_some(),
+        "not all asleep after 5 s"
+    );
+    assert_eq!(
+        scene.report().n_asleep() + flexible.len(),
+        2 * flexible.len()
+    );
+    let before: Vec<_> = rigid
+        .iter()
+        .map(|&body| *scene.world.bodies[body].position())
+        .collect();
+    scene.steps(60);
+    assert_eq!(scene.report().n_asleep(), flexible.len());
+    assert!(
+        scene.report().contacts().is_empty(),
+        "what sleeps is not solved"
+    );
+    for (&body, before) in rigid.iter().zip(&before) {
+        assert_eq!(scene.world.bodies[body].position(), before);
+    }
+    // A ball falls on the first pile.
+    scene.world.insert(
+        RigidBodyBuilder::dynamic().translation(vec2(-4.75, 1.2)),
+        ColliderBuilder::ball(real(0.05)).density(real(500.0)),
+    );
+    let mut woke = false;
+    for _ in 0..60 {
+        scene.step();
+        woke |= !sleeps(&scene, flexible[1]);
+    }
+    assert!(woke, "the pile did not feel the ball");
+    assert!(sleeps(&scene, flexible[19]), "another pile woke");
+    assert!(settle(&mut scene, 5.0).is_some(), "does not sleep again");
+}
+
+#[test]
+fn a_fast_ball_wakes_a_sleeper_before_it_is_inside() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    let body = scene.flexible(block(1e7));
+    settle(&mut scene, 5.0).expect("it rests");
+    let (ball, _) = scene.world.insert(
+        RigidBodyBuilder::dynamic()
+            .translation(vec2(0.25, 5.0))
+            .linvel(vec2(0.0, -200.0)),
+        ColliderBuilder::ball(real(0.05)).density(real(1000.0)),
+    );
+    for _ in 0..4 {
+        scene.step();
+        let y = f64::from(scene.world.bodies[ball].translation().y);
+        let top = scene
+            .body(body)
+            .positions()
+            .chunks(2)
+            .fold(0.0f64, |top, x| top.max(x[1]));
+        assert!(y > 0.5 * top, "the ball is at {y} m, inside the block");
+    }
+    assert!(!sleeps(&scene, body));
+}
+
+#[test]
+fn nothing_drifts_over_a_hundred_cycles_of_sleep() {
+    let (mut scene, flexible, rigid) = piles(1);
+    settle(&mut scene, 5.0).expect("it rests");
+    scene.steps(120);
+    let place = |scene: &Scene| {
+        let mut all: Vec<f64> = Vec::new();
+        for &body in &flexible {
+            all.extend(scene.body(body).positions());
+        }
+        for &body in &rigid {
+            let at = scene.world.bodies[body].translation();
+            all.extend([f64::from(at.x), f64::from(at.y)]);
+        }
+        all
+    };
+    let start = place(&scene);
+    let weight = scene.body(flexible[0]).total_contact_force();
+    for _ in 0..100 {
+        scene.bodies[flexible[0]].wake_up();
+        scene.step();
+        assert!(!sleeps(&scene, flexible[0]), "it was woken");
+        settle(&mut scene, 5.0).expect("it rests again");
+    }
+    let drift = place(&scene)
+        .iter()
+        .zip(&start)
+        .fold(0.0f64, |drift, (end, start)| drift.max((end - start).abs()));
+    assert!(drift < by_precision(1e-6, 1e-8), "drifted by {drift:e} m");
+    let force = scene.body(flexible[0]).total_contact_force();
+    let off = (force[1] - weight[1])
+        .abs()
+        .max((force[0] - weight[0]).abs());
+    assert!(off < 1e-3, "the forces changed by {off} N");
+}
+
+#[test]
+fn a_body_that_moves_anywhere_stays_awake() {
+    // A clamped strip that swings: its carrier stands still as ever.
+    let mut scene = Scene::new(1.0 / 60.0).with_integrator(Beta2::trapezoidal());
+    let material = LinearElastic::plane_stress(1e6, 0.3).density(1000.0);
+    let body = scene.flexible(
+        FlexBodyBuilder::rectangle([1.0, 0.05], [20, 2])
+            .material(material)
+            .pin_where(|[x, _]| x == 0.0, Pin::both()),
+    );
+    scene.steps(600);
+    assert!(!sleeps(&scene, body));
+    let patient = scene.flexible(
+        block(1e7)
+            .translation([0.0, 50.0])
+            .can_sleep(false)
+            .gravity_scale(0.0),
+    );
+    scene.steps(120);
+    assert!(!sleeps(&scene, patient), "it may not sleep");
+}
+
+#[test]
+fn whatever_is_changed_wakes() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    let body = scene.flexible(block(1e7));
+    let changes: [(&str, fn(&mut FlexBody)); 4] = [
+        ("a force", |body| {
+            body.set_nodal_force(0, [1.0, 0.0]).expect("a force")
+        }),
+        ("a body force", |body| {
+            body.set_body_force([0.0, -1.0]).expect("a force")
+        }),
+        ("gravity", |body| {
+            body.set_gravity_scale(1.1).expect("a factor")
+        }),
+        ("velocities", |body| {
+            let velocities = vec![0.1; body.positions().len()];
+            body.set_velocities(&velocities).expect("velocities");
+        }),
+    ];
+    for (name, change) in changes {
+        settle(&mut scene, 10.0).unwrap_or_else(|| panic!("before {name} it rests"));
+        change(&mut scene.bodies[body]);
+        scene.step();
+        assert!(!sleeps(&scene, body), "{name} does not wake it");
+    }
+    settle(&mut scene, 10.0).expect("it rests");
+    let carrier = scene.body(body).rigid_body_handle();
+    let world = &mut scene.world;
+    world.islands.wake_up(&mut world.bodies, carrier, true);
+    scene.step();
+    assert!(!sleeps(&scene, body), "rapier's own call does not wake it");
+}
