@@ -1,22 +1,21 @@
 //! Candidates of an island: every point that may touch a target during the step, found by swept boxes.
 
-use super::references::References;
 use super::shapes::ShapePart;
 use crate::constraint::contact::{Candidate, ContactKey, ContactLaw, Owner, Pair, PlacedPart};
-use crate::constraint::geometry::{FaceOrVertex, Pose2, polygon_pair};
+use crate::constraint::geometry::Pose2;
 use crate::kkt::Island;
 use crate::math::Vec2;
 use crate::system::{Block, FlexBlock, RigidBlock, RigidMotion};
 
 /// A box that grows.
 #[derive(Clone, Copy, Debug)]
-struct Bounds {
+pub(super) struct Bounds {
     low: Vec2,
     high: Vec2,
 }
 
 impl Bounds {
-    fn of(points: &[Vec2]) -> Self {
+    pub(super) fn of(points: &[Vec2]) -> Self {
         let mut bounds = Self {
             low: points[0],
             high: points[0],
@@ -28,14 +27,14 @@ impl Bounds {
         bounds
     }
 
-    fn merged(self, other: Self) -> Self {
+    pub(super) fn merged(self, other: Self) -> Self {
         Self {
             low: self.low.inf(&other.low),
             high: self.high.sup(&other.high),
         }
     }
 
-    fn loosened(self, by: f64) -> Self {
+    pub(super) fn loosened(self, by: f64) -> Self {
         let margin = Vec2::new(by, by);
         Self {
             low: self.low - margin,
@@ -43,7 +42,7 @@ impl Bounds {
         }
     }
 
-    fn intersects(&self, other: &Self) -> bool {
+    pub(super) fn intersects(&self, other: &Self) -> bool {
         self.low.x <= other.high.x
             && other.low.x <= self.high.x
             && self.low.y <= other.high.y
@@ -74,12 +73,12 @@ fn segment_bounds(block: &FlexBlock, segment: usize) -> Bounds {
 }
 
 /// World pose of a part on a body moving as `motion`.
-fn world_pose(motion: &RigidMotion, part: &PlacedPart) -> Pose2 {
+pub(super) fn world_pose(motion: &RigidMotion, part: &PlacedPart) -> Pose2 {
     let angle = part.pose.sin.atan2(part.pose.cos) + motion.angle;
     Pose2::new(motion.point(part.pose.translation), angle)
 }
 
-fn part_bounds(rigid: &RigidBlock, part: &PlacedPart) -> Bounds {
+pub(super) fn part_bounds(rigid: &RigidBlock, part: &PlacedPart) -> Bounds {
     let bounds = |motion: &RigidMotion| {
         let [low, high] = part.part.aabb(&world_pose(motion, part));
         Bounds { low, high }
@@ -298,83 +297,4 @@ fn is_sharp_corner(block: &FlexBlock, index: usize) -> bool {
     );
     let sine = crate::math::cross(incoming, outgoing);
     sine > 0.0 && sine.atan2(incoming.dot(&outgoing)) > 30f64.to_radians()
-}
-
-/// Candidates between the parts of two rigid blocks, in the configuration at the beginning of the step.
-pub(super) fn rigid_rigid(
-    island: &mut Island,
-    [one, other]: [usize; 2],
-    parts: [std::ops::Range<usize>; 2],
-    names: Names,
-    law: ContactLaw,
-    prediction: f64,
-    references: &mut References,
-) {
-    let first_parts = [parts[0].start, parts[1].start];
-    for a in parts[0].clone() {
-        for b in parts[1].clone() {
-            let (Block::Rigid(block_a), Block::Rigid(block_b)) =
-                (&island.blocks[one], &island.blocks[other])
-            else {
-                return;
-            };
-            let (part_a, part_b) = (&island.parts[a], &island.parts[b]);
-            let reach = approach(block_a) + approach(block_b) + prediction;
-            let boxes = [
-                part_bounds(block_a, part_a).loosened(prediction),
-                part_bounds(block_b, part_b),
-            ];
-            if !boxes[0].intersects(&boxes[1]) {
-                continue;
-            }
-            let poses = [
-                world_pose(block_a.start(), part_a),
-                world_pose(block_b.start(), part_b),
-            ];
-            let names_of_parts = [
-                (names.one, (a - first_parts[0]) as u32),
-                (names.other, (b - first_parts[1]) as u32),
-            ];
-            let found = polygon_pair(
-                &part_a.part,
-                &poses[0],
-                &part_b.part,
-                &poses[1],
-                reach,
-                references.recall(names_of_parts),
-            );
-            references.remember(names_of_parts, found.reference);
-            let placed = [part_a.pose, part_b.pose];
-            let radius = part_a.part.radius() + part_b.part.radius();
-            for contact in found.iter() {
-                let (point, face) = if contact.point_on_b { (1, 0) } else { (0, 1) };
-                let owners = [names.one, names.other];
-                let part_names = [(a - first_parts[0]) as u32, (b - first_parts[1]) as u32];
-                let key = ContactKey {
-                    contactor: owners[point],
-                    // The owners say who carries the point, in whatever order the pair comes.
-                    point: contact.id & !(1 << 31),
-                    target: owners[face],
-                    part: (part_names[point] << 16) | part_names[face],
-                };
-                let blocks = [one, other];
-                let ends = match contact.face {
-                    FaceOrVertex::Face(ends) => ends.map(|end| placed[face].transform(end)),
-                    FaceOrVertex::Vertex(at) => [placed[face].transform(at); 2],
-                };
-                let pair = Pair::PointOnFace {
-                    point: (blocks[point], placed[point].transform(contact.point)),
-                    face: blocks[face],
-                    ends,
-                    radius,
-                };
-                island.candidates.push(Candidate { key, pair, law });
-            }
-        }
-    }
-}
-
-/// How far a point of a block may move in the step (m).
-fn approach(block: &RigidBlock) -> f64 {
-    (block.drift().centre - block.start().centre).norm()
 }

@@ -55,7 +55,9 @@ pub(crate) struct Claims {
     seen: HashSet<(ColliderHandle, ColliderHandle)>,
     /// What the swept boxes meet, by flexible body.
     pub(super) swept_hits: Vec<(usize, ColliderHandle)>,
-    neighbours: Vec<ColliderHandle>,
+    pub(super) neighbours: Vec<ColliderHandle>,
+    /// How far the fastest body goes in the step (m).
+    pub(super) farthest: Real,
     /// Flexible bodies that sleep, and take no part.
     pub(super) asleep: Vec<Sleeper>,
     pub(super) woken: Vec<RigidBodyHandle>,
@@ -137,6 +139,7 @@ impl Claims {
         let farthest = rigid
             .chain(self.flex.iter().map(|flex| flex.travel))
             .fold(0.0, Real::max);
+        self.farthest = farthest;
         let dispatcher = sets.narrow_phase.query_dispatcher();
         let query = sets.broad_phase.as_query_pipeline(
             dispatcher,
@@ -284,6 +287,7 @@ impl Claims {
                 self.neighbours.push(other);
             }
         }
+        self.look_around(sets, body, own);
         self.neighbours
             .sort_unstable_by(|&one, &other| order_of_colliders(sets, one, other));
         self.neighbours.dedup();

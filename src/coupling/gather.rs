@@ -8,6 +8,7 @@ use super::reading::{
     prescribed_block,
 };
 use super::references::References;
+use super::rigid_pairs::{Agitation, RigidPair};
 use super::sets::RapierSets;
 use super::shapes::{ShapeCache, pose_of};
 use crate::body::FlexBodySet;
@@ -38,6 +39,7 @@ pub(crate) struct Gatherer {
     placed: HashMap<ColliderHandle, PlacedCollider>,
     block_of_body: HashMap<RigidBodyHandle, usize>,
     flex_blocks: HashMap<usize, usize>,
+    agitation: Agitation,
     /// Claimed bodies of the island, by block.
     pub bodies: Vec<(usize, RigidBodyHandle)>,
 }
@@ -127,6 +129,7 @@ impl Gatherer {
                 self.add_claimed(handle, settings, sets, masters, island)?;
             }
         }
+        self.agitation = Agitation::of(&island.blocks);
         for slot in 0..claims.pairs.len() {
             let pair = claims.pairs[slot];
             self.add_pair(pair, settings, sets, claims, island)?;
@@ -317,15 +320,15 @@ impl Gatherer {
                 let law = law_of(sets.colliders, one, other)?;
                 let blocks = [first.block, second.block];
                 let parts = [first.parts, second.parts];
-                candidates::rigid_rigid(
-                    island,
+                let pair = RigidPair {
                     blocks,
                     parts,
                     names,
                     law,
-                    settings.prediction,
-                    &mut self.references,
-                );
+                    prediction: settings.prediction,
+                    agitation: &self.agitation,
+                };
+                pair.add_candidates(island, &mut self.references);
             }
             _ => {}
         }

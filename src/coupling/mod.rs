@@ -12,6 +12,7 @@ mod nearby;
 mod places;
 mod reading;
 mod references;
+mod rigid_pairs;
 mod sets;
 mod shapes;
 mod sleep;

@@ -5,7 +5,7 @@
 //! bodies meet each other and fixed colliders only, all that a claim needs is known without it.
 
 use super::claim::Claims;
-use super::places::{placed_on, swept_box};
+use super::places::{loosened, placed_on, swept_box};
 use super::sets::RapierSets;
 use crate::rapier::parry::bounding_volume::BoundingVolume;
 use crate::rapier::prelude::*;
@@ -46,6 +46,56 @@ impl Claims {
         self.meet_each_other();
         self.swept_hits.sort_unstable_by_key(|(index, _)| *index);
         false
+    }
+
+    /// Adds to the neighbours of a claimed collider what it will reach within the step: rapier lists a pair only when the boxes
+    /// nearly touch, and bodies of a few metres a second then are in each other at its end.
+    pub(super) fn look_around(
+        &mut self,
+        sets: &RapierSets<'_>,
+        body: RigidBodyHandle,
+        own: ColliderHandle,
+    ) {
+        let (Some(collider), Some(body)) = (sets.colliders.get(own), sets.bodies.get(body)) else {
+            return;
+        };
+        let dt = sets.integration_parameters.dt;
+        let travel = body.linvel().length() * dt;
+        let swept = swept_box(sets.bodies, collider, dt);
+        if travel + self.farthest <= sets.integration_parameters.prediction_distance() {
+            return;
+        }
+        let mut meets_itself = false;
+        let (flex_of_collider, asleep) = (&self.flex_of_collider, &self.asleep);
+        let neighbours = &mut self.neighbours;
+        let mut visit = |handle: ColliderHandle, other: &Collider| {
+            let is_surface = flex_of_collider.contains_key(&handle)
+                || asleep.iter().any(|sleeper| sleeper.collider == handle);
+            if handle != own
+                && !is_surface
+                && other.parent() != collider.parent()
+                && swept_box(sets.bodies, other, dt).intersects(&swept)
+            {
+                neighbours.push(handle);
+            }
+        };
+        let query = sets.broad_phase.as_query_pipeline(
+            sets.narrow_phase.query_dispatcher(),
+            sets.bodies,
+            sets.colliders,
+            QueryFilter::new(),
+        );
+        let near = loosened(swept, self.farthest);
+        for (handle, other) in query.intersect_aabb_conservative(near) {
+            meets_itself |= handle == own;
+            visit(handle, other);
+        }
+        // A detection step may leave the tree empty: then all colliders are asked.
+        if !meets_itself {
+            sets.colliders
+                .iter()
+                .for_each(|(handle, other)| visit(handle, other));
+        }
     }
 
     /// Meets flexible bodies with each other.

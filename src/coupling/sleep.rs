@@ -26,7 +26,8 @@ pub(crate) struct Sleeper {
     /// Slot in the set.
     pub index: u32,
     carrier: RigidBodyHandle,
-    collider: ColliderHandle,
+    /// Its surface in rapier.
+    pub collider: ColliderHandle,
     surface: Aabb,
 }
 

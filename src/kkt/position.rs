@@ -144,7 +144,8 @@ impl Island {
                 let blocks = &self.blocks;
                 let mut contact =
                     ActiveContact::new(index, kinematics, remembered, friction, blocks);
-                let is_overlap = contact.allow_overlap(kept, slop, blocks);
+                let began = candidate.start_gap(&scene);
+                let is_overlap = contact.allow_overlap(kept, slop, began, blocks);
                 if is_overlap && self.ignores_overlaps {
                     continue;
                 }
@@ -259,7 +260,8 @@ impl Island {
             let friction = candidate.law.friction;
             let mut contact =
                 ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
-            let is_overlap = contact.allow_overlap(kept, OVERLAPPED * tolerance, &self.blocks);
+            let (slop, began) = (OVERLAPPED * tolerance, candidate.start_gap(&scene));
+            let is_overlap = contact.allow_overlap(kept, slop, began, &self.blocks);
             let is_met = !(is_overlap && self.ignores_overlaps);
             if is_met && contact.kinematics.gap < -tolerance {
                 self.is_working[index] = true;
@@ -287,21 +289,21 @@ fn moved(kinematics: &Kinematics, blocks: &[Block]) -> Vec2 {
 }
 
 impl ActiveContact {
-    /// Where the step began with an overlap beyond `slop`, leaves the share `kept` of it for now.
+    /// Where the step began with an overlap beyond `slop`, leaves the share `kept` of it for now; `began` is the gap it began
+    /// with (m), if that is known.
     ///
     /// Returns whether it did.
-    fn allow_overlap(&mut self, kept: f64, slop: f64, blocks: &[Block]) -> bool {
-        let Kinematics { gap, normal, .. } = self.kinematics;
-        // Along the levers, and as the points really moved: a turning body may have come by either.
-        let travelled = self.kinematics.relative(blocks, |block, grip| {
-            block.position(grip.point) - block.start_position(grip.point)
-        });
-        let [linear, travelled] =
-            [moved(&self.kinematics, blocks), travelled].map(|path| normal.dot(&path));
-        let began = gap - linear.min(travelled);
+    fn allow_overlap(
+        &mut self,
+        kept: f64,
+        slop: f64,
+        began: Option<f64>,
+        blocks: &[Block],
+    ) -> bool {
+        let (began, is_clear) =
+            began.map_or_else(|| self.estimated_start(slop, blocks), |began| (began, true));
         // What mostly came within the step is an impact, where a turn blurs its beginning.
-        let is_clear = (linear - travelled).abs() <= slop;
-        let is_overlap = began < -slop && (is_clear || began < 0.5 * gap);
+        let is_overlap = began < -slop && (is_clear || began < 0.5 * self.kinematics.gap);
         if is_overlap {
             self.allowance = kept * began;
             self.kinematics.gap -= self.allowance;
@@ -309,6 +311,19 @@ impl ActiveContact {
             self.known = self.known.map(|(gap, at)| (gap - self.allowance, at));
         }
         is_overlap
+    }
+
+    /// The gap that the step began with as its motion tells (m), and whether a turn does not blur it.
+    fn estimated_start(&self, slop: f64, blocks: &[Block]) -> (f64, bool) {
+        let Kinematics { gap, normal, .. } = self.kinematics;
+        // Along the levers, and as the points really moved: a turning body may have come by either.
+        let travelled = self.kinematics.relative(blocks, |block, grip| {
+            block.position(grip.point) - block.start_position(grip.point)
+        });
+        let [linear, travelled] =
+            [moved(&self.kinematics, blocks), travelled].map(|path| normal.dot(&path));
+        let is_clear = (linear - travelled).abs() <= slop;
+        (gap - linear.min(travelled), is_clear)
     }
 
     fn new(

@@ -70,6 +70,31 @@ pub enum Pair {
         /// Sum of both radii (m).
         radius: f64,
     },
+    /// A core vertex of one rigid part against another part, wherever it comes in: for pairs that move or turn so far in
+    /// the step that the faces which meet at its end are not those that faced each other at its beginning.
+    VertexOnPart {
+        /// Block and arm of the vertex.
+        point: (usize, Vec2),
+        /// Radius around the vertex (m).
+        radius: f64,
+        /// Block of the part.
+        rigid: usize,
+        /// Index of the part into the island's parts.
+        part: usize,
+        /// Direction from the part to the body of the vertex when the step began, in the part's axes; zero if they were
+        /// far apart.
+        towards: Vec2,
+        /// Whether vertices of the part count: two round vertices meet once, not twice.
+        meets_vertices: bool,
+    },
+    /// Two polygonal parts whose edges may cross without a vertex of either in the other: what [`Pair::VertexOnPart`]
+    /// does not see.
+    Crossing {
+        /// Both blocks.
+        blocks: [usize; 2],
+        /// Their parts, as indices into the island's parts.
+        parts: [usize; 2],
+    },
 }
 
 impl Pair {
@@ -80,6 +105,8 @@ impl Pair {
             Self::VertexOnSurface { rigid, flex, .. } => [rigid, flex],
             Self::NodeOnSurface { node, flex, .. } => [node.0, flex],
             Self::PointOnFace { point, face, .. } => [point.0, face],
+            Self::VertexOnPart { point, rigid, .. } => [point.0, rigid],
+            Self::Crossing { blocks, .. } => blocks,
         }
     }
 }

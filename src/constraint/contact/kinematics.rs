@@ -5,6 +5,7 @@
 
 use super::candidate::{Candidate, Pair};
 use super::memory::Remembered;
+use super::rigid_pair::{crossing, point_on_face, vertex_on_part};
 use super::surface::{SurfacePoint, closest_surface_point, faced_at_start, faces, facing_point};
 use crate::constraint::geometry::{ConvexPart, Feature, Pose2, separation};
 use crate::math::{Vec2, perp, rotation};
@@ -84,7 +85,7 @@ impl Kinematics {
             .any(|a| blocks[a.block].is_explicit())
     }
 
-    fn new(
+    pub(super) fn new(
         scene: &Scene<'_>,
         gap: f64,
         normal: Vec2,
@@ -204,11 +205,13 @@ impl Candidate {
                 ends,
                 radius,
             } => point_on_face(scene, point, face, ends, radius),
+            Pair::VertexOnPart { .. } => vertex_on_part(scene, &self.pair),
+            Pair::Crossing { blocks, parts } => crossing(scene, blocks, parts),
         }
     }
 }
 
-fn rigid_of<'a>(scene: &Scene<'a>, block: usize) -> Option<&'a RigidBlock> {
+pub(super) fn rigid_of<'a>(scene: &Scene<'a>, block: usize) -> Option<&'a RigidBlock> {
     match &scene.blocks[block] {
         Block::Rigid(rigid) => Some(rigid),
         Block::Flex(_) => None,
@@ -330,36 +333,4 @@ fn on_surface(
         (flex, Point::Node(second), -hit.xi),
     ];
     Kinematics::new(scene, gap, hit.normal, position, &grips)
-}
-
-fn point_on_face(
-    scene: &Scene<'_>,
-    (block, arm): (usize, Vec2),
-    face: usize,
-    ends: [Vec2; 2],
-    radius: f64,
-) -> Option<Kinematics> {
-    let motion = rigid_of(scene, face)?.current();
-    let point = scene.blocks[block].position(Point::Arm(arm));
-    let [a, b] = ends.map(|end| motion.point(end));
-    let along = b - a;
-    let (gap, normal) = if along.norm() > 0.0 {
-        let normal = -perp(along).normalize();
-        (normal.dot(&(point - a)) - radius, normal)
-    } else {
-        let apart = point - a;
-        let distance = apart.norm();
-        if distance <= 0.0 {
-            return None;
-        }
-        (distance - radius, apart / distance)
-    };
-    // Both arms end at the same world point, so that the pair of forces has no couple.
-    let position = point - (gap + radius) * normal;
-    let own = rigid_of(scene, block)?.current().arm(position);
-    let grips = [
-        (block, Point::Arm(own), 1.0),
-        (face, Point::Arm(motion.arm(position)), -1.0),
-    ];
-    Some(Kinematics::new(scene, gap, normal, position, &grips))
 }

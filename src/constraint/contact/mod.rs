@@ -4,6 +4,7 @@ mod candidate;
 mod kinematics;
 mod law;
 mod memory;
+mod rigid_pair;
 mod surface;
 
 pub use candidate::{Candidate, ContactKey, Owner, Pair};

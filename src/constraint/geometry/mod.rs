@@ -12,6 +12,7 @@
 
 mod clip;
 mod convex_part;
+mod entered;
 mod entry;
 mod outline;
 mod pair_axis;
@@ -21,6 +22,7 @@ mod segment_query;
 mod separation;
 
 pub use convex_part::{ConvexPart, Feature};
+pub use entered::{crossing_overlap, entered_separation, start_separation};
 pub use polygon_pair::{FaceOrVertex, PairContact, PairContacts, PairReference, polygon_pair};
 pub use pose::Pose2;
 pub use segment_query::{SegmentQuery, SegmentRegion, segment_query};
