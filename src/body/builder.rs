@@ -258,8 +258,8 @@ impl FlexBodyBuilder {
 
     /// Whether the body may fall asleep when it, and all that it touches, has come to rest: yes by default.
     ///
-    /// It rests when its fastest node is slower than a tenth of the threshold of its rapier body,
-    /// [`RigidBodyActivation`](crate::rapier::prelude::RigidBodyActivation), for as long as that says.
+    /// It rests when no node moves by a hundred-millionth of the body's size in the time until sleep of its rapier body, half a second
+    /// by default: a vibration that dies out falls asleep late, and one that does not never does.
     pub fn can_sleep(mut self, can_sleep: bool) -> Self {
         self.can_sleep = can_sleep;
         self

@@ -105,7 +105,7 @@ pub(crate) fn is_carried(body: &FlexBody, bodies: &RigidBodySet, colliders: &Col
 
 /// How far the surface in rapier may lag behind the body, over the size of the coordinates: every write wakes what touches it, and
 /// a body at rest still moves by rounding.
-const LAG: f64 = if size_of::<Real>() == 4 { 1e-7 } else { 1e-12 };
+const LAG: f64 = if size_of::<Real>() == 4 { 1e-7 } else { 1e-9 };
 
 /// Whether these vertices are where the nodes are.
 fn is_placed(body: &FlexBody, vertices: &[Vector]) -> bool {

@@ -61,6 +61,7 @@ pub(crate) struct Claims {
     /// Flexible bodies that sleep, and take no part.
     pub(super) asleep: Vec<Sleeper>,
     pub(super) woken: Vec<RigidBodyHandle>,
+    pub(super) n_colliders: usize,
 }
 
 impl Claims {

@@ -111,7 +111,7 @@ impl Claims {
 }
 
 /// Whether a collider stays where it is, and rapier knows it: the user may have moved or disabled its body.
-fn is_fixed_and_settled(sets: &RapierSets<'_>, collider: &Collider) -> bool {
+pub(super) fn is_fixed_and_settled(sets: &RapierSets<'_>, collider: &Collider) -> bool {
     let Some(body) = collider.parent().and_then(|parent| sets.bodies.get(parent)) else {
         return true;
     };

@@ -4,17 +4,19 @@
 //! rapier wakes is awake here too. What is awake and comes near a sleeper wakes it before they touch.
 
 use super::claim::Claims;
-use super::places::swept_box;
+use super::nearby::is_fixed_and_settled;
+use super::places::{loosened, swept_box};
 use super::sets::RapierSets;
 use crate::body::{FlexBody, FlexBodySet};
 use crate::constraint::contact::Owner;
-use crate::math::node_vec;
 use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
 
-/// Speed of the fastest node of a body at rest, over rapier's threshold: a slow swing is no rest.
-const STILL: f64 = 0.1;
+/// How far the fastest node of a body at rest goes in the time until sleep, over the body's size: displacements and forces are then
+/// those of equilibrium to some digits more than rapier's single precision has. Rapier's own threshold, 5 cm/s, would freeze a beam that
+/// swings.
+const STILL: f64 = 1e-8;
 
 /// Part of the time until sleep at which the timer of a body that moves is set back: not in every step, for rapier then looks at
 /// the body again.
@@ -58,10 +60,14 @@ pub(crate) fn is_all_asleep(sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) ->
         && sets.bodies.iter().all(|(_, body)| rests(body))
 }
 
-/// Wakes the bodies that the user changed.
-pub(crate) fn wake_disturbed(sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet) {
+/// Wakes the bodies that the user changed; all of them if the world around them `has_changed`.
+pub(crate) fn wake_disturbed(
+    sets: &mut RapierSets<'_>,
+    flex_bodies: &mut FlexBodySet,
+    has_changed: bool,
+) {
     for (_, body) in flex_bodies.iter_mut() {
-        if body.is_disturbed() {
+        if body.is_disturbed() || has_changed {
             body.clear_disturbance();
             sets.islands
                 .wake_up(sets.bodies, body.rigid_body_handle(), true);
@@ -70,6 +76,16 @@ pub(crate) fn wake_disturbed(sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBo
 }
 
 impl Claims {
+    /// Whether colliders have come or gone since the last call, or fixed ones have been moved: what rested on them may fall.
+    pub fn has_world_changed(&mut self, sets: &RapierSets<'_>) -> bool {
+        let n_before = std::mem::replace(&mut self.n_colliders, sets.colliders.len());
+        n_before != self.n_colliders
+            || sets.colliders.iter().any(|(_, collider)| {
+                let parent = collider.parent().and_then(|parent| sets.bodies.get(parent));
+                parent.is_some_and(RigidBody::is_fixed) && !is_fixed_and_settled(sets, collider)
+            })
+    }
+
     /// Whether a collider is the surface of a flexible body, awake or not.
     pub fn is_surface(&self, collider: ColliderHandle) -> bool {
         self.flex_of_collider.contains_key(&collider) || self.is_sleeping_surface(collider)
@@ -97,8 +113,11 @@ impl Claims {
 
     fn is_met(&self, sets: &RapierSets<'_>, sleeper: &Sleeper) -> bool {
         let dt = sets.integration_parameters.dt;
+        let fall = sets.gravity.length() * dt * dt;
+        let margin = sets.integration_parameters.prediction_distance() + fall;
         let near = |other: &Aabb| {
-            other.intersects(&sleeper.surface) && reaches(sets, sleeper.collider, other)
+            let other = loosened(*other, margin);
+            other.intersects(&sleeper.surface) && reaches(sets, sleeper.collider, &other)
         };
         if self.flex.iter().any(|flex| near(&flex.swept)) {
             return true;
@@ -144,29 +163,38 @@ fn is_awake(sets: &RapierSets<'_>, collider: &Collider) -> bool {
         && parent.is_some_and(|body| !body.is_fixed() && !body.is_sleeping())
 }
 
-/// Keeps a carrier awake while its body moves, and stops the body when rapier has put the carrier to sleep.
-pub(crate) fn settle(body: &mut FlexBody, sets: &mut RapierSets<'_>) {
+/// Keeps the carrier of a body awake while a node moves, before rapier's step counts the time that it has been still.
+pub(crate) fn keep_awake(body: &FlexBody, velocities: &[f64], sets: &mut RapierSets<'_>) {
     let handle = body.rigid_body_handle();
     let Some(carrier) = sets.bodies.get(handle) else {
         return;
     };
-    if carrier.is_sleeping() {
-        body.stop();
-        return;
-    }
+    let dt = sets.integration_parameters.dt;
     let activation = carrier.activation();
-    let threshold =
-        activation.normalized_linear_threshold * sets.integration_parameters.length_unit;
-    let is_due = activation.time_since_can_sleep >= SET_BACK * activation.time_until_sleep;
-    if threshold < 0.0 || !is_due {
+    let patience = activation.time_until_sleep;
+    let is_due = activation.time_since_can_sleep + dt >= SET_BACK * patience;
+    if activation.normalized_linear_threshold < 0.0 || !is_due {
         return;
     }
-    let fastest = (0..body.n_nodes())
-        .map(|node| node_vec(body.velocities(), node).norm_squared())
+    let fastest = velocities
+        .chunks_exact(2)
+        .map(|v| v[0] * v[0] + v[1] * v[1])
         .fold(0.0, f64::max);
-    if fastest.sqrt() > STILL * f64::from(threshold)
+    let collider = sets.colliders.get(body.collider_handle());
+    let size = collider.map_or(0.0, |collider| {
+        collider.compute_aabb().extents().max_element()
+    });
+    if fastest.sqrt() * f64::from(patience) > STILL * f64::from(size)
         && let Some(carrier) = sets.bodies.get_mut(handle)
     {
-        carrier.activation_mut().time_since_can_sleep = 0.0;
+        // The step adds its length.
+        carrier.activation_mut().time_since_can_sleep = -dt;
+    }
+}
+
+/// Stops a body whose carrier has fallen asleep in rapier's step.
+pub(crate) fn stop_if_asleep(body: &mut FlexBody, bodies: &RigidBodySet) {
+    if is_asleep(body, bodies) {
+        body.stop();
     }
 }

@@ -4,7 +4,7 @@ use super::flex_pipeline::FlexPipeline;
 use super::report::{ContactReport, Participant};
 use crate::body::FlexBodySet;
 use crate::constraint::contact::{Owner, Remembered};
-use crate::coupling::{Landing, RapierSets};
+use crate::coupling::{Landing, RapierSets, keep_awake};
 use crate::kkt::{ActiveContact, IslandSummary};
 use crate::linalg::complementarity::Status;
 use crate::math::{Vec2, cross, from_rapier};
@@ -60,6 +60,31 @@ impl FlexPipeline {
             summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
         report.energy.dissipated += summary.work - gain;
         self.report_momentum(from_rapier(sets.gravity), flex_bodies);
+    }
+
+    /// Keeps what contacts of sleepers will be asked for when they wake, and what the report says of them.
+    pub(super) fn keep_sleepers(&mut self, sets: &RapierSets<'_>) {
+        let claims = &self.claims;
+        let sleeps = |owner| claims.sleeps(sets, owner);
+        self.gatherer.keep(sleeps);
+        self.memory
+            .keep(|key| sleeps(key.contactor) || sleeps(key.target));
+        self.report.keep_contacts(|participant| {
+            sleeps(match participant {
+                Participant::Flex(body) => Owner::Flex(body.into_raw_parts().0),
+                Participant::Rigid(collider) => Owner::Collider(collider.into_raw_parts().0),
+            })
+        });
+    }
+
+    /// Keeps the carriers of bodies that move awake.
+    pub(super) fn keep_awake(&self, sets: &mut RapierSets<'_>, flex_bodies: &FlexBodySet) {
+        for &(index, _) in &self.reserves {
+            let block = self.gatherer.block(index);
+            if let (Some(block), Some((_, body))) = (block, flex_bodies.at_index(index)) {
+                keep_awake(body, block.velocities(), sets);
+            }
+        }
     }
 
     fn report_residuals(&mut self, slot: usize) {

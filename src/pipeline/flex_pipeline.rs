@@ -6,7 +6,7 @@ use crate::body::FlexBodySet;
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
     Claims, GatherSettings, Gatherer, Landing, Masters, RapierSets, hand_back, is_all_asleep, land,
-    settle, wake_disturbed, write_surface,
+    stop_if_asleep, wake_disturbed, write_surface,
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ImpactTreatment, Island, SolveSettings};
@@ -46,7 +46,7 @@ pub struct FlexPipeline {
     restitution_threshold: f64,
     max_newton: usize,
     pub(super) insists: bool,
-    claims: Claims,
+    pub(super) claims: Claims,
     pub(super) gatherer: Gatherer,
     masters: Masters,
     pub(super) memory: ContactMemory,
@@ -220,13 +220,15 @@ impl FlexPipeline {
         let mut clock = Clock::start();
         let dissipated = self.report.energy.dissipated;
         let step = self.check(&sets, flex_bodies)?;
-        if step.dt > 0.0 && is_all_asleep(&sets, flex_bodies) {
+        let has_changed = self.claims.has_world_changed(&sets);
+        if step.dt > 0.0 && !has_changed && is_all_asleep(&sets, flex_bodies) {
             sets.step();
             self.report.note_quarantine(&sets);
             self.report.n_asleep = flex_bodies.len();
+            self.report.keep_contacts(|_| true);
             return Ok(&self.report);
         }
-        wake_disturbed(&mut sets, flex_bodies);
+        wake_disturbed(&mut sets, flex_bodies, has_changed);
         self.claims.look_ahead(&sets, flex_bodies);
         while self.claims.wake_met(&mut sets) {
             self.claims.look_ahead(&sets, flex_bodies);
@@ -256,6 +258,7 @@ impl FlexPipeline {
             }
             return Err(error);
         }
+        self.keep_awake(&mut sets, flex_bodies);
         hand_back(&mut self.landings, &mut sets);
         clock.lap(&mut self.report.times.hand_back);
         sets.step();
@@ -357,10 +360,7 @@ impl FlexPipeline {
     /// Makes the solved motions the committed ones and writes the surfaces.
     fn commit(&mut self, sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet) {
         if self.claims.n_asleep() > 0 {
-            let claims = &self.claims;
-            self.gatherer.keep(|owner| claims.sleeps(sets, owner));
-            self.memory
-                .keep(|key| claims.sleeps(sets, key.contactor) || claims.sleeps(sets, key.target));
+            self.keep_sleepers(sets);
         }
         self.memory.turn_over();
         self.gatherer.turn_over(true);
@@ -380,7 +380,7 @@ impl FlexPipeline {
                 sets.broad_phase,
                 sets.integration_parameters,
             );
-            settle(body, sets);
+            stop_if_asleep(body, sets.bodies);
         }
     }
 }

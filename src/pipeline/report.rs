@@ -87,6 +87,8 @@ impl StageTimes {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
     pub(super) contacts: Vec<ContactReport>,
+    /// Contacts of the step before, of which those of sleepers are kept.
+    pub(super) contacts_before: Vec<ContactReport>,
     pub(super) energy: EnergyReport,
     pub(super) momentum: [f64; 2],
     pub(super) angular_momentum: f64,
@@ -164,7 +166,8 @@ impl StepReport {
         self.n_claimed
     }
 
-    /// Flexible bodies that slept through the step. Energies, momentum and contacts are those of what was awake.
+    /// Flexible bodies that slept through the step. Their contacts are those they fell asleep with; energies and momentum are those of
+    /// what was awake.
     pub fn n_asleep(&self) -> usize {
         self.n_asleep
     }
@@ -230,6 +233,15 @@ impl StepReport {
         sum
     }
 
+    /// Keeps the contacts of the step before whose bodies `sleep`.
+    pub(super) fn keep_contacts(&mut self, sleeps: impl Fn(Participant) -> bool) {
+        let kept = self
+            .contacts_before
+            .iter()
+            .filter(|contact| sleeps(contact.contactor) || sleeps(contact.target));
+        self.contacts.extend(kept);
+    }
+
     /// Adds what rapier's last step disabled.
     pub(super) fn note_quarantine(&mut self, sets: &RapierSets<'_>) {
         let quarantine = sets.physics_pipeline.quarantine();
@@ -240,13 +252,15 @@ impl StepReport {
     }
 
     pub(super) fn clear(&mut self) {
-        let contacts = std::mem::take(&mut self.contacts);
+        let contacts_before = std::mem::take(&mut self.contacts);
+        let mut contacts = std::mem::take(&mut self.contacts_before);
+        contacts.clear();
         let dissipated = self.energy.dissipated;
         *self = Self {
             contacts,
+            contacts_before,
             ..Self::default()
         };
-        self.contacts.clear();
         self.energy.dissipated = dissipated;
     }
 }
