@@ -178,7 +178,8 @@ fn judge(sheet: &mut Sheet, forces: &[[f64; 2]]) {
     // The force acts within the step in which the gap closes; a wave crosses a cell in 2.5 steps.
     sheet.absolute("first contact (s)", TOUCH, first, 2.5 * DT);
     sheet.absolute("last contact (s)", RELEASE, last, 2.5 * DT);
-    let exact = vec![
+    let scaled = |[time, force]: [f64; 2]| [1e6 * time, 1e-3 * force];
+    let exact = [
         [0.0, 0.0],
         [TOUCH, 0.0],
         [TOUCH, PLATEAU],
@@ -190,9 +191,12 @@ fn judge(sheet: &mut Sheet, forces: &[[f64; 2]]) {
         Figure::new(
             "b3_force",
             "B3: force between two steel bars",
-            ["time (s)", "contact force (N)"],
+            ["time (µs)", "contact force (kN)"],
         )
-        .exact("exact", exact)
-        .line("trapezoidal, redistributed mass", forces.to_vec()),
+        .exact("exact", exact.map(scaled).to_vec())
+        .line(
+            "trapezoidal, redistributed mass",
+            forces.iter().copied().map(scaled).collect(),
+        ),
     );
 }

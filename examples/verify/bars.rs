@@ -40,6 +40,7 @@ pub struct Scheme {
     pub integrator: Beta2,
     pub impact: ImpactTreatment,
     pub mass: Mass,
+    pub contact: ContactMethod,
 }
 
 impl Scheme {
@@ -50,6 +51,7 @@ impl Scheme {
             integrator: Beta2::trapezoidal(),
             impact: ImpactTreatment::Stabilized,
             mass: Mass::Redistributed,
+            contact: ContactMethod::Lagrange,
         }
     }
 }
@@ -81,6 +83,8 @@ pub struct Record {
     /// Deepest overlap (m).
     pub penetration: f64,
     pub n_newton: usize,
+    /// Steps in which the iterations of the constraint functions failed.
+    pub n_failed: usize,
     pub n_pivots: usize,
     /// Mean wall-clock time of a step (µs).
     pub microseconds: f64,
@@ -92,7 +96,8 @@ pub struct Record {
 pub fn drop_bar(scheme: &Scheme, drop: &Drop) -> Result<Record, Box<dyn Error + Send + Sync>> {
     let mut scene = Scene::new(drop.dt, scheme.integrator)
         .with_gravity(0.0, -drop.gravity)
-        .with_impact(scheme.impact);
+        .with_impact(scheme.impact)
+        .with_contact(scheme.contact);
     scene.world.insert_collider(
         ColliderBuilder::cuboid(20.0, 10.0).translation(Vector::new(0.0, -10.0)),
         None,
@@ -133,6 +138,7 @@ pub fn drop_bar(scheme: &Scheme, drop: &Drop) -> Result<Record, Box<dyn Error + 
         };
         record.penetration = record.penetration.max(report.gap_violation());
         record.n_newton = record.n_newton.max(report.n_newton());
+        record.n_failed += report.n_failed();
         record.n_pivots += report.n_pivots();
         let body = scene.body(bar);
         record.times.push(step as f64 * scene.dt());

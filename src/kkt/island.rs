@@ -1,5 +1,6 @@
 //! An island: blocks that touch, with the candidates between them, solved as one system.
 
+use super::constraint_function::{ContactMethod, Newton};
 use super::delassus::RowDirection;
 use super::impact::ImpactTreatment;
 use crate::constraint::contact::{
@@ -55,6 +56,8 @@ pub struct SolveSettings {
     pub insists: bool,
     /// What is done on impact.
     pub impact: ImpactTreatment,
+    /// How the laws of contact are enforced.
+    pub contact: ContactMethod,
     /// The solver that contact problems are given to first.
     pub solver: Method,
     /// Approach velocity below which restitution is ignored (m/s).
@@ -147,6 +150,10 @@ pub struct IslandSummary {
     pub n_pivots: usize,
     /// Natural-map residual of the last complementarity solve.
     pub residual: f64,
+    /// Whether the iterations of the constraint functions failed.
+    pub has_failed: bool,
+    /// Whether Lagrange multipliers then solved the step.
+    pub is_substituted: bool,
     /// Whether Newton's iterations failed and a linearised step was taken.
     pub is_linearized: bool,
     /// Whether even that threw a body about, so that the island stayed where it was, at rest.
@@ -196,6 +203,7 @@ pub struct Island {
     /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.
     pub(super) pressed_before: Vec<[usize; 2]>,
     pub(super) solver: Solver,
+    pub(super) newton: Newton,
 }
 
 impl Island {

@@ -6,6 +6,7 @@
 //!    acceleration; contacts through massless surfaces need it only where the impact is shorter than the step;
 //! 3. energy stage: velocities give back the energy that contact would add.
 
+mod constraint_function;
 mod delassus;
 mod energy;
 mod fallback;
@@ -18,5 +19,6 @@ mod partner;
 mod position;
 mod velocity;
 
+pub use constraint_function::{ConstraintFunction, ContactMethod, EpsilonError};
 pub use impact::ImpactTreatment;
 pub use island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
