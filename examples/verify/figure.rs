@@ -190,12 +190,29 @@ impl Figure {
 const WIDTH: u32 = 720;
 const HEIGHT: u32 = 460;
 
+/// Colours that stand out from white and from each other.
+const COLOURS: [[u8; 3]; 12] = [
+    [31, 119, 180],
+    [214, 39, 40],
+    [44, 160, 44],
+    [255, 127, 14],
+    [148, 103, 189],
+    [140, 86, 75],
+    [227, 119, 194],
+    [0, 150, 170],
+    [150, 150, 0],
+    [110, 110, 110],
+    [0, 60, 140],
+    [90, 0, 60],
+];
+
 /// Exact solutions are black.
 fn colour(index: usize, curve: &Curve) -> RGBAColor {
     if curve.is_exact {
         BLACK.to_rgba()
     } else {
-        Palette99::pick(index).to_rgba()
+        let [red, green, blue] = COLOURS[index % COLOURS.len()];
+        RGBColor(red, green, blue).to_rgba()
     }
 }
 

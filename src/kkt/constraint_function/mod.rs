@@ -67,7 +67,7 @@ pub struct ConstraintFunction {
 /// An `ε` that makes no constraint function.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error(
-    "{name} is {value}: give a positive number up to 1, such as 1e-12 for eps_N and 1e-6 for eps_T"
+    "{name} is {value}: give a positive number up to 1, such as 1e-12 for eps_N and 1e-9 for eps_T"
 )]
 pub struct EpsilonError {
     /// Which one.
@@ -77,10 +77,10 @@ pub struct EpsilonError {
 }
 
 impl Default for ConstraintFunction {
-    /// `ε_N = 1e-12`, `ε_T = 1e-6`, 50 iterations, with line search and continuation.
+    /// `ε_N = 1e-12`, `ε_T = 1e-9` (Newton's iterations hardly notice; with 1e-3 a body creeps visibly), 50 iterations, with line search and continuation.
     fn default() -> Self {
         Self {
-            epsilon: [1e-12, 1e-6],
+            epsilon: [1e-12, 1e-9],
             max_iterations: 50,
             has_line_search: true,
             has_continuation: true,
