@@ -473,7 +473,7 @@ fn a_partner_too_light_for_the_step_is_refused_with_its_critical_step() {
     scene.ground(0.5);
     scene.flexible(rubber(10));
     let shape = ColliderBuilder::cuboid(real(0.3), real(0.1)).density(real(0.01));
-    scene.rigid(
+    let (light, _) = scene.rigid(
         RigidBodyBuilder::dynamic().translation(vec2(0.5, 1.1)),
         shape,
     );
@@ -482,6 +482,10 @@ fn a_partner_too_light_for_the_step_is_refused_with_its_critical_step() {
     assert!(
         error.to_string().contains("shorten the step below"),
         "{error}"
+    );
+    assert!(
+        matches!(error, StepError::LightPartner { body, .. } if body == light),
+        "{error:?}"
     );
 }
 

@@ -1,6 +1,9 @@
 //! Mass redistribution: nodes in contact lose their inertia, the body as a whole keeps its own.
 
+use foil2d::fe::frequency::largest_frequency;
 use foil2d::fe::mass::{MassError, Redistribution, move_inwards, redistribute};
+use foil2d::fe::model::MassKind;
+use foil2d::prelude::*;
 
 /// A set of nodes with lumped masses and the neighbours of each.
 struct Body {
@@ -353,4 +356,73 @@ fn a_body_that_cannot_be_redistributed_is_refused_and_left_alone() {
             value: -0.5
         })
     );
+}
+
+/// A bar of 20 cells whose left end gives its mass away.
+fn bar(kind: MassKind, gives: bool) -> FlexBody {
+    let nodes = if gives { vec![0, 21] } else { vec![] };
+    FlexBodyBuilder::rectangle([10.0, 0.5], [20, 1])
+        .material(LinearElastic::plane_stress(900.0, 0.0).density(1.0))
+        .mass_kind(kind)
+        .contact_inertia(ContactInertia::RedistributedAt(nodes))
+        .build()
+        .expect("a sound bar")
+}
+
+/// Total, first moments and polar moment of the mass matrix about the origin, `1·M 1`, `1·M x` and `x·M x`.
+fn moments(body: &FlexBody) -> [f64; 4] {
+    let places: Vec<f64> = body.mesh().nodes().iter().flatten().copied().collect();
+    let ones = |axis: usize| -> Vec<f64> {
+        let pattern = [1.0 - axis as f64, axis as f64];
+        pattern.into_iter().cycle().take(places.len()).collect()
+    };
+    let mass = body.model().mass();
+    let [x, y] = [ones(0), ones(1)];
+    [
+        mass.inner(&x, &x),
+        mass.inner(&x, &places),
+        mass.inner(&y, &places),
+        mass.inner(&places, &places),
+    ]
+}
+
+#[test]
+fn a_consistent_mass_that_moves_inwards_keeps_total_centre_and_polar_moment() {
+    let (before, after) = (
+        bar(MassKind::Consistent, false),
+        bar(MassKind::Consistent, true),
+    );
+    for (kept, is) in moments(&before).into_iter().zip(moments(&after)) {
+        assert!((is / kept - 1.0).abs() < 1e-12, "{is} instead of {kept}");
+    }
+    let mass = after.model().mass();
+    let n_dofs = after.model().n_dofs();
+    for node in [0, 21] {
+        assert!(after.model().is_massless(node));
+        let mut unit = vec![0.0; n_dofs];
+        unit[2 * node] = 1.0;
+        let mut row = vec![0.0; n_dofs];
+        mass.multiply_add(1.0, &unit, &mut row);
+        assert!(
+            row.iter().all(|&entry| entry == 0.0),
+            "node {node} has a row"
+        );
+    }
+    // Positive definite on the others: the largest frequency is found by a Cholesky factor of the mass.
+    let found = largest_frequency(after.model(), &[], 1e-6).expect("the mass has a factor");
+    assert!(found.frequency.is_finite() && found.frequency > 0.0);
+}
+
+/// A wave that comes from afar must not meet another density: what changes stays within a few cells.
+#[test]
+fn a_part_of_the_boundary_changes_the_mass_near_it_only() {
+    for kind in [MassKind::Lumped, MassKind::Consistent] {
+        let sums = |body: &FlexBody| body.model().mass().node_sums();
+        let (before, after) = (sums(&bar(kind, false)), sums(&bar(kind, true)));
+        for node in 10..=20 {
+            let change = after[node] / before[node] - 1.0;
+            // A quadratic over the whole bar would change 0.7 %.
+            assert!(change.abs() < 4e-3, "{kind:?}, node {node}: {change}");
+        }
+    }
 }

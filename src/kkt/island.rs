@@ -6,7 +6,6 @@ use super::impact::ImpactTreatment;
 use crate::constraint::contact::{
     Candidate, ContactMemory, Kinematics, PlacedPart, Remembered, Scene,
 };
-use crate::linalg::cholesky::CholeskyError;
 use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
@@ -15,22 +14,13 @@ use thiserror::Error;
 /// Why an island cannot be solved.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum KktError {
-    /// The effective matrix of a flexible body is not positive definite: the body has no mass somewhere, or its cells are so
-    /// small and stiff for this step length that rounding hides their mass.
-    #[error(
-        "flexible body {body}: {source}; if its cells are very small and stiff, shorten the step or coarsen its mesh"
-    )]
-    Factorization {
-        /// Index of the body in its set.
-        body: u32,
-        /// What the factorization found.
-        source: CholeskyError,
-    },
     /// A rigid body is too light for the springs that an explicit body meets it with.
     #[error(
-        "a rigid body is so light that on the surface of an explicit flexible body it vibrates faster than the step of {dt} s resolves: shorten the step below {critical} s, make the body heavier, keep the inertia of the surface (`ContactInertia::Kept`), or choose beta0 > 0"
+        "rigid block {block} is so light that on the surface of an explicit flexible body it vibrates faster than the step of {dt} s resolves: shorten the step below {critical} s, make the body heavier, keep the inertia of the surface (`ContactInertia::Kept`), or choose beta0 > 0"
     )]
     LightPartner {
+        /// Its index among the blocks of the island; whoever gathered the island knows its handle.
+        block: usize,
         /// The step asked for (s).
         dt: f64,
         /// The longest stable step (s).

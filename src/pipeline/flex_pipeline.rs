@@ -336,7 +336,10 @@ impl FlexPipeline {
             max_newton: self.max_newton,
         };
         let mut reserve = self.reserve(flex_bodies);
-        let summary = self.island.solve(&settings, &self.memory, &mut reserve)?;
+        let summary = self
+            .island
+            .solve(&settings, &self.memory, &mut reserve)
+            .map_err(|error| self.name_bodies(error))?;
         self.check_finite(flex_bodies)?;
         self.note(step, &summary, reserve, sets, flex_bodies);
         clock.lap(&mut self.report.times.solve);
