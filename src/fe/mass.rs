@@ -183,7 +183,8 @@ pub fn move_inwards<'a>(
     Ok(moved)
 }
 
-/// `1/k²` for a node `k` cells away from the nearest massless one, 1 on massless ones (-).
+/// `1/k²` for a node `k` cells away from the nearest massless one, 1 on massless ones (-). A steeper fall keeps the change nearer, but
+/// waves scatter at it.
 pub fn nearness<'a>(massless: &[bool], neighbours: impl Fn(usize) -> &'a [usize]) -> Vec<f64> {
     let others: Vec<bool> = massless.iter().map(|massless| !massless).collect();
     match rings(&others, &neighbours) {
