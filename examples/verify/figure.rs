@@ -191,7 +191,7 @@ const WIDTH: u32 = 720;
 const HEIGHT: u32 = 460;
 
 /// Colours that stand out from white and from each other.
-const COLOURS: [[u8; 3]; 12] = [
+const COLOURS: [[u8; 3]; 14] = [
     [31, 119, 180],
     [214, 39, 40],
     [44, 160, 44],
@@ -204,6 +204,8 @@ const COLOURS: [[u8; 3]; 12] = [
     [110, 110, 110],
     [0, 60, 140],
     [90, 0, 60],
+    [240, 180, 0],
+    [60, 60, 60],
 ];
 
 /// Exact solutions are black.

@@ -246,3 +246,110 @@ fn forces(rows: &[RowKind], unknowns: &[f64], force: f64, multipliers: &mut [f64
         };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two contacts with friction of a body that couples them.
+    const DELASSUS: [f64; 16] = [
+        2.0, 0.3, 0.5, 0.1, //
+        0.3, 1.5, -0.2, 0.4, //
+        0.5, -0.2, 1.8, 0.2, //
+        0.1, 0.4, 0.2, 1.2,
+    ];
+    const ROWS: [RowKind; 4] = [
+        RowKind::Unilateral,
+        RowKind::Friction {
+            normal: 0,
+            coefficient: 0.4,
+        },
+        RowKind::Unilateral,
+        RowKind::Friction {
+            normal: 2,
+            coefficient: 0.3,
+        },
+    ];
+
+    fn problem(free: &[f64; 4]) -> Problem<'_> {
+        Problem {
+            delassus: &DELASSUS,
+            free,
+            rows: &ROWS,
+        }
+    }
+
+    #[test]
+    fn the_jacobian_is_the_slope_of_the_functions() {
+        let free = [-1.0, 0.4, -0.6, -0.1];
+        let problem = problem(&free);
+        let scale = Scale::of(&problem, 0.01, 1e-9, [1e-2, 0.3]);
+        let start = [0.7, 0.3, 0.4, -0.6];
+        let values_at = |unknowns: [f64; 4]| {
+            let mut newton = Newton {
+                unknowns: unknowns.to_vec(),
+                ..Newton::default()
+            };
+            newton.evaluate(&problem, &scale, None);
+            newton.linearize(&problem, &scale);
+            newton
+        };
+        let exact = values_at(start);
+        let h = 1e-6;
+        for column in 0..4 {
+            let shifted = |sign: f64| {
+                let mut unknowns = start;
+                unknowns[column] += sign * h;
+                values_at(unknowns).values
+            };
+            let (above, below) = (shifted(1.0), shifted(-1.0));
+            for row in 0..4 {
+                let slope = (above[row].value - below[row].value) / (2.0 * h);
+                let entry = exact.jacobian[4 * row + column];
+                // Central differences of functions that bend over 0.1: h²/6 times 1e3, and rounding over h.
+                assert!(
+                    (entry - slope).abs() < 1e-8,
+                    "({row}, {column}): {entry}, not {slope}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn newtons_iterations_end_where_the_laws_hold() {
+        // One contact sticks, one slides.
+        let free = [-1.0, 0.2, -0.6, 3.0];
+        let problem = problem(&free);
+        let scale = Scale::of(&problem, 0.01, 1e-9, [1e-12, 1e-9]);
+        let (mut newton, mut multipliers) = (Newton::default(), [0.0; 4]);
+        newton.start(&ROWS, &multipliers, &scale);
+        let mut n_iterations = 0;
+        while n_iterations < 20 {
+            assert!(newton.advance(&problem, &scale, true, &mut multipliers));
+            n_iterations += 1;
+            if newton.evaluate(&problem, &scale, None) < 1e-24 {
+                break;
+            }
+        }
+        assert!(n_iterations <= 8, "{n_iterations} iterations");
+        let motion = |row: usize| {
+            let moved: f64 = (0..4).map(|k| DELASSUS[4 * row + k] * multipliers[k]).sum();
+            moved + free[row]
+        };
+        // g p = eps_N and the slip of sticking, both of the order of rounding.
+        assert!(motion(0).abs() < 1e-9 && motion(2).abs() < 1e-9);
+        let ratio = -multipliers[1] / (0.4 * multipliers[0]);
+        let slips = 1e-9 * (0.5 * std::f64::consts::PI * ratio).tan() * scale.length / scale.b0;
+        // The residual allows 1e-12 of `length / b0`, and the ratio's rounding is stretched a thousandfold.
+        assert!(
+            ratio < 0.999 && (motion(1) - slips).abs() < 1e-10,
+            "slips by {}, not {slips}",
+            motion(1)
+        );
+        assert!(
+            (multipliers[3] + 0.3 * multipliers[2]).abs() < 1e-7 * multipliers[2],
+            "slides at the limit"
+        );
+        assert!(motion(3) > 0.0 && multipliers[1].abs() < 0.4 * multipliers[0]);
+    }
+}
