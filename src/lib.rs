@@ -35,6 +35,6 @@ pub mod prelude {
     pub use crate::fe::mesh::{CellKind, Mesh};
     pub use crate::fe::model::MassKind;
     pub use crate::integrator::Beta2;
-    pub use crate::kkt::ImpactTreatment;
+    pub use crate::kkt::{ConstraintFunction, ContactMethod, ImpactTreatment};
     pub use crate::pipeline::{FlexPipeline, StepReport};
 }

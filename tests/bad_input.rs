@@ -643,6 +643,47 @@ fn an_integrator_unstable_for_the_mesh_is_refused_by_body_and_a_shorter_step_goe
     assert!((fallen - 0.5 * 9.81 * t * t).abs() < 1e-6, "{fallen} m");
 }
 
+/// What no step could compute is refused by the builder, which names it: sizes beyond rapier's precision, and mass or stiffness
+/// that overflow or vanish.
+#[test]
+fn bodies_too_large_too_heavy_or_too_soft_to_compute_are_refused() {
+    let square = |side: f64| FlexBodyBuilder::rectangle([side, side], [2, 2]);
+    let plain = LinearElastic::plane_stress(1e6, 0.3).density(1000.0);
+    for side in [1e19, 1e30] {
+        let error = square(side).material(plain).build().expect_err("too large");
+        assert!(matches!(error, BuildError::Place { .. }), "{error:?}");
+        assert!(
+            error.to_string().contains("make the body smaller"),
+            "{error}"
+        );
+    }
+    let cases = [
+        ("mass", square(1.0).material(plain.density(1e300))),
+        ("mass", square(1.0).material(plain.density(1e-200))),
+        ("mass", square(1e-10).material(plain).thickness(1e-30)),
+        (
+            "stiffness",
+            square(1.0).material(LinearElastic::plane_stress(1e200, 0.3).density(1.0)),
+        ),
+        (
+            "stiffness",
+            square(1.0).material(LinearElastic::plane_stress(1e-200, 0.3).density(1.0)),
+        ),
+    ];
+    for (expected, builder) in cases {
+        let error = builder.build().expect_err("out of range");
+        let found = match &error {
+            BuildError::OutOfRange { name, .. } => *name,
+            _ => "",
+        };
+        assert_eq!(found, expected, "{error:?}");
+        assert!(error.to_string().contains("choose units"), "{error}");
+    }
+    for side in [1e-6, 1e6] {
+        square(side).material(plain).build().expect("ordinary");
+    }
+}
+
 #[test]
 fn step_lengths_that_are_negative_or_not_finite_are_refused() {
     for dt in BAD.into_iter().chain([-1.0 / 60.0, -1e-9]) {

@@ -1,6 +1,11 @@
 //! Mass redistribution: nodes in contact lose their inertia, the body as a whole keeps its own.
 
-use foil2d::fe::mass::{MassError, Redistribution, move_inwards, redistribute};
+use foil2d::fe::frequency::largest_frequency;
+use foil2d::fe::mass::{
+    MassError, Redistribution, move_inwards, nearness, redistribute, redistribute_by,
+};
+use foil2d::fe::model::MassKind;
+use foil2d::prelude::*;
 
 /// A set of nodes with lumped masses and the neighbours of each.
 struct Body {
@@ -353,4 +358,80 @@ fn a_body_that_cannot_be_redistributed_is_refused_and_left_alone() {
             value: -0.5
         })
     );
+}
+
+/// A bar of 20 cells whose left end gives its mass away.
+fn bar(kind: MassKind, gives: bool) -> FlexBody {
+    let nodes = if gives { vec![0, 21] } else { vec![] };
+    FlexBodyBuilder::rectangle([10.0, 0.5], [20, 1])
+        .material(LinearElastic::plane_stress(900.0, 0.0).density(1.0))
+        .mass_kind(kind)
+        .contact_inertia(ContactInertia::RedistributedAt(nodes))
+        .build()
+        .expect("a sound bar")
+}
+
+/// Total, first moments and polar moment of the mass matrix about the origin, `1·M 1`, `1·M x` and `x·M x`.
+fn moments(body: &FlexBody) -> [f64; 4] {
+    let places: Vec<f64> = body.mesh().nodes().iter().flatten().copied().collect();
+    let ones = |axis: usize| -> Vec<f64> {
+        let pattern = [1.0 - axis as f64, axis as f64];
+        pattern.into_iter().cycle().take(places.len()).collect()
+    };
+    let mass = body.model().mass();
+    let [x, y] = [ones(0), ones(1)];
+    [
+        mass.inner(&x, &x),
+        mass.inner(&x, &places),
+        mass.inner(&y, &places),
+        mass.inner(&places, &places),
+    ]
+}
+
+#[test]
+fn a_consistent_mass_that_moves_inwards_keeps_total_centre_and_polar_moment() {
+    let (before, after) = (
+        bar(MassKind::Consistent, false),
+        bar(MassKind::Consistent, true),
+    );
+    for (kept, is) in moments(&before).into_iter().zip(moments(&after)) {
+        assert!((is / kept - 1.0).abs() < 1e-12, "{is} instead of {kept}");
+    }
+    let mass = after.model().mass();
+    let n_dofs = after.model().n_dofs();
+    for node in [0, 21] {
+        assert!(after.model().is_massless(node));
+        let mut unit = vec![0.0; n_dofs];
+        unit[2 * node] = 1.0;
+        let mut row = vec![0.0; n_dofs];
+        mass.multiply_add(1.0, &unit, &mut row);
+        assert!(
+            row.iter().all(|&entry| entry == 0.0),
+            "node {node} has a row"
+        );
+    }
+    // Positive definite on the others: the largest frequency is found by a Cholesky factor of the mass.
+    let found = largest_frequency(after.model(), &[], 1e-6).expect("the mass has a factor");
+    assert!(found.frequency.is_finite() && found.frequency > 0.0);
+}
+
+/// A wave that comes from afar must not meet another density: moments are restored near the nodes that gave their mass.
+#[test]
+fn weights_by_nearness_keep_the_moments_and_leave_the_far_half_alone() {
+    let change = |weight: Option<Vec<f64>>| {
+        let mut body = Body::rectangle([10.0, 0.5], [20, 1]);
+        (body.massless[0], body.massless[1]) = (true, true);
+        let before = body.mass.clone();
+        let neighbours = body.neighbours.clone();
+        let around = |node: usize| &neighbours[node][..];
+        let weight = weight.unwrap_or_else(|| nearness(&body.massless, around));
+        let report = redistribute_by(&body.nodes, &mut body.mass, &body.massless, around, &weight);
+        let report = report.expect("twenty cells carry the mass of one end");
+        assert!(report.keeps_second_moments, "{report:?}");
+        let far = (0..before.len()).filter(|&node| body.nodes[node][0] >= 5.0);
+        let squares = far.map(|node| (body.mass[node] / before[node] - 1.0).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    let (whole, near) = (change(Some(vec![1.0; 42])), change(None));
+    assert!(near < 0.3 * whole, "{near} beside {whole}");
 }

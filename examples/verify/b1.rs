@@ -105,8 +105,5 @@ fn figure(record: &Record) -> Figure {
     let axes = ["time (s)", "contact pressure (Pa)"];
     Figure::new("b1_pressure", "B1: pressure under the impacting bar", axes)
         .exact("exact", exact)
-        .line(
-            "trapezoidal, redistributed mass",
-            record.curve(&record.pressure),
-        )
+        .line("trapezoidal, moved mass", record.curve(&record.pressure))
 }

@@ -42,7 +42,11 @@ struct Contact {
 
 pub fn run(sheet: &mut Sheet) -> Outcome {
     let compliance: f64 = YOUNG.iter().map(|e| (1.0 - NU * NU) / e).sum();
-    let mut figure = Figure::new("b10_pressure", "B10: Hertz pressure", ["x / a", "p / p0"]);
+    let mut figure = Figure::new(
+        "b10_pressure",
+        "B10: Hertz pressure",
+        ["x / a (-)", "p / p0 (-)"],
+    );
     let exact = (-100..=100)
         .map(|k| f64::from(k) / 100.0)
         .map(|x| [x, (1.0 - x * x).sqrt()]);
@@ -139,13 +143,17 @@ fn cylinder(n: usize, sheet: &Sheet) -> Result<Contact, Box<dyn Error + Send + S
     } else {
         block
     });
-    let loaded =
-        (0..body.n_nodes()).map(|node| [body.position(node)[0], body.contact_force(node)[1].abs()]);
-    let mut loaded: Vec<[f64; 2]> = loaded.filter(|p| p[1] > 0.0).collect();
-    loaded.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    // The surface near the contact, unloaded nodes included: the last loaded ones stand for the ways to them, too.
+    let surface = body.mesh().boundary().nodes().iter();
+    let near = surface.filter(|&&node| body.mesh().nodes()[node][1].abs() < 0.3 * CORE);
+    let mut forces: Vec<[f64; 2]> = near
+        .map(|&node| [body.position(node)[0], body.contact_force(node)[1].abs()])
+        .collect();
+    forces.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let pressures = spread(&forces).into_iter().filter(|p| p[1] > 0.0);
     Ok(Contact {
         force,
-        pressures: spread(&loaded),
+        pressures: pressures.collect(),
     })
 }
 

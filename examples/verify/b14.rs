@@ -63,7 +63,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let mut figure = Figure::new(
         "b14_pressure",
         "B14: pressure under a flat punch",
-        ["x / a", "p a / P"],
+        ["x / a (-)", "p a / P (-)"],
     );
     let exact = (-99..100).map(|k| f64::from(k) / 100.0);
     figure = figure
@@ -87,9 +87,9 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
             .filter(|p| (p[0].abs() / HALF_WIDTH - 0.5).abs() < 1e-3)
             .map(|p| 0.5 * p[1])
             .sum();
-        let pressures = spread(&profile);
+        // Nodes beside the punch are unloaded, but the last loaded ones stand for half of the way to them.
+        let pressures = spread(&profile).into_iter().filter(|p| p[1] > 0.0);
         let scaled: Vec<[f64; 2]> = pressures
-            .iter()
             .map(|p| [p[0] / HALF_WIDTH, p[1] * HALF_WIDTH / load])
             .collect();
         let share = (inner + edge) / load;
@@ -150,5 +150,5 @@ fn punch(
             body.contact_force(node)[1].abs(),
         ]
     });
-    Ok(top.filter(|p| p[1] > 0.0).collect())
+    Ok(top.collect())
 }

@@ -10,8 +10,10 @@
 //!                                              0  1 5/3 11/3 13/3  16/3
 //! ```
 //!
-//! Data: see [`bars`](super::bars); 100 cells, 1332 steps a second, so that every event falls on the end of a step (the
-//! scheme table takes 333).
+//! Data: see [`bars`](super::bars); 100 cells, central difference with the mass of the contact nodes moved inwards, 306 steps a
+//! second: .98 of the critical one, and every event falls on the end of a step. There the errors of lumped elements and of
+//! central difference in the speed of a wave, `-(kh)²/24` and `+(ω dt)²/24`, all but cancel, and the fronts stay sharp. The
+//! trapezoidal rule errs in the same direction as the elements: told beside it, with 1332 steps a second.
 //!
 //! Exact: first contact 1 to 5/3 s with `p = 300 + 300 (t - 1)`; the bar leaves at a uniform +10 m/s with the strain
 //! `2 g (x - L)/c²`; second contact 11/3 to 13/3 s with `p = 500 - 300 (t - 11/3)`; at 16/3 s all is as at the start.
@@ -26,7 +28,9 @@ use super::sheet::Sheet;
 pub const PERIOD: f64 = 16.0 / 3.0;
 pub const HEIGHT: f64 = 5.0;
 const GRAVITY: f64 = 10.0;
-const RATE: f64 = 1332.0;
+const RATE: f64 = 306.0;
+/// The rate of the trapezoidal rule (1/s).
+const FINE: f64 = 1332.0;
 /// The rate of the scheme table, c dt / h = 0.90 (1/s).
 pub const COARSE: f64 = 333.0;
 const FRONT: f64 = 0.05;
@@ -61,7 +65,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let n_periods = sheet.choose(10, 2);
     let mut drop_at = drop(n_periods, RATE);
     drop_at.n_steps = sheet.n_steps(drop_at.n_steps);
-    let record = drop_bar(&Scheme::recommended(), &drop_at)?;
+    let record = drop_bar(&Scheme::explicit(), &drop_at)?;
     for (name, begin) in ["first", "second"].into_iter().zip(TOUCH) {
         let span = [begin + FRONT, begin + CONTACT_TIME - FRONT];
         let [rms, _] = record.pressure_error(span, pressure);
@@ -100,41 +104,42 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         record.at(&record.bottom, end),
     );
     sheet.absolute("deepest overlap (m)", 0.0, record.penetration, 1e-9);
-    figures(&record, sheet);
+    let mut slow = drop(n_periods, FINE);
+    slow.n_steps = sheet.n_steps(slow.n_steps);
+    let implicit = drop_bar(&Scheme::recommended(), &slow)?;
+    sheet.tell(
+        "height after one period, trapezoidal (m)",
+        HEIGHT,
+        implicit.at(&implicit.bottom, PERIOD),
+    );
+    sheet.tell(
+        format!("energy after {n_periods} periods, trapezoidal"),
+        1.0,
+        implicit.at(&implicit.energy, end),
+    );
+    figures(&[record, implicit], sheet);
     Ok(())
 }
 
-fn figures(record: &Record, sheet: &mut Sheet) {
-    let first: Vec<f64> = record
-        .times
-        .iter()
-        .copied()
-        .filter(|t| *t <= PERIOD)
-        .collect();
-    let n = first.len();
-    let exact = first.iter().map(|&t| [t, pressure(t)]).collect();
+fn figures(records: &[Record; 2], sheet: &mut Sheet) {
+    let names = ["central difference, moved mass", "trapezoidal, moved mass"];
+    let first = |times: &[f64]| times.iter().take_while(|t| **t <= PERIOD).count();
+    let times = &records[1].times;
+    let exact = times[..first(times)].iter().map(|&t| [t, pressure(t)]);
+    let title = "B2: pressure under the bouncing bar, first period";
     let axes = ["time (s)", "contact pressure (Pa)"];
-    sheet.figure(
-        Figure::new(
-            "b2_pressure",
-            "B2: pressure under the bouncing bar, first period",
-            axes,
-        )
-        .within([0.0, 800.0])
-        .exact("exact", exact)
-        .line(
-            "trapezoidal, redistributed mass",
-            record.curve(&record.pressure)[..n].to_vec(),
-        ),
-    );
+    let mut pressures = Figure::new("b2_pressure", title, axes).within([0.0, 800.0]);
     let periods = (0..=10).map(|k| [k as f64 * PERIOD, HEIGHT]).collect();
+    let title = "B2: the bouncing bar over ten periods";
     let axes = ["time (s)", "height of the lower end (m)"];
-    sheet.figure(
-        Figure::new("b2_height", "B2: the bouncing bar over ten periods", axes)
-            .exact("top of the exact motion", periods)
-            .line(
-                "trapezoidal, redistributed mass",
-                record.curve(&record.bottom),
-            ),
-    );
+    let mut heights =
+        Figure::new("b2_height", title, axes).exact("top of the exact motion", periods);
+    // The implicit one first, so that it does not hide the other.
+    for (record, name) in records.iter().zip(names).rev() {
+        let curve = record.curve(&record.pressure)[..first(&record.times)].to_vec();
+        pressures = pressures.line(name, curve);
+        heights = heights.line(name, record.curve(&record.bottom));
+    }
+    sheet.figure(pressures.exact("exact", exact.collect()));
+    sheet.figure(heights);
 }

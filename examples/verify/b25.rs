@@ -62,7 +62,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let mut figure = Figure::new(
         "b25_convergence",
         "B25: Cook's membrane, error of the rise",
-        ["cells along a side", "|error| (-)"],
+        ["cells along a side (-)", "|error| (-)"],
     )
     .log();
     for (name, kind) in elements {

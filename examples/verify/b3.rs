@@ -10,7 +10,8 @@
 //!          0.254 m   0.508 mm                       49.46  148.39 us
 //! ```
 //!
-//! Data: E = 206.8 GPa, rho = 7844.07 kg/m³, nu = 0, section (25.4 mm)², v0 = 5.13588 m/s, steps of 1 µs.
+//! Data: consistent mass, that of the nodes that meet moved to those behind; trapezoidal rule. A lumped mass slows the short waves of
+//! 20 cells: it is told beside it, and leaves at .968 of the velocity. E = 206.8 GPa, rho = 7844.07 kg/m³, nu = 0, section (25.4 mm)², v0 = 5.13588 m/s, steps of 1 µs.
 //!
 //! Exact: force `rho c v0 A` from 49.46 µs for `2 L / c`; the bars exchange their velocities.
 //!
@@ -52,6 +53,10 @@ fn bar(
             MassKind::Lumped,
             ContactInertia::RedistributedAt(contact_nodes.to_vec()),
         ),
+        Mass::ConsistentRedistributed => (
+            MassKind::Consistent,
+            ContactInertia::RedistributedAt(contact_nodes.to_vec()),
+        ),
         Mass::Kept => (MassKind::Lumped, ContactInertia::Kept),
         Mass::Consistent => (MassKind::Consistent, ContactInertia::Kept),
     };
@@ -74,7 +79,7 @@ struct Collision {
 }
 
 pub fn run(sheet: &mut Sheet) -> Outcome {
-    let collision = collide(Mass::Redistributed, 20, DT, sheet)?;
+    let collision = collide(Mass::ConsistentRedistributed, 20, DT, sheet)?;
     judge(sheet, &collision.forces);
     sheet.at_least("exit velocity, of the exact (-)", 0.99, collision.exit);
     sheet.absolute(
@@ -89,7 +94,11 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         collision.momentum_error,
         1e-10,
     );
-    for (name, mass) in [("lumped", Mass::Kept), ("consistent", Mass::Consistent)] {
+    for (name, mass) in [
+        ("moved lumped", Mass::Redistributed),
+        ("lumped", Mass::Kept),
+        ("consistent", Mass::Consistent),
+    ] {
         let collision = collide(mass, 20, DT, sheet)?;
         sheet.tell(
             format!("mean force of the plateau, {name} mass (N)"),
@@ -107,7 +116,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
             1.0 + collision.energy_error,
         );
     }
-    let fine = collide(Mass::Redistributed, 80, 0.25 * DT, sheet)?;
+    let fine = collide(Mass::ConsistentRedistributed, 80, 0.25 * DT, sheet)?;
     sheet.tell(
         "exit velocity, 80 cells and a quarter of the step",
         1.0,
@@ -178,7 +187,8 @@ fn judge(sheet: &mut Sheet, forces: &[[f64; 2]]) {
     // The force acts within the step in which the gap closes; a wave crosses a cell in 2.5 steps.
     sheet.absolute("first contact (s)", TOUCH, first, 2.5 * DT);
     sheet.absolute("last contact (s)", RELEASE, last, 2.5 * DT);
-    let exact = vec![
+    let scaled = |[time, force]: [f64; 2]| [1e6 * time, 1e-3 * force];
+    let exact = [
         [0.0, 0.0],
         [TOUCH, 0.0],
         [TOUCH, PLATEAU],
@@ -190,9 +200,12 @@ fn judge(sheet: &mut Sheet, forces: &[[f64; 2]]) {
         Figure::new(
             "b3_force",
             "B3: force between two steel bars",
-            ["time (s)", "contact force (N)"],
+            ["time (µs)", "contact force (kN)"],
         )
-        .exact("exact", exact)
-        .line("trapezoidal, redistributed mass", forces.to_vec()),
+        .exact("exact", exact.map(scaled).to_vec())
+        .line(
+            "trapezoidal, moved consistent mass",
+            forces.iter().copied().map(scaled).collect(),
+        ),
     );
 }

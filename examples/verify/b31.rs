@@ -135,7 +135,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let mut figure = Figure::new(
         "b31_convergence",
         "B31: cantilever under a tip load, against the beam",
-        ["cells along the beam", "|error| (-)"],
+        ["cells along the beam (-)", "|error| (-)"],
     )
     .log();
     for (name, kind) in [

@@ -6,6 +6,7 @@ pub mod figure;
 pub mod scene;
 pub mod sheet;
 
+mod adina;
 mod b1;
 mod b10;
 mod b14;
@@ -67,6 +68,11 @@ pub const CASES: &[Case] = &[
         id: "schemes",
         title: "the scheme table",
         run: schemes::run,
+    },
+    Case {
+        id: "ADINA",
+        title: "constraint functions beside Lagrange multipliers",
+        run: adina::run,
     },
     Case {
         id: "plain",

@@ -68,7 +68,7 @@ fn judge<const N: usize>(
 }
 
 pub fn run(sheet: &mut Sheet) -> Outcome {
-    let axes = ["step (s)", "error at t = 1 s"];
+    let axes = ["step (s)", "error at t = 1 s (-)"];
     let mut figure = Figure::new("orders", "observed orders of the integrators", axes).log();
     for (theta, order) in [(0.0, 1.0), (0.5, 2.0), (1.0, 1.0)] {
         let name = format!("Beta-1, theta = {theta}");

@@ -42,6 +42,11 @@ impl Scene {
         self
     }
 
+    pub fn with_contact(mut self, contact: ContactMethod) -> Self {
+        self.flex = self.flex.with_contact_method(contact);
+        self
+    }
+
     /// A fixed cuboid whose upper face is `y = 0`, with this friction (-).
     pub fn ground(&mut self, friction: f64) -> ColliderHandle {
         let ground = ColliderBuilder::cuboid(50.0, 0.5)

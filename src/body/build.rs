@@ -30,6 +30,7 @@ impl FlexBodyBuilder {
                 [placed.x, placed.y]
             })
             .collect();
+        check_places(&rest)?;
         let frame = frame_of_pins(&rest, &is_fixed).ok_or(BuildError::RotatingPins)?;
         let massless = self.massless_nodes(&mesh, &is_fixed, frame)?;
         let model = Model::assemble(ModelDescription {
@@ -44,6 +45,7 @@ impl FlexBodyBuilder {
                 .map(|node| is_fixed[2 * node] && is_fixed[2 * node + 1])
                 .collect(),
         })?;
+        check_range(&model)?;
         let nodal_force = self.gather_nodal_forces(n_nodes)?;
         let mut body = FlexBody::new(
             Arc::new(model),
@@ -219,4 +221,33 @@ impl FlexBodyBuilder {
         }
         Ok(velocity)
     }
+}
+
+/// Refuses nodes that rapier's precision cannot hold.
+fn check_places(rest: &[f64]) -> Result<(), BuildError> {
+    let place = |node: usize| [rest[2 * node], rest[2 * node + 1]];
+    let is_lost = |&node: &usize| !place(node).into_iter().all(is_held);
+    match (0..rest.len() / 2).find(is_lost) {
+        Some(node) => Err(BuildError::Place {
+            node,
+            place: place(node),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Mass (kg) and trace of the stiffness (N/m) beyond which products of theirs overflow, or vanish.
+const RANGE: std::ops::RangeInclusive<f64> = 1e-36..=1e36;
+
+/// Refuses a body whose mass or stiffness is zero, infinite or near to either.
+fn check_range(model: &Model) -> Result<(), BuildError> {
+    let mass: f64 = model.mass().node_sums().iter().sum();
+    let own = |node| model.stiffness().block(node, node);
+    let traces = (0..model.n_nodes()).map(|node| own(node).map_or(0.0, |b| b[0] + b[3]));
+    for (name, value) in [("mass", mass), ("stiffness", traces.sum())] {
+        if !RANGE.contains(&value) {
+            return Err(BuildError::OutOfRange { name, value });
+        }
+    }
+    Ok(())
 }

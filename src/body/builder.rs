@@ -15,10 +15,11 @@ use std::sync::Arc;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum ContactInertia {
     /// The mass of the boundary moves to the nodes inside (Khenous, Laborde, Renard 2008), so that an impact conserves
-    /// energy. A body without inside nodes keeps its inertia.
+    /// energy. A body without inside nodes, or with a consistent mass, keeps its inertia.
     #[default]
     Redistributed,
-    /// Only these nodes give their mass away: for bodies one element thick.
+    /// Only these nodes give their mass away, which may be a consistent one: for bodies one element thick, and for impacts on a
+    /// known part of the boundary.
     RedistributedAt(Vec<usize>),
     /// Every node keeps its mass; contacts get impulses at velocity level.
     Kept,

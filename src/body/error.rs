@@ -34,6 +34,26 @@ pub enum BuildError {
         /// What to do.
         cure: &'static str,
     },
+    /// What the body is made of leaves the range in which it can be computed.
+    #[error(
+        "the {name} of the body is {value:e}, and what can be stepped lies between 1e-36 and 1e36 and is finite: choose units or sizes nearer to one"
+    )]
+    OutOfRange {
+        /// Which quantity.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A node lies where rapier's precision cannot hold it.
+    #[error(
+        "node {node} lies at {place:?} m, which rapier's precision cannot hold: make the body smaller or place it nearer to the origin"
+    )]
+    Place {
+        /// The node.
+        node: usize,
+        /// Where it lies, in the world's axes (m).
+        place: [f64; 2],
+    },
     /// A setting names a node that does not exist.
     #[error(
         "{name} names node {node} of a mesh with {n_nodes} nodes: use an index below {n_nodes}"

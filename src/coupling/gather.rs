@@ -14,7 +14,7 @@ use super::shapes::{ShapeCache, pose_of};
 use crate::body::FlexBodySet;
 use crate::constraint::contact::Owner;
 use crate::constraint::geometry::Pose2;
-use crate::kkt::{Island, KktError};
+use crate::kkt::Island;
 use crate::math::{Vec2, from_rapier};
 use crate::rapier::prelude::*;
 use crate::system::{Block, FlexBlock, FlexLoad, RigidBlock, Step};
@@ -155,8 +155,11 @@ impl Gatherer {
         flex_bodies: &mut FlexBodySet,
         claims: &Claims,
         island: &mut Island,
-    ) -> Result<(), KktError> {
+    ) -> Result<(), GatherError> {
         let index = claims.flex[flex].index;
+        let Some(handle) = flex_bodies.at_index(index).map(|(handle, _)| handle) else {
+            return Ok(());
+        };
         let Some(body) = flex_bodies.at_index_mut(index) else {
             return Ok(());
         };
@@ -207,8 +210,8 @@ impl Gatherer {
         island.blocks.push(Block::Flex(block));
         island.flex_index.push(Some(index));
         self.flex_blocks.insert(flex, island.blocks.len() - 1);
-        outcome.map_err(|source| KktError::Factorization {
-            body: index,
+        outcome.map_err(|source| GatherError::Factorization {
+            body: handle,
             source,
         })
     }

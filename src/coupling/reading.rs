@@ -2,9 +2,10 @@
 
 use super::masters::{local_centre, read_motion};
 use super::shapes::pose_of;
+use crate::body::FlexBodyHandle;
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
-use crate::kkt::KktError;
+use crate::linalg::cholesky::CholeskyError;
 use crate::math::{Vec2, from_rapier, is_held};
 use crate::rapier::prelude::*;
 use crate::system::{RigidBlock, RigidLoad, RigidMotion};
@@ -13,9 +14,14 @@ use thiserror::Error;
 /// Why an island cannot be gathered.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub(crate) enum GatherError {
-    /// An effective matrix is not positive definite.
-    #[error(transparent)]
-    Kkt(#[from] KktError),
+    /// The effective matrix of a flexible body is not positive definite.
+    #[error("{body:?}: {source}")]
+    Factorization {
+        /// The body.
+        body: FlexBodyHandle,
+        /// What the factorization found.
+        source: CholeskyError,
+    },
     /// A rigid body moves, weighs or is loaded by what is not finite.
     #[error("{0:?} is not finite")]
     RigidBody(RigidBodyHandle),

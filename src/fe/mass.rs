@@ -5,7 +5,10 @@
 //! matrix). In the plane a rigid body needs the total, the centre and the polar moment; the remaining two second
 //! moments keep the inertia of uniform stretching and shearing.
 
+mod consistent;
 mod moments;
+
+pub use consistent::redistribute_consistent;
 
 use moments::Frame;
 
@@ -85,16 +88,42 @@ pub fn redistribute<'a>(
     massless: &[bool],
     neighbours: impl Fn(usize) -> &'a [usize],
 ) -> Result<Redistribution, MassError> {
+    redistribute_by(nodes, mass, massless, neighbours, &vec![1.0; nodes.len()])
+}
+
+/// [`redistribute`], where masses are changed the more readily the greater their node's weight: `p = 1 + w q`.
+///
+/// With [`nearness`] for weights the change stays where the mass was taken, and the density of the rest is what it was.
+///
+/// - `weight`: shape `(n)` (-).
+///
+/// # Errors
+/// As [`redistribute`].
+///
+/// # Panics
+/// If the slices differ in length.
+pub fn redistribute_by<'a>(
+    nodes: &[[f64; 2]],
+    mass: &mut [f64],
+    massless: &[bool],
+    neighbours: impl Fn(usize) -> &'a [usize],
+    weight: &[f64],
+) -> Result<Redistribution, MassError> {
     assert_eq!(nodes.len(), mass.len(), "one mass per node");
+    assert_eq!(nodes.len(), weight.len(), "one weight per node");
     let original = mass.to_vec();
     let moved = move_inwards(mass, massless, neighbours)?;
     let frame = Frame::new(nodes, &original);
     let target = frame.moments(nodes, &original);
-    let basis = frame.basis(nodes, mass);
-    // p may use the first 6, 4, 3 or 1 terms: each drop gives up the least important conditions.
+    let basis = frame.basis(nodes, mass, weight);
+    let mut change = target;
+    for (change, now) in change.iter_mut().zip(frame.moments(nodes, mass)) {
+        *change -= now;
+    }
+    // q may use the first 6, 4, 3 or 1 terms: each drop gives up the least important conditions.
     let mut factor = vec![1.0; nodes.len()];
     for n_terms in [6, 4, 3, 1] {
-        basis.fit(&mut factor, mass, &target, n_terms);
+        basis.fit(&mut factor, mass, &change, n_terms);
         if extremes(&factor, massless).0 >= SMALLEST_FACTOR {
             break;
         }
@@ -152,6 +181,20 @@ pub fn move_inwards<'a>(
         mass[node] = 0.0;
     }
     Ok(moved)
+}
+
+/// `1/k²` for a node `k` cells away from the nearest massless one, 1 on massless ones (-). A steeper fall keeps the change nearer, but
+/// waves scatter at it.
+pub fn nearness<'a>(massless: &[bool], neighbours: impl Fn(usize) -> &'a [usize]) -> Vec<f64> {
+    let others: Vec<bool> = massless.iter().map(|massless| !massless).collect();
+    match rings(&others, &neighbours) {
+        Ok((ring, _)) => ring
+            .iter()
+            .map(|&ring| 1.0 / (ring.max(1) as f64).powi(2))
+            .collect(),
+        // No massless node, or a piece without one: nothing changes there.
+        Err(_) => vec![1.0; massless.len()],
+    }
 }
 
 /// The ring of every node, 0 for massive ones, and the nodes in order of their rings.

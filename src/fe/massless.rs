@@ -1,14 +1,18 @@
 //! Massless contact surfaces of a model: whose mass moves inwards, and who carries it.
 
 use super::mass::{self, MassError};
+use super::mass_matrix::MassMatrix;
 use super::model::ModelDescription;
 use crate::linalg::block_matrix::BlockMatrix;
 
 /// Moves the mass of massless nodes inwards, unless a free body would turn or balance differently by it: the nodes inside
 /// of a coarse mesh may be too few to carry its centre and polar moment. Then all mass stays where it is.
+///
+/// Where at most half of the boundary is massless, the moments are restored near it: a wave that comes from afar must not meet
+/// another density there.
 pub(super) fn redistribute(
     description: &mut ModelDescription,
-    lumped: &mut [f64],
+    mass: &mut MassMatrix,
     pattern: &BlockMatrix,
 ) -> Result<(), MassError> {
     let nodes: Vec<[f64; 2]> = description
@@ -23,15 +27,28 @@ pub(super) fn redistribute(
             all.filter(|&n| n != node && !is_held(n)).collect()
         })
         .collect();
-    let before = lumped.to_vec();
-    let found = mass::redistribute(&nodes, lumped, &description.massless, |node| {
-        &neighbours[node]
-    })?;
     let is_free = !(0..nodes.len()).any(is_held);
-    if is_free && !(found.keeps_centre && found.keeps_polar_moment) {
-        lumped.copy_from_slice(&before);
-        description.massless.fill(false);
+    let neighbours = |node: usize| &neighbours[node][..];
+    let massless = &description.massless;
+    let is_part =
+        2 * massless.iter().filter(|&&m| m).count() <= description.mesh.boundary().nodes().len();
+    let near = is_part.then(|| mass::nearness(massless, neighbours));
+    for weight in near.into_iter().chain([vec![1.0; nodes.len()]]) {
+        let mut changed = mass.clone();
+        let found = match &mut changed {
+            MassMatrix::Lumped(lumped) => {
+                mass::redistribute_by(&nodes, lumped, massless, neighbours, &weight)
+            }
+            MassMatrix::Consistent(matrix) => {
+                mass::redistribute_consistent(&nodes, matrix, massless, neighbours, &weight)
+            }
+        }?;
+        if !is_free || found.keeps_centre && found.keeps_polar_moment {
+            *mass = changed;
+            return Ok(());
+        }
     }
+    description.massless.fill(false);
     Ok(())
 }
 

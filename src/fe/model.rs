@@ -39,11 +39,6 @@ pub enum ModelError {
     /// Thickness is not positive.
     #[error("the thickness is {0} m: give a finite positive one")]
     Thickness(f64),
-    /// Redistribution needs nodal masses.
-    #[error(
-        "a consistent mass cannot be redistributed: choose a lumped mass, or keep the inertia of the contact boundary"
-    )]
-    ConsistentRedistribution,
 }
 
 /// What a model is assembled from.
@@ -112,17 +107,13 @@ impl Model {
                 }
             }
         })?;
-        let wants_massless = description.massless.contains(&true);
-        let mass = match consistent {
-            Some(_) if wants_massless => return Err(ModelError::ConsistentRedistribution),
+        let mut mass = match consistent {
             Some(matrix) => MassMatrix::Consistent(matrix),
-            None => {
-                if wants_massless {
-                    redistribute(&mut description, &mut lumped, &stiffness)?;
-                }
-                MassMatrix::Lumped(lumped)
-            }
+            None => MassMatrix::Lumped(lumped),
         };
+        if description.massless.contains(&true) {
+            redistribute(&mut description, &mut mass, &stiffness)?;
+        }
         if description.massless.is_empty() {
             description.massless = vec![false; n_nodes];
         }

@@ -7,34 +7,32 @@
 use super::delassus::RowDirection;
 use super::island::{Island, IslandSummary, SolveSettings};
 use crate::math::Vec2;
-use crate::system::{Block, Response};
+use crate::system::{Balance, Block, FlexBlock, Response, RigidBlock, RigidMotion};
 
 impl Island {
     pub(super) fn start_energy(&mut self) -> [f64; 2] {
-        let mut sum = [0.0; 2];
-        for block in &mut self.blocks {
-            match block {
-                Block::Flex(block) => {
-                    let balance = block.start_balance();
-                    sum[0] += balance.kinetic;
-                    sum[1] += balance.elastic;
-                }
-                Block::Rigid(block) => sum[0] += block.kinetic_energy(block.start()),
-            }
-        }
-        sum
+        self.sum_energy(FlexBlock::start_balance, RigidBlock::start)
     }
 
     pub(super) fn end_energy(&mut self) -> [f64; 2] {
+        self.sum_energy(FlexBlock::end_balance, RigidBlock::current)
+    }
+
+    /// Kinetic and elastic energy of all blocks (J).
+    fn sum_energy(
+        &mut self,
+        balance: impl Fn(&FlexBlock) -> Balance,
+        motion: impl Fn(&RigidBlock) -> &RigidMotion,
+    ) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for block in &mut self.blocks {
             match block {
                 Block::Flex(block) => {
-                    let balance = block.end_balance();
+                    let balance = balance(block);
                     sum[0] += balance.kinetic;
                     sum[1] += balance.elastic;
                 }
-                Block::Rigid(block) => sum[0] += block.kinetic_energy(block.current()),
+                Block::Rigid(block) => sum[0] += block.kinetic_energy(motion(block)),
             }
         }
         sum

@@ -26,12 +26,7 @@ impl Island {
     ) {
         // Bodies that stick in each other may ask for what no position can give.
         self.ignores_overlaps = true;
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.restart();
-            }
-        }
-        self.open_working_set(settings, tolerance, memory);
+        self.start_again(settings, tolerance, memory);
         if self.iterate(settings, memory, tolerance, summary) {
             return;
         }
@@ -45,6 +40,21 @@ impl Island {
         if is_thrown || !is_solved {
             self.hold(summary);
         }
+    }
+
+    /// Puts the bodies and the working set back to where the iterations began.
+    pub(super) fn start_again(
+        &mut self,
+        settings: &SolveSettings,
+        tolerance: f64,
+        memory: &ContactMemory,
+    ) {
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.restart();
+            }
+        }
+        self.open_working_set(settings, tolerance, memory);
     }
 
     /// Holds the island if contact has flung a member away faster than any collision could.

@@ -1,11 +1,11 @@
 //! An island: blocks that touch, with the candidates between them, solved as one system.
 
+use super::constraint_function::{ContactMethod, Newton};
 use super::delassus::RowDirection;
 use super::impact::ImpactTreatment;
 use crate::constraint::contact::{
     Candidate, ContactMemory, Kinematics, PlacedPart, Remembered, Scene,
 };
-use crate::linalg::cholesky::CholeskyError;
 use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
@@ -14,22 +14,13 @@ use thiserror::Error;
 /// Why an island cannot be solved.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum KktError {
-    /// The effective matrix of a flexible body is not positive definite: the body has no mass somewhere, or its cells are so
-    /// small and stiff for this step length that rounding hides their mass.
-    #[error(
-        "flexible body {body}: {source}; if its cells are very small and stiff, shorten the step or coarsen its mesh"
-    )]
-    Factorization {
-        /// Index of the body in its set.
-        body: u32,
-        /// What the factorization found.
-        source: CholeskyError,
-    },
     /// A rigid body is too light for the springs that an explicit body meets it with.
     #[error(
-        "a rigid body is so light that on the surface of an explicit flexible body it vibrates faster than the step of {dt} s resolves: shorten the step below {critical} s, make the body heavier, keep the inertia of the surface (`ContactInertia::Kept`), or choose beta0 > 0"
+        "rigid block {block} is so light that on the surface of an explicit flexible body it vibrates faster than the step of {dt} s resolves: shorten the step below {critical} s, make the body heavier, keep the inertia of the surface (`ContactInertia::Kept`), or choose beta0 > 0"
     )]
     LightPartner {
+        /// Its index among the blocks of the island; whoever gathered the island knows its handle.
+        block: usize,
         /// The step asked for (s).
         dt: f64,
         /// The longest stable step (s).
@@ -55,6 +46,8 @@ pub struct SolveSettings {
     pub insists: bool,
     /// What is done on impact.
     pub impact: ImpactTreatment,
+    /// How the laws of contact are enforced.
+    pub contact: ContactMethod,
     /// The solver that contact problems are given to first.
     pub solver: Method,
     /// Approach velocity below which restitution is ignored (m/s).
@@ -149,6 +142,10 @@ pub struct IslandSummary {
     pub n_pivots: usize,
     /// Natural-map residual of the last complementarity solve.
     pub residual: f64,
+    /// Whether the iterations of the constraint functions failed.
+    pub has_failed: bool,
+    /// Whether Lagrange multipliers then solved the step.
+    pub is_substituted: bool,
     /// Whether Newton's iterations failed and a linearised step was taken.
     pub is_linearized: bool,
     /// Whether even that threw a body about, so that the island stayed where it was, at rest.
@@ -200,6 +197,7 @@ pub struct Island {
     /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.
     pub(super) pressed_before: Vec<[usize; 2]>,
     pub(super) solver: Solver,
+    pub(super) newton: Newton,
 }
 
 impl Island {

@@ -1,11 +1,12 @@
 //! The solution of (C.5) with complementarity, one island at a time.
 //!
 //! 1. [`position`](self) stage: `W = G A⁻¹ Gᵀ`, multipliers `p = -λ >= 0` with `g(x') >= 0`, Coulomb friction on the slip
-//!    of the step, Newton iterations for rotations and curved surfaces;
+//!    of the step, Newton iterations for rotations and curved surfaces; or the smooth laws of [`ContactMethod::ConstraintFunction`];
 //! 2. velocity stage: contacts between masses get an impulse, so that no force of an impact lingers in the stored
 //!    acceleration; contacts through massless surfaces need it only where the impact is shorter than the step;
 //! 3. energy stage: velocities give back the energy that contact would add.
 
+mod constraint_function;
 mod delassus;
 mod energy;
 mod fallback;
@@ -18,5 +19,6 @@ mod partner;
 mod position;
 mod velocity;
 
+pub use constraint_function::{ConstraintFunction, ContactMethod, EpsilonError};
 pub use impact::ImpactTreatment;
 pub use island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};

@@ -63,7 +63,7 @@ impl Island {
     }
 
     /// Rows of the working set, with gaps and slips divided by `b0` and the multipliers that they were measured under.
-    fn position_rows(&mut self, b0: f64) {
+    pub(super) fn position_rows(&mut self, b0: f64) {
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
@@ -118,7 +118,7 @@ impl Island {
     ///
     /// Where the rows have changed since, the response is `G A⁻¹ G₀ᵀ p` with the rows `G₀` of that iterate: under a
     /// heavy neighbour a force that turns by 1e-4 rad may throw a light body across the scene.
-    fn take_out_multipliers(&mut self, has_new_rows: bool) {
+    pub(super) fn take_out_multipliers(&mut self, has_new_rows: bool) {
         let n = self.rows.len();
         if !has_new_rows {
             for (free, row) in self.free.iter_mut().zip(self.delassus.chunks_exact(n)) {

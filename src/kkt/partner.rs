@@ -25,6 +25,7 @@ impl Island {
             let squared = self.sampling_of(block);
             if squared > LIMIT {
                 return Err(KktError::LightPartner {
+                    block,
                     dt: settings.dt,
                     critical: settings.dt * (LIMIT / squared).sqrt(),
                 });

@@ -4,6 +4,7 @@
 //! under the multipliers it has, beginning with those of the last step; measures gaps and slips there; and, unless they
 //! hold, finds new multipliers from `b = g / b0 - W p`. A contact at rest so costs one solve.
 
+use super::constraint_function::{ContactMethod, Trial};
 use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
 use crate::constraint::contact::{ContactMemory, Kinematics, Remembered};
 use crate::linalg::complementarity::Status;
@@ -11,10 +12,10 @@ use crate::math::Vec2;
 use crate::system::Block;
 
 /// Turning below this angle (rad) changes no position by more than round-off.
-const ANGLE_TOLERANCE: f64 = 1e-11;
+pub(super) const ANGLE_TOLERANCE: f64 = 1e-11;
 
 /// Iteration from which the rows, directions and levers of the forces, stay what they are.
-const ROWS_KEPT_FROM: usize = 2;
+pub(super) const ROWS_KEPT_FROM: usize = 2;
 
 /// Iteration from which gaps are extrapolated along the rows.
 const GAPS_KEPT_FROM: usize = 12;
@@ -47,7 +48,19 @@ impl Island {
         let tolerance = self.gap_tolerance();
         self.ignores_overlaps = false;
         self.open_working_set(settings, tolerance, memory);
-        if !self.iterate(settings, memory, tolerance, summary) {
+        let is_solved = match &settings.contact {
+            ContactMethod::Lagrange => false,
+            ContactMethod::ConstraintFunction(functions) => {
+                let trial = Trial {
+                    functions,
+                    settings,
+                    memory,
+                    tolerance,
+                };
+                self.iterate_functions(&trial, summary)
+            }
+        };
+        if !is_solved && !self.iterate(settings, memory, tolerance, summary) {
             self.fall_back(settings, memory, tolerance, summary);
         }
         for block in &mut self.blocks {
@@ -84,7 +97,7 @@ impl Island {
         let kept = (-PARTING_RATE * settings.dt).exp();
         let mut peak = 0.0f64;
         for iteration in 0..settings.max_newton {
-            summary.n_newton = iteration + 1;
+            summary.n_newton += 1;
             let turned = self.correct();
             let is_guess = iteration == 0 && !self.contacts.is_empty();
             let mut error = self.measure(is_guess || iteration >= GAPS_KEPT_FROM);

@@ -17,18 +17,12 @@ pub trait InternalForce {
     /// - `position` (m), `velocity` (m/s), `force`: one entry per dof.
     fn force(&self, position: &[f64], velocity: &[f64], force: &mut [f64]);
 
-    /// Writes the tangents `K = ∂Q/∂x` (N/m) and `C = ∂Q/∂ẋ` (N s/m), row-major, shape `(n, n)`, both zero on entry.
+    /// Writes the tangents `k = ∂Q/∂x` (N/m) and `c = ∂Q/∂ẋ` (N s/m) at `x`, `v`, row-major, shape `(n, n)`, both zero on entry.
     ///
     /// Returns where they come from; a law without tangents keeps this method, writes nothing and asks for finite
     /// differences. An inexact tangent slows the iterations down but does not change what they end at.
-    fn tangent(
-        &self,
-        position: &[f64],
-        velocity: &[f64],
-        stiffness: &mut [f64],
-        damping: &mut [f64],
-    ) -> TangentSource {
-        let _ = (position, velocity, stiffness, damping);
+    fn tangent(&self, x: &[f64], v: &[f64], k: &mut [f64], c: &mut [f64]) -> TangentSource {
+        let _ = (x, v, k, c);
         TangentSource::FiniteDifferences
     }
 }
@@ -38,13 +32,7 @@ impl<F: InternalForce + ?Sized> InternalForce for &F {
         (**self).force(position, velocity, force);
     }
 
-    fn tangent(
-        &self,
-        position: &[f64],
-        velocity: &[f64],
-        stiffness: &mut [f64],
-        damping: &mut [f64],
-    ) -> TangentSource {
-        (**self).tangent(position, velocity, stiffness, damping)
+    fn tangent(&self, x: &[f64], v: &[f64], k: &mut [f64], c: &mut [f64]) -> TangentSource {
+        (**self).tangent(x, v, k, c)
     }
 }

@@ -20,18 +20,9 @@ impl InternalForce for CubicSpring {
         }
     }
 
-    fn tangent(
-        &self,
-        position: &[f64],
-        _velocity: &[f64],
-        stiffness: &mut [f64],
-        damping: &mut [f64],
-    ) -> TangentSource {
-        let n_dofs = position.len();
-        for (dof, x) in position.iter().enumerate() {
-            stiffness[dof * (n_dofs + 1)] += self.linear + 3.0 * self.cubic * x * x;
-            damping[dof * (n_dofs + 1)] += self.damping;
-        }
+    fn tangent(&self, x: &[f64], v: &[f64], k: &mut [f64], c: &mut [f64]) -> TangentSource {
+        add_diagonal(k, x, |x| self.linear + 3.0 * self.cubic * x * x);
+        add_diagonal(c, v, |_| self.damping);
         TangentSource::Supplied
     }
 }
@@ -50,18 +41,17 @@ impl InternalForce for QuadraticDrag {
         }
     }
 
-    fn tangent(
-        &self,
-        position: &[f64],
-        velocity: &[f64],
-        _stiffness: &mut [f64],
-        damping: &mut [f64],
-    ) -> TangentSource {
-        let n_dofs = position.len();
-        for (dof, v) in velocity.iter().enumerate() {
-            damping[dof * (n_dofs + 1)] += 2.0 * self.coefficient * v.abs();
-        }
+    fn tangent(&self, _: &[f64], v: &[f64], _: &mut [f64], c: &mut [f64]) -> TangentSource {
+        add_diagonal(c, v, |v| 2.0 * self.coefficient * v.abs());
         TangentSource::Supplied
+    }
+}
+
+/// Adds a slope per dof to the diagonal of a tangent.
+fn add_diagonal(tangent: &mut [f64], motion: &[f64], slope: impl Fn(f64) -> f64) {
+    let stride = motion.len() + 1;
+    for (entry, &at) in tangent.iter_mut().step_by(stride).zip(motion) {
+        *entry += slope(at);
     }
 }
 
@@ -79,26 +69,16 @@ impl<A: InternalForce, B: InternalForce> InternalForce for Sum<A, B> {
         }
     }
 
-    fn tangent(
-        &self,
-        position: &[f64],
-        velocity: &[f64],
-        stiffness: &mut [f64],
-        damping: &mut [f64],
-    ) -> TangentSource {
-        let first = self.0.tangent(position, velocity, stiffness, damping);
+    fn tangent(&self, x: &[f64], v: &[f64], k: &mut [f64], c: &mut [f64]) -> TangentSource {
+        let first = self.0.tangent(x, v, k, c);
         if first == TangentSource::FiniteDifferences {
             return first;
         }
         // A law may write instead of add: give the second one zeros of its own.
-        let size = stiffness.len();
-        let (mut k, mut c) = (vec![0.0; size], vec![0.0; size]);
-        let second = self.1.tangent(position, velocity, &mut k, &mut c);
-        for (own, other) in stiffness
-            .iter_mut()
-            .zip(&k)
-            .chain(damping.iter_mut().zip(&c))
-        {
+        let (mut other_k, mut other_c) = (vec![0.0; k.len()], vec![0.0; c.len()]);
+        let second = self.1.tangent(x, v, &mut other_k, &mut other_c);
+        let (own, other) = (k.iter_mut().chain(c), other_k.iter().chain(&other_c));
+        for (own, other) in own.zip(other) {
             *own += other;
         }
         second

@@ -49,6 +49,8 @@ impl FlexPipeline {
         report.gap_violation = report.gap_violation.max(summary.gap_violation);
         report.solver_residual = report.solver_residual.max(summary.residual);
         report.n_newton = report.n_newton.max(summary.n_newton);
+        report.n_failed += usize::from(summary.has_failed);
+        report.n_substituted += usize::from(summary.is_substituted);
         report.n_linearized += usize::from(summary.is_linearized);
         report.n_held += usize::from(summary.is_held);
         report.n_pivots += summary.n_pivots;

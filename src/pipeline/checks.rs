@@ -6,6 +6,7 @@ use crate::body::{FlexBody, FlexBodyError, FlexBodySet};
 use crate::coupling::{RapierSets, is_asleep, is_carried, is_held_motion};
 use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
+use crate::kkt::KktError;
 use crate::math::{from_rapier, is_held};
 use crate::system::{Block, Step};
 
@@ -88,6 +89,23 @@ impl FlexPipeline {
             }
         }
         Ok(())
+    }
+
+    /// The error with the handles of the bodies whose blocks it names.
+    pub(super) fn name_bodies(&self, error: KktError) -> StepError {
+        let KktError::LightPartner {
+            block,
+            dt,
+            critical,
+        } = error
+        else {
+            return error.into();
+        };
+        let found = self.gatherer.bodies.iter().find(|found| found.0 == block);
+        match found {
+            Some(&(_, body)) => StepError::LightPartner { body, dt, critical },
+            None => error.into(),
+        }
     }
 
     /// Leaves no trace of a step that failed, before which energy of `dissipated` was lost (J).

@@ -4,6 +4,7 @@ use crate::body::{FlexBodyError, FlexBodyHandle};
 use crate::coupling::GatherError;
 use crate::integrator::IntegratorError;
 use crate::kkt::KktError;
+use crate::linalg::cholesky::CholeskyError;
 use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
 use thiserror::Error;
 
@@ -20,6 +21,29 @@ pub enum StepError {
         body: FlexBodyHandle,
         /// The critical step.
         source: IntegratorError,
+    },
+    /// The effective matrix of a flexible body is not positive definite: the body has no mass somewhere, or its cells are so
+    /// small and stiff for this step length that rounding hides their mass.
+    #[error(
+        "flexible body {body:?}: {source}; if its cells are very small and stiff, shorten the step or coarsen its mesh"
+    )]
+    Factorization {
+        /// The body.
+        body: FlexBodyHandle,
+        /// What the factorization found.
+        source: CholeskyError,
+    },
+    /// A rigid body is too light for the springs that an explicit body meets it with.
+    #[error(
+        "{body:?} is so light that on the surface of an explicit flexible body it vibrates faster than the step of {dt} s resolves: shorten the step below {critical} s, make the body heavier, keep the inertia of the surface (`ContactInertia::Kept`), or choose beta0 > 0"
+    )]
+    LightPartner {
+        /// The rigid body.
+        body: RigidBodyHandle,
+        /// The step asked for (s).
+        dt: f64,
+        /// The longest stable step (s).
+        critical: f64,
     },
     /// The contact problem could not be solved.
     #[error(transparent)]
@@ -52,7 +76,7 @@ pub enum StepError {
 impl From<GatherError> for StepError {
     fn from(error: GatherError) -> Self {
         match error {
-            GatherError::Kkt(error) => Self::Kkt(error),
+            GatherError::Factorization { body, source } => Self::Factorization { body, source },
             GatherError::RigidBody(handle) => Self::RigidBody(handle),
             GatherError::Coefficient(handle) => Self::Coefficient(handle),
         }

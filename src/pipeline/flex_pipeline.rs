@@ -9,7 +9,7 @@ use crate::coupling::{
     stop_if_asleep, wake_disturbed, write_surface,
 };
 use crate::integrator::Beta2;
-use crate::kkt::{ImpactTreatment, Island, SolveSettings};
+use crate::kkt::{ContactMethod, ImpactTreatment, Island, SolveSettings};
 use crate::linalg::complementarity::Method;
 use crate::rapier::prelude::*;
 use crate::system::Step;
@@ -42,6 +42,7 @@ use crate::system::Step;
 pub struct FlexPipeline {
     integrator: Beta2,
     impact: ImpactTreatment,
+    contact: ContactMethod,
     solver: Method,
     restitution_threshold: f64,
     max_newton: usize,
@@ -69,6 +70,7 @@ impl FlexPipeline {
         Self {
             integrator: Beta2::default(),
             impact: ImpactTreatment::default(),
+            contact: ContactMethod::default(),
             solver: Method::ActiveSet,
             restitution_threshold: 0.5,
             max_newton: 20,
@@ -98,6 +100,13 @@ impl FlexPipeline {
     /// Chooses what is done on impact.
     pub fn with_impact(mut self, impact: ImpactTreatment) -> Self {
         self.impact = impact;
+        self
+    }
+
+    /// Chooses how the laws of contact are enforced: by Lagrange multipliers, or for comparison by the constraint functions of
+    /// ADINA. Steps in which the latter fail are counted, see [`StepReport::n_failed`].
+    pub fn with_contact_method(mut self, method: ContactMethod) -> Self {
+        self.contact = method;
         self
     }
 
@@ -336,12 +345,16 @@ impl FlexPipeline {
             is_explicit: step.is_explicit(),
             insists: self.insists,
             impact: self.impact,
+            contact: self.contact,
             solver: self.solver,
             restitution_threshold: self.restitution_threshold,
             max_newton: self.max_newton,
         };
         let mut reserve = self.reserve(flex_bodies);
-        let summary = self.island.solve(&settings, &self.memory, &mut reserve)?;
+        let summary = self
+            .island
+            .solve(&settings, &self.memory, &mut reserve)
+            .map_err(|error| self.name_bodies(error))?;
         self.check_finite(flex_bodies)?;
         self.note(step, &summary, reserve, sets, flex_bodies);
         clock.lap(&mut self.report.times.solve);

@@ -101,6 +101,8 @@ pub struct StepReport {
     pub(super) n_claimed: usize,
     pub(super) n_asleep: usize,
     pub(super) n_newton: usize,
+    pub(super) n_failed: usize,
+    pub(super) n_substituted: usize,
     pub(super) n_linearized: usize,
     pub(super) n_held: usize,
     pub(super) n_pivots: usize,
@@ -175,6 +177,17 @@ impl StepReport {
     /// Most Newton iterations of an island.
     pub fn n_newton(&self) -> usize {
         self.n_newton
+    }
+
+    /// Islands in which the iterations of the [constraint functions](crate::kkt::ContactMethod::ConstraintFunction) did not converge:
+    /// they were tried again from large `ε` to small.
+    pub fn n_failed(&self) -> usize {
+        self.n_failed
+    }
+
+    /// Islands in which that failed too, so that Lagrange multipliers solved the step.
+    pub fn n_substituted(&self) -> usize {
+        self.n_substituted
     }
 
     /// Islands whose Newton iterations did not converge, so that a linearised step was taken: a sign of strains far from

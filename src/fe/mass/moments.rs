@@ -43,7 +43,12 @@ impl Frame {
         frame
     }
 
-    fn coordinates(&self, x: [f64; 2]) -> [f64; 2] {
+    /// Square of the shorter over the longer gyration radius (-).
+    pub fn flatness(&self) -> f64 {
+        (self.radii[1] / self.radii[0]).powi(2)
+    }
+
+    pub fn coordinates(&self, x: [f64; 2]) -> [f64; 2] {
         let [dx, dy] = [x[0] - self.centre[0], x[1] - self.centre[1]];
         let [cos, sin] = self.axis;
         [
@@ -55,7 +60,7 @@ impl Frame {
     /// The terms of p in the order of their importance: 1, X, Y, polar, Y^2, X Y.
     fn terms(&self, x: [f64; 2]) -> [f64; N_TERMS] {
         let [along, across] = self.coordinates(x);
-        let flatness = (self.radii[1] / self.radii[0]).powi(2);
+        let flatness = self.flatness();
         let polar = (along * along + flatness * across * across) / (1.0 + flatness);
         [1.0, along, across, polar, across * across, along * across]
     }
@@ -71,13 +76,14 @@ impl Frame {
         moments
     }
 
-    /// Gram–Schmidt, twice, in the inner product of the masses; dependent terms become zero.
-    pub fn basis(&self, nodes: &[[f64; 2]], mass: &[f64]) -> Basis {
+    /// Gram–Schmidt, twice, in the inner product of the masses times their weights; dependent terms become zero.
+    pub fn basis(&self, nodes: &[[f64; 2]], mass: &[f64], weight: &[f64]) -> Basis {
+        let mass: Vec<f64> = mass.iter().zip(weight).map(|(m, w)| m * w).collect();
         let mut terms: Vec<[f64; N_TERMS]> = nodes.iter().map(|&x| self.terms(x)).collect();
         let inner = |terms: &[[f64; N_TERMS]], a: usize, b: usize| -> f64 {
             terms
                 .iter()
-                .zip(mass)
+                .zip(&mass)
                 .map(|(row, m)| m * row[a] * row[b])
                 .sum()
         };
@@ -101,7 +107,11 @@ impl Frame {
             triangle[term][term] = if independent { left } else { 0.0 };
             terms.iter_mut().for_each(|row| row[term] *= scale);
         }
-        Basis { terms, triangle }
+        Basis {
+            terms,
+            triangle,
+            weight: weight.to_vec(),
+        }
     }
 }
 
@@ -109,25 +119,34 @@ impl Frame {
 pub struct Basis {
     terms: Vec<[f64; N_TERMS]>,
     triangle: [[f64; N_TERMS]; N_TERMS],
+    weight: Vec<f64>,
 }
 
 impl Basis {
-    /// Writes the least change p (in the norm of the masses) that meets the first `n_terms` conditions it can.
+    /// Writes the `p = 1 + w q` of least change (in the norm of the masses over the weights) that meets the first `n_terms`
+    /// conditions it can.
     ///
-    /// With `p = sum c_k e_k`, the moment of term j is `sum_k T_jk c_k`: forward substitution, where a zero on the
+    /// With `q = sum c_k e_k`, the moment of term j changes by `sum_k T_jk c_k`: forward substitution, where a zero on the
     /// diagonal is a condition already decided by the ones before it.
-    pub fn fit(&self, factor: &mut [f64], mass: &[f64], target: &[f64; N_TERMS], n_terms: usize) {
+    ///
+    /// - `change`: by how much the moments have to change (kg).
+    pub fn fit(&self, factor: &mut [f64], mass: &[f64], change: &[f64; N_TERMS], n_terms: usize) {
         let mut coefficients = [0.0; N_TERMS];
         for row in 0..N_TERMS {
             let triangle = &self.triangle[row];
             let known: f64 = (0..row).map(|k| triangle[k] * coefficients[k]).sum();
             if triangle[row] > 0.0 && row < n_terms {
-                coefficients[row] = (target[row] - known) / triangle[row];
+                coefficients[row] = (change[row] - known) / triangle[row];
             }
         }
-        for ((factor, terms), mass) in factor.iter_mut().zip(&self.terms).zip(mass) {
+        let places = self.terms.iter().zip(&self.weight);
+        for ((factor, (terms, weight)), mass) in factor.iter_mut().zip(places).zip(mass) {
             let value: f64 = terms.iter().zip(&coefficients).map(|(e, c)| e * c).sum();
-            *factor = if *mass > 0.0 { value } else { 1.0 };
+            *factor = if *mass > 0.0 {
+                1.0 + weight * value
+            } else {
+                1.0
+            };
         }
     }
 }

@@ -109,7 +109,7 @@ pub(super) fn solve_cholesky_in_place(a: &[f64], n: usize, x: &mut [f64]) {
 /// Rows are first divided by their largest entry, because contacts mix grams with tonnes.
 ///
 /// - `column_size`: scratch, shape `(n)`.
-pub(super) fn solve_lu_in_place(
+pub(crate) fn solve_lu_in_place(
     a: &mut [f64],
     x: &mut [f64],
     column_size: &mut [f64],

@@ -44,6 +44,8 @@ mod status;
 pub use problem::{ComplementarityError, Problem, RowKind, Status};
 pub use residual::natural_map_residual;
 
+pub(crate) use dense::solve_lu_in_place;
+
 use active_set::{ActiveSet, Redundancy};
 use lemke::Lemke;
 use problem::Checked;

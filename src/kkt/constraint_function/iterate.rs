@@ -1,0 +1,206 @@
+//! Newton's iterations of an island by the constraint functions: each solves the bodies under the multipliers it has, measures
+//! gaps and slips, and takes one Newton step.
+//!
+//! Where they fail they are tried once more from large `ε` to small, and if that fails too the step is solved by Lagrange
+//! multipliers; both are counted.
+
+use super::ConstraintFunction;
+use super::newton::Scale;
+use crate::constraint::contact::ContactMemory;
+use crate::kkt::delassus::assemble;
+use crate::kkt::island::{Island, IslandSummary, SolveSettings};
+use crate::kkt::multipliers::prepare;
+use crate::kkt::position::{ANGLE_TOLERANCE, PARTING_RATE, ROWS_KEPT_FROM};
+use crate::linalg::complementarity::{Problem, RowKind, Status};
+use crate::system::{Block, Response};
+use std::f64::consts::FRAC_2_PI;
+
+/// Where a second trial begins, `[ε_N, ε_T]`, and what each iteration multiplies them by.
+const WIDE: [f64; 2] = [1e-1, 1.0];
+const NARROWER: f64 = 0.1;
+
+/// Residual below which the multipliers are nearly right, so that rows are measured once more.
+const NEARLY: f64 = 1e-3;
+
+/// Iteration from which gaps are extrapolated along the rows.
+const GAPS_KEPT_FROM: usize = 30;
+
+/// Least length of a problem, of the size of its bodies.
+const LEAST_LENGTH: f64 = 1e-9;
+
+/// What the iterations of a step go by.
+pub(in crate::kkt) struct Trial<'a> {
+    pub functions: &'a ConstraintFunction,
+    pub settings: &'a SolveSettings,
+    pub memory: &'a ContactMemory,
+    /// Rounding of a gap (m).
+    pub tolerance: f64,
+}
+
+impl Island {
+    /// Iterates with the constraint functions, and again from wide ones; returns whether either converged.
+    pub(in crate::kkt) fn iterate_functions(
+        &mut self,
+        trial: &Trial<'_>,
+        summary: &mut IslandSummary,
+    ) -> bool {
+        if self.follow_functions(trial, trial.functions.epsilon, summary) {
+            return true;
+        }
+        summary.has_failed = true;
+        if trial.functions.has_continuation {
+            self.start_again(trial.settings, trial.tolerance, trial.memory);
+            if self.follow_functions(trial, WIDE, summary) {
+                return true;
+            }
+        }
+        summary.is_substituted = true;
+        self.start_again(trial.settings, trial.tolerance, trial.memory);
+        false
+    }
+
+    /// Newton's iterations, with `ε` that begins at `begin` and becomes what it should be; returns whether they converged.
+    fn follow_functions(
+        &mut self,
+        trial: &Trial<'_>,
+        begin: [f64; 2],
+        summary: &mut IslandSummary,
+    ) -> bool {
+        let functions = trial.functions;
+        let kept = (-PARTING_RATE * trial.settings.dt).exp();
+        let mut scale = None;
+        let mut epsilon = begin;
+        let mut is_near = false;
+        for iteration in 0..functions.max_iterations {
+            summary.n_newton += 1;
+            let turned = self.correct();
+            let is_guess = iteration == 0 && !self.contacts.is_empty();
+            let error = self.measure(is_guess || iteration >= GAPS_KEPT_FROM);
+            let has_more = self.add_violated(trial.tolerance, kept, trial.memory);
+            if !(turned + error).is_finite() {
+                return false;
+            }
+            let residual = self.function_residual(trial.settings.b0, scale.as_ref());
+            let is_quiet = turned <= ANGLE_TOLERANCE && !has_more;
+            let allowed = scale.map_or(0.0, |scale: Scale| trial.tolerance / scale.length);
+            let is_narrow = epsilon == functions.epsilon || self.contacts.is_empty();
+            if is_quiet && is_narrow && residual <= allowed {
+                self.settle_functions(functions);
+                return true;
+            }
+            let refreshes = iteration < ROWS_KEPT_FROM || residual < NEARLY && !is_near;
+            is_near |= residual < NEARLY;
+            if refreshes {
+                self.refresh_rows();
+            }
+            for (now, end) in epsilon.iter_mut().zip(functions.epsilon) {
+                *now = (NARROWER * *now).max(end);
+            }
+            if self.contacts.is_empty() {
+                continue;
+            }
+            let Some(found) = self.function_step(trial, epsilon, refreshes) else {
+                return false;
+            };
+            scale = Some(found);
+        }
+        false
+    }
+
+    /// The largest `|w|`, `|v|` under the present multipliers, where the bodies are now (-).
+    fn function_residual(&mut self, b0: f64, scale: Option<&Scale>) -> f64 {
+        self.position_rows(b0);
+        match scale {
+            _ if self.rows.is_empty() => 0.0,
+            None => f64::INFINITY,
+            Some(scale) => {
+                self.newton.start(&self.kinds, &self.multipliers, scale);
+                self.newton.residual(&self.kinds, &self.free, scale)
+            }
+        }
+    }
+
+    /// One Newton step of all multipliers; what they were divided by, or `None` if the Jacobian is singular.
+    fn function_step(
+        &mut self,
+        trial: &Trial<'_>,
+        epsilon: [f64; 2],
+        has_new_rows: bool,
+    ) -> Option<Scale> {
+        for contact in &self.contacts {
+            prepare(&mut self.blocks, &contact.kinematics);
+            if has_new_rows {
+                prepare(&mut self.blocks, &contact.applied);
+            }
+        }
+        let b0 = trial.settings.b0;
+        self.position_rows(b0);
+        let contacts = &self.contacts;
+        assemble(
+            &self.blocks,
+            &self.rows,
+            Response::Position,
+            |index| &contacts[index].kinematics,
+            &mut self.delassus,
+        );
+        self.take_out_multipliers(has_new_rows);
+        let problem = Problem {
+            delassus: &self.delassus,
+            free: &self.free,
+            rows: &self.kinds,
+        };
+        let size = self.blocks.iter().fold(0.0f64, |size, block| match block {
+            Block::Flex(block) => size.max(block.size()),
+            Block::Rigid(_) => size,
+        });
+        let mut scale = Scale::of(&problem, b0, LEAST_LENGTH * size, epsilon);
+        if let Some([length, force]) = trial.functions.scale {
+            (scale.length, scale.force) = (length, force);
+        }
+        self.newton.start(&self.kinds, &self.multipliers, &scale);
+        let searches = trial.functions.has_line_search;
+        let is_regular = self
+            .newton
+            .advance(&problem, &scale, searches, &mut self.multipliers);
+        for (row, direction) in self.rows.iter().enumerate() {
+            let contact = &mut self.contacts[direction.contact];
+            let which = usize::from(matches!(self.kinds[row], RowKind::Friction { .. }));
+            contact.multiplier[which] = self.multipliers[row];
+        }
+        is_regular.then_some(scale)
+    }
+
+    /// Reads statuses off the solution, and lets go of contacts on the open branch, `g/ℓ > p/F`, whose `p = ε_N ℓ F/g` is of the
+    /// size of what the method leaves undecided: later stages take whatever presses for closed.
+    fn settle_functions(&mut self, functions: &ConstraintFunction) {
+        let limit = functions.epsilon[0].sqrt();
+        // The ratio where the slip is `sqrt(ε_T) ℓ`.
+        let slides = 1.0 - FRAC_2_PI * functions.epsilon[1].sqrt();
+        let mut lets_go = false;
+        for (row, direction) in self.rows.iter().enumerate() {
+            let unknown = self.newton.unknown(row);
+            let contact = &mut self.contacts[direction.contact];
+            match self.kinds[row] {
+                RowKind::Friction { .. } if contact.status[0] == Status::Open => {}
+                // Friction acts against the slip.
+                RowKind::Friction { .. } if unknown > slides => {
+                    contact.status[1] = Status::SlipNegative;
+                }
+                RowKind::Friction { .. } if unknown < -slides => {
+                    contact.status[1] = Status::SlipPositive;
+                }
+                RowKind::Friction { .. } => contact.status[1] = Status::Stick,
+                _ if unknown > limit => contact.status[0] = Status::Stick,
+                _ => {
+                    lets_go |= contact.multiplier[0] > 0.0;
+                    contact.multiplier = [0.0; 2];
+                    contact.status = [Status::Open; 2];
+                }
+            }
+        }
+        if lets_go {
+            self.correct();
+            self.measure(true);
+        }
+    }
+}
