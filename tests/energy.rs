@@ -380,3 +380,38 @@ fn impacts_of_coarse_bodies_add_no_energy_that_stays() {
     // changing momentum; the debt is kept, and paid as the body unloads.
     drop_blocks(8, &[[1, 1], [2, 1], [2, 2], [4, 2], [6, 5]], 0.15);
 }
+
+#[test]
+fn what_moving_pins_put_in_is_accounted_for_and_not_taken_for_a_gain() {
+    // One end of a bar is pulled at 10 mm/s for a fifth of a second and then held: waves run to and fro.
+    let mut scene = Scene::in_free_space(1e-3).with_integrator(Beta2::trapezoidal());
+    let bar = scene.flexible(
+        FlexBodyBuilder::rectangle([2.0, 0.2], [20, 2])
+            .material(LinearElastic::plane_stress(1e6, 0.0).density(1000.0))
+            .pin_where(|[x, _]| x == 0.0, Pin::both())
+            .pin_where(|[x, _]| x == 2.0, Pin::x()),
+    );
+    let pulled: Vec<usize> = (0..scene.body(bar).n_nodes())
+        .filter(|&node| scene.body(bar).position(node)[0] == 2.0)
+        .collect();
+    let mut largest = 0.0f64;
+    for step in 1..=600 {
+        let stretch = 1e-5 * f64::from(step.min(200));
+        for &node in &pulled {
+            scene.bodies[bar]
+                .set_pin_displacement(node, [stretch, 0.0])
+                .expect("the node is pinned");
+        }
+        let report = scene.step();
+        assert_eq!(report.energy_limited(), 0.0, "step {step}");
+        largest = largest.max(report.energy().kinetic + report.energy().elastic);
+    }
+    // The pull begins with a jump of velocity, which the reaction of the first step knows from its end alone.
+    let lost = scene.report().energy().dissipated.abs();
+    assert!(
+        lost < 1e-3 * largest,
+        "{lost} J of {largest} J are not accounted for"
+    );
+    let kinetic = scene.report().energy().kinetic;
+    assert!(kinetic > 1e-3 * largest, "the waves were taken out");
+}

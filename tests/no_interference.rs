@@ -309,7 +309,7 @@ fn claims_far_away_cost_two_hundred_rigid_bodies_no_more_than_detection_steps()
     let mut flex_bodies = FlexBodySet::new();
     let floor = ColliderBuilder::cuboid(5.0, 0.5).translation(Vector::new(1000.0, -0.5));
     beside.insert_collider(floor, None);
-    flex_bodies.insert(block_at(1000.0, 0.05), &mut beside)?;
+    flex_bodies.insert(block_at(1000.0, 0.05).can_sleep(false), &mut beside)?;
     let above = RigidBodyBuilder::dynamic().translation(Vector::new(1000.5, 1.15));
     beside.insert(above, ColliderBuilder::cuboid(0.3, 0.3).density(500.0));
     let dt = detected.integration_parameters.dt;

@@ -56,20 +56,13 @@ fn a_settled_pile_sleeps_within_five_seconds_and_a_touch_wakes_it() {
         settle(&mut scene, 5.0).is_some(),
         "not all asleep after 5 s"
     );
-    assert_eq!(
-        scene.report().n_asleep() + flexible.len(),
-        2 * flexible.len()
-    );
     let before: Vec<_> = rigid
         .iter()
         .map(|&body| *scene.world.bodies[body].position())
         .collect();
     scene.steps(60);
     assert_eq!(scene.report().n_asleep(), flexible.len());
-    assert!(
-        scene.report().contacts().is_empty(),
-        "what sleeps is not solved"
-    );
+    assert_eq!(scene.report().n_islands(), 0, "what sleeps is not solved");
     for (&body, before) in rigid.iter().zip(&before) {
         assert_eq!(scene.world.bodies[body].position(), before);
     }

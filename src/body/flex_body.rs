@@ -333,9 +333,16 @@ impl FlexBody {
 
     /// Lets the first step give the body its initial accelerations, from its nodal forces and prescribed displacements.
     /// `give` returns whether it could. They last if the step is committed: one that fails starts the body anew.
-    pub(crate) fn start_with(&mut self, give: impl FnOnce(&mut FlexState, &[f64], &[f64]) -> bool) {
-        if !give(&mut self.state, &self.nodal_force, &self.prescribed)
-            || !self.state.has_finite_accelerations()
+    pub(crate) fn start_with(
+        &mut self,
+        give: impl FnOnce(&mut FlexState, &[f64], &[f64], &[f64]) -> bool,
+    ) {
+        if !give(
+            &mut self.state,
+            &self.nodal_force,
+            &self.prescribed,
+            &self.reaction,
+        ) || !self.state.has_finite_accelerations()
         {
             self.state.clear_accelerations();
         }
@@ -358,6 +365,10 @@ impl FlexBody {
 
     pub(crate) fn contact_force_mut(&mut self) -> &mut [f64] {
         &mut self.contact_force
+    }
+
+    pub(crate) fn reactions(&self) -> &[f64] {
+        &self.reaction
     }
 
     pub(crate) fn reaction_mut(&mut self) -> &mut [f64] {

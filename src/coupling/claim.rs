@@ -61,7 +61,8 @@ pub(crate) struct Claims {
     /// Flexible bodies that sleep, and take no part.
     pub(super) asleep: Vec<Sleeper>,
     pub(super) woken: Vec<RigidBodyHandle>,
-    pub(super) n_colliders: usize,
+    /// Number of colliders and gravity in the last step.
+    pub(super) world: (usize, Vector),
 }
 
 impl Claims {

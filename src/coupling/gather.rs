@@ -188,7 +188,7 @@ impl Gatherer {
         let gravity = body.gravity_scale() * from_rapier(sets.gravity) + own;
         let mut outcome = Ok(());
         if !body.is_started() {
-            body.start_with(|state, force, prescribed| {
+            body.start_with(|state, force, prescribed, reaction| {
                 outcome = block.start(
                     settings.step,
                     state,
@@ -196,6 +196,7 @@ impl Gatherer {
                         force,
                         gravity,
                         prescribed,
+                        reaction,
                     },
                 );
                 outcome.is_ok()
@@ -205,6 +206,7 @@ impl Gatherer {
             force: body.nodal_force(),
             gravity,
             prescribed: body.prescribed(),
+            reaction: body.reactions(),
         };
         let outcome = outcome.and_then(|()| block.predict(settings.step, body.state(), &load));
         island.blocks.push(Block::Flex(block));

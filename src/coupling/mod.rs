@@ -24,4 +24,6 @@ pub(crate) use hand_back::{Landing, hand_back, land};
 pub(crate) use masters::Masters;
 pub(crate) use reading::{GatherError, is_held_motion};
 pub use sets::RapierSets;
-pub(crate) use sleep::{is_all_asleep, is_asleep, keep_awake, stop_if_asleep, wake_disturbed};
+pub(crate) use sleep::{
+    is_all_asleep, is_asleep, keep_awake, stop_if_asleep, wake_disturbed, wake_moving,
+};

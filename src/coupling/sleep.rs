@@ -76,10 +76,11 @@ pub(crate) fn wake_disturbed(
 }
 
 impl Claims {
-    /// Whether colliders have come or gone since the last call, or fixed ones have been moved: what rested on them may fall.
+    /// Whether colliders have come or gone since the last call, fixed ones have been moved, or gravity is another: what rested may
+    /// fall.
     pub fn has_world_changed(&mut self, sets: &RapierSets<'_>) -> bool {
-        let n_before = std::mem::replace(&mut self.n_colliders, sets.colliders.len());
-        n_before != self.n_colliders
+        let now = (sets.colliders.len(), sets.gravity);
+        std::mem::replace(&mut self.world, now) != now
             || sets.colliders.iter().any(|(_, collider)| {
                 let parent = collider.parent().and_then(|parent| sets.bodies.get(parent));
                 parent.is_some_and(RigidBody::is_fixed) && !is_fixed_and_settled(sets, collider)
@@ -176,6 +177,30 @@ pub(crate) fn keep_awake(body: &FlexBody, velocities: &[f64], sets: &mut RapierS
     if activation.normalized_linear_threshold < 0.0 || !is_due {
         return;
     }
+    if moves(body, velocities, patience, sets)
+        && let Some(carrier) = sets.bodies.get_mut(handle)
+    {
+        // The step adds its length.
+        carrier.activation_mut().time_since_can_sleep = -dt;
+    }
+}
+
+/// Wakes the carrier of a body that moves all the same: surfaces that were written set its timer to zero, and a step may be longer
+/// than the time until sleep.
+pub(crate) fn wake_moving(body: &FlexBody, velocities: &[f64], sets: &mut RapierSets<'_>) {
+    let handle = body.rigid_body_handle();
+    let carrier = sets.bodies.get(handle);
+    let Some(carrier) = carrier.filter(|carrier| carrier.is_sleeping()) else {
+        return;
+    };
+    let patience = carrier.activation().time_until_sleep;
+    if moves(body, velocities, patience, sets) {
+        sets.islands.wake_up(sets.bodies, handle, true);
+    }
+}
+
+/// Whether a node moves farther than at rest.
+fn moves(body: &FlexBody, velocities: &[f64], patience: Real, sets: &RapierSets<'_>) -> bool {
     let fastest = velocities
         .chunks_exact(2)
         .map(|v| v[0] * v[0] + v[1] * v[1])
@@ -184,12 +209,7 @@ pub(crate) fn keep_awake(body: &FlexBody, velocities: &[f64], sets: &mut RapierS
     let size = collider.map_or(0.0, |collider| {
         collider.compute_aabb().extents().max_element()
     });
-    if fastest.sqrt() * f64::from(patience) > STILL * f64::from(size)
-        && let Some(carrier) = sets.bodies.get_mut(handle)
-    {
-        // The step adds its length.
-        carrier.activation_mut().time_since_can_sleep = -dt;
-    }
+    fastest.sqrt() * f64::from(patience) > STILL * f64::from(size)
 }
 
 /// Stops a body whose carrier has fallen asleep in rapier's step.

@@ -4,7 +4,7 @@ use super::flex_pipeline::FlexPipeline;
 use super::report::{ContactReport, Participant};
 use crate::body::FlexBodySet;
 use crate::constraint::contact::{Owner, Remembered};
-use crate::coupling::{Landing, RapierSets, keep_awake};
+use crate::coupling::{Landing, RapierSets, keep_awake, wake_moving};
 use crate::kkt::{ActiveContact, IslandSummary};
 use crate::linalg::complementarity::Status;
 use crate::math::{Vec2, cross, from_rapier};
@@ -85,6 +85,16 @@ impl FlexPipeline {
             let block = self.gatherer.block(index);
             if let (Some(block), Some((_, body))) = (block, flex_bodies.at_index(index)) {
                 keep_awake(body, block.velocities(), sets);
+            }
+        }
+    }
+
+    /// Wakes carriers that rapier has put to sleep while their bodies move.
+    pub(super) fn wake_moving(&self, sets: &mut RapierSets<'_>, flex_bodies: &FlexBodySet) {
+        for &(index, _) in &self.reserves {
+            let block = self.gatherer.block(index);
+            if let (Some(block), Some((_, body))) = (block, flex_bodies.at_index(index)) {
+                wake_moving(body, block.velocities(), sets);
             }
         }
     }

@@ -273,6 +273,7 @@ impl FlexPipeline {
         sets.step();
         self.report.note_quarantine(&sets);
         clock.lap(&mut self.report.times.rapier);
+        self.wake_moving(&mut sets, flex_bodies);
         land(&self.landings, &mut sets, &mut self.masters);
         self.commit(&mut sets, flex_bodies);
         clock.lap(&mut self.report.times.hand_back);

@@ -20,8 +20,9 @@
 //! for the damping forces, and lowers the critical step to `2 (√(1 + ζ²) - ζ) / ω`.
 
 use super::compliance::Compliance;
-use super::flex_block::{FlexBlock, Response};
+use super::flex_block::FlexBlock;
 use super::massless_surface::MasslessSurface;
+use super::step::Response;
 use crate::body::{FlexState, Frame};
 use crate::fe::model::{MassMatrix, Model};
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};

@@ -6,6 +6,7 @@
 use super::compliance::Compliance;
 use super::explicit_block::Explicit;
 use super::flex_impulse::Impulses;
+use super::step::{FlexLoad, Step};
 use crate::body::{Arms, FlexState, Frame, FrameMotion};
 use crate::fe::model::Model;
 use crate::integrator::{Beta2, Weights};
@@ -13,44 +14,6 @@ use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
 use crate::math::{Mat2, Vec2, cross, node_vec, perp, set_node_vec};
 use std::sync::Arc;
-
-/// Everything about a step that is the same for all flexible bodies.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
-    /// Length (s).
-    pub dt: f64,
-    /// Beta-2 weights.
-    pub weights: Weights,
-}
-
-impl Step {
-    /// Whether positions at the end do not depend on accelerations there: `b0 = 0`.
-    pub fn is_explicit(&self) -> bool {
-        self.weights.b0 == 0.0
-    }
-}
-
-/// What responds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Response {
-    /// The end position, to forces.
-    Position,
-    /// The end velocity, to impulses.
-    Velocity,
-    /// The end acceleration, to forces.
-    Acceleration,
-}
-
-/// Applied loads of one step.
-#[derive(Clone, Copy, Debug)]
-pub struct FlexLoad<'a> {
-    /// Nodal forces without gravity, interleaved (N).
-    pub force: &'a [f64],
-    /// Gravity and other forces per mass (m/s²).
-    pub gravity: Vec2,
-    /// Displacement of the pinned dofs, interleaved (m).
-    pub prescribed: &'a [f64],
-}
 
 /// The rebuildable half of a flexible body: factor, compliance and the vectors of one step.
 #[derive(Debug)]
@@ -91,6 +54,8 @@ pub struct FlexBlock {
     /// Increment of the centre's acceleration, world axes (m/s²).
     pub(super) shift: Vec2,
     pub(super) prescribed: Vec<f64>,
+    /// Reactions of the pins at the beginning of the step (N).
+    pub(super) start_reaction: Vec<f64>,
     /// Gravity and other forces per mass; `None` if forces act on single nodes (m/s²).
     pub(super) uniform: Option<Vec2>,
     /// `u_q`, `u̇_q`.
@@ -183,6 +148,7 @@ impl FlexBlock {
             force_total: Vec2::zeros(),
             shift: Vec2::zeros(),
             prescribed: zeros(),
+            start_reaction: zeros(),
             uniform: None,
             displacement_q: zeros(),
             rate_q: zeros(),
@@ -281,6 +247,7 @@ impl FlexBlock {
         self.start_torque = state.torque;
         self.start_energy = [state.kinetic_energy, state.elastic_energy];
         self.prescribed.copy_from_slice(load.prescribed);
+        self.start_reaction.copy_from_slice(load.reaction);
         for (node, mass) in self.arms.node_mass.iter().enumerate() {
             for axis in 0..2 {
                 let dof = 2 * node + axis;

@@ -1,7 +1,8 @@
 //! Impulses at velocity level: gathered, answered by one substitution for velocities and accelerations together, and added
 //! to either as often as wanted.
 
-use super::flex_block::{FlexBlock, Response};
+use super::flex_block::FlexBlock;
+use super::step::Response;
 use crate::body::Frame;
 use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, set_node_vec};
 

@@ -245,13 +245,26 @@ impl FlexBlock {
         }
     }
 
-    /// Work of the applied forces over the step, `Σ f·(x' - x)` (J).
+    /// Work of the applied forces over the step, `Σ f·(x' - x)`, and of the pins that move, by the mean of their reactions (J).
     pub fn applied_work(&self) -> f64 {
         let moved = self.position.iter().zip(&self.start_position);
-        moved
+        let applied: f64 = moved
             .zip(&self.force)
             .map(|((end, start), force)| force * (end - start))
-            .sum()
+            .sum();
+        applied + self.pin_work()
+    }
+
+    fn pin_work(&self) -> f64 {
+        let mut work = 0.0;
+        for &dof in &self.fixed_dofs {
+            let moved = self.position[dof] - self.start_position[dof];
+            if moved != 0.0 {
+                let end = self.reaction(dof / 2)[dof % 2];
+                work += 0.5 * (self.start_reaction[dof] + end) * moved;
+            }
+        }
+        work
     }
 
     /// Writes the end of the step over the committed state.

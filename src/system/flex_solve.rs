@@ -10,7 +10,8 @@
 //! `a_q` the accelerations before the increment, `h` the centripetal and Coriolis terms: the stiffness need never be
 //! multiplied.
 
-use super::flex_block::{FlexBlock, Response};
+use super::flex_block::FlexBlock;
+use super::step::Response;
 use crate::body::Frame;
 use crate::integrator::Weights;
 use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};

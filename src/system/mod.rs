@@ -15,11 +15,13 @@ mod flex_solve;
 mod massless_surface;
 mod moments;
 mod rigid_block;
+mod step;
 
-pub use flex_block::{FlexBlock, FlexLoad, Response, Step};
+pub use flex_block::FlexBlock;
 pub use flex_motion::Balance;
 pub use moments::Moments;
 pub use rigid_block::{RigidBlock, RigidLoad, RigidMotion};
+pub use step::{FlexLoad, Response, Step};
 
 use crate::math::{Mat2, Vec2};
 

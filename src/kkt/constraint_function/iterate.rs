@@ -148,6 +148,7 @@ impl Island {
             delassus: &self.delassus,
             free: &self.free,
             rows: &self.kinds,
+            acted: &[],
         };
         let size = self.blocks.iter().fold(0.0f64, |size, block| match block {
             Block::Flex(block) => size.max(block.size()),
