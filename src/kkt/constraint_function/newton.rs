@@ -276,6 +276,7 @@ mod tests {
             delassus: &DELASSUS,
             free,
             rows: &ROWS,
+            acted: &[],
         }
     }
 
