@@ -389,10 +389,35 @@ impl FlexBlock {
         self.factor.factorize(&self.effective)?;
         self.n_factorizations += 1;
         self.compliance.clear();
+        if self.kind == Frame::Free {
+            self.check_rigid_motion(1.0 + rayleigh.mass * weights.b1)?;
+        }
         self.factored_for = Some(weights);
         Ok(())
     }
+
+    /// Refuses a matrix in which rounding of the stiffness hides the mass: `A e = (1 + α b1) M e` for every rigid translation `e`.
+    fn check_rigid_motion(&mut self, factor: f64) -> Result<(), CholeskyError> {
+        self.scratch.iter_mut().enumerate().for_each(|(dof, e)| {
+            *e = if dof % 2 == 0 { 1.0 } else { -1.0 };
+        });
+        self.local.fill(0.0);
+        self.model
+            .mass()
+            .multiply_add(factor, &self.scratch, &mut self.local);
+        self.factor.solve_in_place(&mut self.local);
+        let pairs = self.local.iter().zip(&self.scratch);
+        let error = pairs.fold(0.0f64, |error, (found, e)| error.max((found - e).abs()));
+        if error <= MOST_HIDDEN {
+            Ok(())
+        } else {
+            Err(CholeskyError::IllConditioned { error })
+        }
+    }
 }
+
+/// Error of a rigid motion from which contact iterations no longer converge.
+const MOST_HIDDEN: f64 = 1e-3;
 
 /// Largest side of the box around nodal positions (m).
 fn size_of(dofs: &[f64]) -> f64 {

@@ -62,6 +62,14 @@ pub enum CholeskyError {
         /// The diagonal entry itself.
         diagonal: f64,
     },
+    /// A solution that is known is found too inexactly.
+    #[error(
+        "the matrix holds numbers so different in size that rounding leaves an error of {error:e} in a known solution"
+    )]
+    IllConditioned {
+        /// The largest error, relative.
+        error: f64,
+    },
     /// The matrix does not store the blocks of the one that was analysed.
     #[error(
         "the matrix of {found} nodes does not have the pattern analysed, of {analysed} nodes: \
