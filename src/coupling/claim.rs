@@ -47,6 +47,10 @@ pub(crate) struct Claims {
     pub rigid: Vec<RigidBodyHandle>,
     /// Pairs that may touch.
     pub pairs: Vec<ClaimedPair>,
+    /// Impulse joints of claimed bodies, in the order they were reached.
+    pub joints: Vec<ImpulseJointHandle>,
+    pub(super) seen_joints: HashSet<ImpulseJointHandle>,
+    pub(super) partners: Vec<(RigidBodyHandle, ImpulseJointHandle)>,
     /// Component of every member: flexible bodies first, then rigid ones.
     parent: Vec<usize>,
     rigid_index: HashMap<RigidBodyHandle, usize>,
@@ -167,6 +171,8 @@ impl Claims {
         self.rigid.clear();
         self.rigid_index.clear();
         self.pairs.clear();
+        self.joints.clear();
+        self.seen_joints.clear();
         self.seen.clear();
         self.parent.clear();
         self.parent.extend(0..self.flex.len());
@@ -186,6 +192,7 @@ impl Claims {
             for &collider in body.colliders() {
                 self.add_rigid_pairs(sets, handle, collider);
             }
+            self.add_joints(sets, handle);
         }
     }
 
@@ -299,7 +306,7 @@ impl Claims {
     }
 
     /// Member index of a rigid body, claimed now if it was not.
-    fn claim(&mut self, handle: RigidBodyHandle) -> usize {
+    pub(super) fn claim(&mut self, handle: RigidBodyHandle) -> usize {
         let n_flex = self.flex.len();
         if let Some(&index) = self.rigid_index.get(&handle) {
             return n_flex + index;
@@ -319,7 +326,7 @@ impl Claims {
         member
     }
 
-    fn unite(&mut self, one: usize, other: usize) {
+    pub(super) fn unite(&mut self, one: usize, other: usize) {
         let (one, other) = (self.root(one), self.root(other));
         // The smaller index stays the root, so that components do not depend on the order of unions.
         self.parent[one.max(other)] = one.min(other);
@@ -332,10 +339,16 @@ pub(crate) fn claimable_parent(
     collider: &Collider,
 ) -> Option<RigidBodyHandle> {
     let parent = collider.parent()?;
-    let body = sets.bodies.get(parent)?;
+    claimable_body(sets, parent).then_some(parent)
+}
+
+/// Whether the flexible stage can solve for a rigid body.
+pub(super) fn claimable_body(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bool {
+    let Some(body) = sets.bodies.get(handle) else {
+        return false;
+    };
     let is_free = body.is_dynamic() && body.is_enabled() && !body.is_soft_frame();
-    let is_link = sets.multibody_joints.rigid_body_link(parent).is_some();
-    (is_free && !is_link).then_some(parent)
+    is_free && sets.multibody_joints.rigid_body_link(handle).is_none()
 }
 
 /// Whether two colliders may push each other: what rapier's narrow phase asks of a pair, the user's hook included.

@@ -2,6 +2,7 @@
 
 use super::candidates::{self, Names};
 use super::claim::{ClaimedPair, Claims, claimable_parent};
+use super::joints::{self, RowWriter, Side, is_held_joint};
 use super::masters::Masters;
 use super::reading::{
     GatherError, at_rest, is_held_load, is_held_motion, law_of, load_of, offset_of, owner_of,
@@ -13,6 +14,7 @@ use super::shapes::{ShapeCache, pose_of};
 use crate::body::FlexBodySet;
 use crate::constraint::contact::Owner;
 use crate::constraint::geometry::Pose2;
+use crate::constraint::joint::JointMemory;
 use crate::kkt::{Island, KktError};
 use crate::math::{Vec2, from_rapier};
 use crate::rapier::prelude::*;
@@ -38,6 +40,8 @@ pub(crate) struct Gatherer {
     placed: HashMap<ColliderHandle, PlacedCollider>,
     block_of_body: HashMap<RigidBodyHandle, usize>,
     flex_blocks: HashMap<usize, usize>,
+    /// Multipliers of joints in the last step.
+    pub joint_memory: JointMemory,
     /// Claimed bodies of the island, by block.
     pub bodies: Vec<(usize, RigidBodyHandle)>,
 }
@@ -67,8 +71,10 @@ impl Gatherer {
     pub fn turn_over(&mut self, keeps: bool) {
         if keeps {
             self.references.turn_over();
+            self.joint_memory.turn_over();
         } else {
             self.references.discard_notes();
+            self.joint_memory.discard_notes();
         }
     }
 
@@ -125,6 +131,9 @@ impl Gatherer {
         for slot in 0..claims.pairs.len() {
             let pair = claims.pairs[slot];
             self.add_pair(pair, settings, sets, claims, island)?;
+        }
+        for slot in 0..claims.joints.len() {
+            self.add_joint(claims.joints[slot], settings, sets, claims, island)?;
         }
         Ok(())
     }
@@ -325,6 +334,65 @@ impl Gatherer {
             _ => {}
         }
         Ok(())
+    }
+
+    fn add_joint(
+        &mut self,
+        handle: ImpulseJointHandle,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        claims: &mut Claims,
+        island: &mut Island,
+    ) -> Result<(), GatherError> {
+        let Some(joint) = sets.impulse_joints.get(handle) else {
+            return Ok(());
+        };
+        let bodies = [joint.body1(), joint.body2()];
+        let claimed = bodies
+            .iter()
+            .find_map(|&body| claims.component_of_rigid(body));
+        if claimed != Some(settings.component) {
+            return Ok(());
+        }
+        if !is_held_joint(&joint.data) {
+            return Err(GatherError::Joint(handle));
+        }
+        let frames = [&joint.data.local_frame1, &joint.data.local_frame2];
+        let mut sides = [None; 2];
+        for ((side, body), frame) in sides.iter_mut().zip(bodies).zip(frames) {
+            let block = self.block_of(body, settings, sets, island);
+            let body = sets.bodies.get(body);
+            *side = block
+                .zip(body)
+                .map(|(block, body)| Side::new(block, body, frame));
+        }
+        let [Some(first), Some(second)] = sides else {
+            return Ok(());
+        };
+        let mut writer = RowWriter {
+            island,
+            memory: &self.joint_memory,
+            owner: joints::owner_of(handle),
+            sides: [first, second],
+            dt: settings.step.dt,
+        };
+        writer.write(&joint.data);
+        Ok(())
+    }
+
+    /// The block of a rigid body: its own if it is claimed, or one that moves as rapier says.
+    fn block_of(
+        &mut self,
+        handle: RigidBodyHandle,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) -> Option<usize> {
+        if let Some(&block) = self.block_of_body.get(&handle) {
+            return Some(block);
+        }
+        let block = prescribed_block(sets.bodies.get(handle)?, settings.step.dt);
+        Some(self.push_rigid(block, Some(handle), island))
     }
 
     fn component_of_pair(

@@ -5,8 +5,10 @@
 mod candidates;
 mod carrier;
 mod claim;
+mod claim_joints;
 mod gather;
 mod hand_back;
+mod joints;
 mod masters;
 mod nearby;
 mod places;

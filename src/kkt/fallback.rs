@@ -88,6 +88,7 @@ impl Island {
         summary.is_held = true;
         self.contacts.clear();
         self.pressed_before.clear();
+        self.ties.clear();
         for block in &mut self.blocks {
             match block {
                 Block::Flex(block) => block.hold(),

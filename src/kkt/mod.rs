@@ -12,6 +12,9 @@ mod fallback;
 mod forward;
 mod impact;
 mod island;
+mod joint_rows;
+mod joint_system;
+mod joint_velocity;
 mod momentum;
 mod multipliers;
 mod partner;
@@ -20,3 +23,4 @@ mod velocity;
 
 pub use impact::ImpactTreatment;
 pub use island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
+pub use joint_rows::ActiveJoint;

@@ -71,6 +71,7 @@ impl Island {
         self.is_working.clear();
         self.is_working.resize(self.candidates.len(), false);
         self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
+        self.open_joints(settings);
     }
 
     /// Newton's iterations; returns whether they converged.
@@ -86,7 +87,7 @@ impl Island {
         for iteration in 0..settings.max_newton {
             summary.n_newton = iteration + 1;
             let turned = self.correct();
-            let is_guess = iteration == 0 && !self.contacts.is_empty();
+            let is_guess = iteration == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let mut error = self.measure(is_guess || iteration >= GAPS_KEPT_FROM);
             // Under the last step's multipliers bodies may be anywhere: geometry counts if these are nearly right.
             let misleads = is_guess && error > NEAR * tolerance;
@@ -174,6 +175,7 @@ impl Island {
                 |block, node, force, lever| block.add_stage_force(node, force, lever, is_late),
             );
         }
+        self.spread_joints();
         let mut turned = 0.0f64;
         for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
             match block {
@@ -190,8 +192,8 @@ impl Island {
     /// The forces keep acting along the rows they have: gaps are true, and Newton's matrix is that of the rows. With
     /// `extrapolates` gaps follow the rows too, which always converges.
     pub(super) fn measure(&mut self, extrapolates: bool) -> f64 {
+        let mut error = self.measure_joints();
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
-        let mut error = 0.0f64;
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
             let at = moved(&contact.kinematics, &self.blocks);
@@ -236,6 +238,7 @@ impl Island {
             contact.kinematics.gap = gap;
             contact.known = None;
         }
+        self.refresh_joints();
     }
 
     /// Adds candidates that overlap now; returns whether there were any.

@@ -43,11 +43,14 @@ impl Island {
     /// Solves the impact law at the contacts that hold velocities, and gathers its impulses, which rigid bodies take at once;
     /// returns whether there are any.
     pub(super) fn impact_rows(&mut self, settings: &SolveSettings) -> Result<bool, KktError> {
+        self.kick_joints(settings);
         self.velocity_rows(settings);
-        if self.rows.is_empty() {
+        self.add_joint_velocities(settings);
+        if self.kinds.is_empty() {
             return Ok(false);
         }
         self.solve_rows()?;
+        self.take_joint_impulses();
         for (row, direction) in self.rows.iter().enumerate() {
             let contact = &mut self.contacts[direction.contact];
             let is_normal = direction.direction == contact.kinematics.normal;
@@ -71,6 +74,7 @@ impl Island {
                 Self::spread(blocks, kinematics, force, wrenches, |_, _, _, _| {});
             }
         }
+        self.add_soft_joints();
         self.set_soft_forces();
     }
 
@@ -88,6 +92,7 @@ impl Island {
                 |_, _, _, _| {},
             );
         }
+        self.add_soft_joints();
         self.set_soft_forces();
     }
 
@@ -115,6 +120,11 @@ impl Island {
                 }
             }
         }
+        Self::share_of(rigid, actual)
+    }
+
+    /// Maps a share of rigid mobility to [0, 1].
+    pub(super) fn share_of(rigid: f64, actual: f64) -> f64 {
         let share = if actual > 0.0 { rigid / actual } else { 0.0 };
         let t = ((share - RESOLVED) / (UNRESOLVED - RESOLVED)).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
@@ -205,9 +215,9 @@ impl Island {
 
     pub(super) fn solve_rows(&mut self) -> Result<(), KktError> {
         self.multipliers.clear();
-        self.multipliers.resize(self.rows.len(), 0.0);
+        self.multipliers.resize(self.kinds.len(), 0.0);
         self.statuses.clear();
-        self.statuses.resize(self.rows.len(), Status::Stick);
+        self.statuses.resize(self.kinds.len(), Status::Stick);
         self.solver.set_redundancy_tolerance(1e-6);
         let problem = Problem {
             delassus: &self.delassus,
@@ -243,6 +253,7 @@ impl Island {
                 |block, node, impulse, lever| block.gather_impulse(of, node, impulse, lever),
             );
         }
+        self.gather_joint_rows(of);
     }
 
     pub(super) fn clear_impulses(&mut self) {
@@ -287,6 +298,7 @@ impl Island {
     /// Unresolved contacts that stay closed keep no relative acceleration either, or their multipliers would alternate.
     fn settle_accelerations(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
         self.hard_accelerations(settings);
+        self.add_spring_forces(settings.dt);
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
@@ -316,7 +328,7 @@ impl Island {
                 self.kinds.push(RowKind::Bilateral);
             }
         }
-        if self.rows.is_empty() {
+        if self.rows.is_empty() && !self.has_soft_joints() {
             return Ok(());
         }
         let contacts = &self.contacts;
@@ -328,6 +340,7 @@ impl Island {
             &mut self.delassus,
         );
         self.soften();
+        self.add_joint_accelerations();
         self.solve_rows()?;
         self.gather_rows(Response::Acceleration);
         self.add_to_rigid(Response::Acceleration, 1.0);

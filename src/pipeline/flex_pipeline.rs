@@ -220,6 +220,9 @@ impl FlexPipeline {
         let dissipated = self.report.energy.dissipated;
         let step = self.check(&sets, flex_bodies)?;
         self.claims.look_ahead(&sets, flex_bodies);
+        if let Some(joint) = self.claims.joint_to_carrier(&sets) {
+            return Err(StepError::CarrierJoint(joint));
+        }
         let is_detected = step.dt == 0.0 || self.claims.needs_detection(&sets);
         clock.lap(&mut self.report.times.claim);
         if is_detected {

@@ -180,6 +180,37 @@ impl RigidBlock {
         mobility(&self.inverse_effective, at, from)
     }
 
+    /// How the unit wrench `at` moves along under the unit wrench `from`, `G A⁻¹ Gᵀ` (1/kg).
+    pub fn mobility_between(&self, at: [f64; 3], from: [f64; 3]) -> f64 {
+        let terms = at.iter().zip(from).zip(&self.inverse_effective);
+        terms.map(|((at, from), inverse)| at * inverse * from).sum()
+    }
+
+    /// Smooth acceleration at the end of the step, and what a wrench adds (m/s², rad/s²).
+    pub fn acceleration_under(&self, wrench: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| self.smooth_end[i] + self.inverse_effective[i] * wrench[i])
+    }
+
+    /// Velocity and spin at the current iterate (m/s, rad/s).
+    pub fn rates(&self) -> [f64; 3] {
+        let RigidMotion { velocity, spin, .. } = self.current;
+        [velocity.x, velocity.y, spin]
+    }
+
+    /// Work of an impulse that acted over the step, at the mean velocity (J).
+    pub fn work_of(&self, impulse: [f64; 3]) -> f64 {
+        let start = [
+            self.start.velocity.x,
+            self.start.velocity.y,
+            self.start.spin,
+        ];
+        let means = start
+            .iter()
+            .zip(self.rates())
+            .map(|(v, end)| 0.5 * (v + end));
+        means.zip(impulse).map(|(v, p)| v * p).sum()
+    }
+
     /// Velocity at the end of a lever (m/s).
     pub fn velocity(&self, lever: Vec2) -> Vec2 {
         self.current.velocity + self.current.spin * perp(lever)

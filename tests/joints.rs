@@ -1,0 +1,9 @@
+//! Joints and attachments: rapier's impulse joints on claimed bodies, and flexible bodies held by something.
+
+mod common;
+
+#[path = "joints/support.rs"]
+mod support;
+
+#[path = "joints/hinges.rs"]
+mod hinges;
