@@ -7,3 +7,6 @@ mod support;
 
 #[path = "joints/hinges.rs"]
 mod hinges;
+
+#[path = "joints/beside_rapier.rs"]
+mod beside_rapier;
