@@ -10,3 +10,6 @@ mod hinges;
 
 #[path = "joints/beside_rapier.rs"]
 mod beside_rapier;
+
+#[path = "joints/attachments.rs"]
+mod attachments;

@@ -1,5 +1,6 @@
 //! Flexible bodies: how they are described, what they remember, and the set that holds them.
 
+mod attachment;
 mod build;
 mod builder;
 mod contact_settings;
@@ -12,6 +13,11 @@ mod pin;
 mod set;
 mod state;
 
+pub(crate) use attachment::{Anchor, Choice, Plan, Shift};
+pub use attachment::{
+    Attachment, AttachmentBuilder, AttachmentError, AttachmentHandle, AttachmentKind,
+    AttachmentTarget,
+};
 pub use builder::{ContactInertia, FlexBodyBuilder};
 pub use contact_settings::ContactSettings;
 pub use error::{BuildError, FlexBodyError};

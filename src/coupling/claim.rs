@@ -3,6 +3,7 @@
 //! From every flexible body the contact graph is walked through dynamic rigid bodies; all that are reached belong to the
 //! flexible stage for this step. Fixed and kinematic bodies are met but not passed through.
 
+use super::claim_attachments::ClaimedAttachment;
 use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box};
 use super::sets::RapierSets;
 use crate::body::FlexBodySet;
@@ -49,6 +50,8 @@ pub(crate) struct Claims {
     pub pairs: Vec<ClaimedPair>,
     /// Impulse joints of claimed bodies, in the order they were reached.
     pub joints: Vec<ImpulseJointHandle>,
+    /// Attachments, in the order of their bodies' places.
+    pub attached: Vec<ClaimedAttachment>,
     pub(super) seen_joints: HashSet<ImpulseJointHandle>,
     pub(super) partners: Vec<(RigidBodyHandle, ImpulseJointHandle)>,
     /// Component of every member: flexible bodies first, then rigid ones.
@@ -117,6 +120,7 @@ impl Claims {
         for (slot, flex) in self.flex.iter().enumerate() {
             self.flex_of_collider.insert(flex.collider, slot);
         }
+        self.list_attachments(flex_bodies);
     }
 
     /// Finds what the swept boxes meet, with rapier's tree, after the detection step has taken over the user's changes.
@@ -176,6 +180,7 @@ impl Claims {
         self.seen.clear();
         self.parent.clear();
         self.parent.extend(0..self.flex.len());
+        self.claim_attached(sets);
         for flex in 0..self.flex.len() {
             self.collect_neighbours(sets, flex);
             for slot in 0..self.neighbours.len() {
@@ -218,8 +223,11 @@ impl Claims {
         self.neighbours
             .sort_unstable_by(|&one, &other| order_of_colliders(sets, one, other));
         self.neighbours.dedup();
-        self.neighbours
-            .retain(|&other| may_touch(sets, own.collider, other));
+        let mut neighbours = std::mem::take(&mut self.neighbours);
+        neighbours.retain(|&other| {
+            may_touch(sets, own.collider, other) && !self.attachment_forbids(sets, flex, other)
+        });
+        self.neighbours = neighbours;
     }
 
     fn add_flex_pair(&mut self, sets: &RapierSets<'_>, flex: usize, other: ColliderHandle) {

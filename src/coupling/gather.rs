@@ -2,7 +2,6 @@
 
 use super::candidates::{self, Names};
 use super::claim::{ClaimedPair, Claims, claimable_parent};
-use super::joints::{self, RowWriter, Side, is_held_joint};
 use super::masters::Masters;
 use super::reading::{
     GatherError, at_rest, is_held_load, is_held_motion, law_of, load_of, offset_of, owner_of,
@@ -132,9 +131,7 @@ impl Gatherer {
             let pair = claims.pairs[slot];
             self.add_pair(pair, settings, sets, claims, island)?;
         }
-        for slot in 0..claims.joints.len() {
-            self.add_joint(claims.joints[slot], settings, sets, claims, island)?;
-        }
+        self.add_joints(settings, sets, flex_bodies, claims, island)?;
         Ok(())
     }
 
@@ -237,7 +234,17 @@ impl Gatherer {
         Ok(())
     }
 
-    fn push_rigid(
+    /// The block of a rigid body that is in the island already.
+    pub(super) fn known_block(&self, handle: RigidBodyHandle) -> Option<usize> {
+        self.block_of_body.get(&handle).copied()
+    }
+
+    /// The block of a claimed flexible body.
+    pub(super) fn flex_block(&self, flex: usize) -> Option<usize> {
+        self.flex_blocks.get(&flex).copied()
+    }
+
+    pub(super) fn push_rigid(
         &mut self,
         block: RigidBlock,
         handle: Option<RigidBodyHandle>,
@@ -334,65 +341,6 @@ impl Gatherer {
             _ => {}
         }
         Ok(())
-    }
-
-    fn add_joint(
-        &mut self,
-        handle: ImpulseJointHandle,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
-        claims: &mut Claims,
-        island: &mut Island,
-    ) -> Result<(), GatherError> {
-        let Some(joint) = sets.impulse_joints.get(handle) else {
-            return Ok(());
-        };
-        let bodies = [joint.body1(), joint.body2()];
-        let claimed = bodies
-            .iter()
-            .find_map(|&body| claims.component_of_rigid(body));
-        if claimed != Some(settings.component) {
-            return Ok(());
-        }
-        if !is_held_joint(&joint.data) {
-            return Err(GatherError::Joint(handle));
-        }
-        let frames = [&joint.data.local_frame1, &joint.data.local_frame2];
-        let mut sides = [None; 2];
-        for ((side, body), frame) in sides.iter_mut().zip(bodies).zip(frames) {
-            let block = self.block_of(body, settings, sets, island);
-            let body = sets.bodies.get(body);
-            *side = block
-                .zip(body)
-                .map(|(block, body)| Side::new(block, body, frame));
-        }
-        let [Some(first), Some(second)] = sides else {
-            return Ok(());
-        };
-        let mut writer = RowWriter {
-            island,
-            memory: &self.joint_memory,
-            owner: joints::owner_of(handle),
-            sides: [first, second],
-            dt: settings.step.dt,
-        };
-        writer.write(&joint.data);
-        Ok(())
-    }
-
-    /// The block of a rigid body: its own if it is claimed, or one that moves as rapier says.
-    fn block_of(
-        &mut self,
-        handle: RigidBodyHandle,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
-        island: &mut Island,
-    ) -> Option<usize> {
-        if let Some(&block) = self.block_of_body.get(&handle) {
-            return Some(block);
-        }
-        let block = prescribed_block(sets.bodies.get(handle)?, settings.step.dt);
-        Some(self.push_rigid(block, Some(handle), island))
     }
 
     fn component_of_pair(

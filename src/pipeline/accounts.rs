@@ -45,11 +45,7 @@ impl FlexPipeline {
                 self.report.contacts.extend(report);
             }
         }
-        for slot in 0..self.island.ties.len() {
-            let tie = &self.island.ties[slot];
-            let memory = &mut self.gatherer.joint_memory;
-            memory.remember(tie.row.key, tie.multiplier);
-        }
+        self.note_joints(step, flex_bodies);
         let report = &mut self.report;
         report.gap_violation = report.gap_violation.max(summary.gap_violation);
         report.solver_residual = report.solver_residual.max(summary.residual);

@@ -1,6 +1,6 @@
 //! Why a step was not taken.
 
-use crate::body::{FlexBodyError, FlexBodyHandle};
+use crate::body::{AttachmentHandle, FlexBodyError, FlexBodyHandle};
 use crate::coupling::GatherError;
 use crate::integrator::IntegratorError;
 use crate::kkt::KktError;
@@ -52,6 +52,11 @@ pub enum StepError {
         "{0:?} holds on to the carrier of a flexible body, which moves with nothing: remove it and attach the body with `FlexBodySet::attach`"
     )]
     CarrierJoint(ImpulseJointHandle),
+    /// An explicit integrator cannot hold attachments.
+    #[error(
+        "{0:?} cannot be held by an integrator with beta0 = 0: choose one with beta0 > 0, pin nodes in the builder, or detach it"
+    )]
+    ExplicitAttachment(AttachmentHandle),
     /// A collider that touches a flexible body has a coefficient that is not finite.
     #[error(
         "{0:?} touches a flexible body, and its friction or restitution is not finite: set both to finite numbers"

@@ -1,11 +1,13 @@
 //! The pipeline: settings and buffers, no state of its own but the memory of contacts and claimed bodies.
 
 use super::error::StepError;
+use super::joint_accounts::drop_orphans;
 use super::report::StepReport;
 use crate::body::FlexBodySet;
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
-    Claims, GatherSettings, Gatherer, Landing, Masters, RapierSets, hand_back, land, write_surface,
+    Claims, GatherSettings, Gatherer, JointImpulse, Landing, Masters, RapierSets, hand_back, land,
+    write_impulses, write_surface,
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ImpactTreatment, Island, SolveSettings};
@@ -52,6 +54,7 @@ pub struct FlexPipeline {
     pub(super) island: Island,
     pub(super) landings: Vec<Landing>,
     pub(super) reserves: Vec<(u32, f64)>,
+    pub(super) joint_impulses: Vec<JointImpulse>,
     components: Vec<usize>,
     pub(super) report: StepReport,
 }
@@ -79,6 +82,7 @@ impl FlexPipeline {
             island: Island::default(),
             landings: Vec::new(),
             reserves: Vec::new(),
+            joint_impulses: Vec::new(),
             components: Vec::new(),
             report: StepReport::default(),
         }
@@ -219,11 +223,14 @@ impl FlexPipeline {
         let mut clock = Clock::start();
         let dissipated = self.report.energy.dissipated;
         let step = self.check(&sets, flex_bodies)?;
+        drop_orphans(&sets, flex_bodies);
         self.claims.look_ahead(&sets, flex_bodies);
         if let Some(joint) = self.claims.joint_to_carrier(&sets) {
             return Err(StepError::CarrierJoint(joint));
         }
-        let is_detected = step.dt == 0.0 || self.claims.needs_detection(&sets);
+        let is_detected = step.dt == 0.0
+            || self.claims.needs_detection(&sets)
+            || self.claims.has_attached_bodies(&sets);
         clock.lap(&mut self.report.times.claim);
         if is_detected {
             sets.detect();
@@ -253,6 +260,8 @@ impl FlexPipeline {
         self.report.note_quarantine(&sets);
         clock.lap(&mut self.report.times.rapier);
         land(&self.landings, &mut sets, &mut self.masters);
+        write_impulses(&self.joint_impulses, &mut sets);
+        self.commit_attachments(flex_bodies);
         self.commit(&mut sets, flex_bodies);
         clock.lap(&mut self.report.times.hand_back);
         Ok(&self.report)
@@ -268,6 +277,7 @@ impl FlexPipeline {
     ) -> Result<(), StepError> {
         self.landings.clear();
         self.reserves.clear();
+        self.joint_impulses.clear();
         self.memory.discard_notes();
         self.gatherer.turn_over(false);
         self.components.clear();

@@ -23,7 +23,7 @@ pub fn claimed_anchor(scene: &mut Scene) -> RigidBodyHandle {
                     .density(100.0)
                     .rayleigh(1e-3),
             )
-            .translation([100.0, 0.125]),
+            .translation([99.875, 0.0]),
     );
     anchor
 }
