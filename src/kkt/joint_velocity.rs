@@ -107,10 +107,13 @@ impl Island {
     fn joint_rate(&self, tie: &ActiveJoint) -> f64 {
         self.along(tie, |block, grip| match block {
             Block::Rigid(block) => block.rates(),
-            Block::Flex(_) => {
-                let velocity = block.velocity(grip.grip());
-                [velocity.x, velocity.y, 0.0]
-            }
+            Block::Flex(flex) => match grip.point {
+                Point::Node(node) => {
+                    let velocity = flex.joint_velocity(node);
+                    [velocity.x, velocity.y, 0.0]
+                }
+                Point::Arm(_) => [0.0; 3],
+            },
         })
     }
 
