@@ -13,3 +13,9 @@ mod beside_rapier;
 
 #[path = "joints/attachments.rs"]
 mod attachments;
+
+#[path = "joints/forces.rs"]
+mod forces;
+
+#[path = "joints/coming_and_going.rs"]
+mod coming_and_going;

@@ -228,11 +228,6 @@ impl FlexBlock {
         self.frame.centre
     }
 
-    /// Spin of the frame at the iterate (rad/s).
-    pub fn spin(&self) -> f64 {
-        self.frame.spin
-    }
-
     /// Centre of mass at the beginning of the step, if the body moves freely (m).
     pub fn start_centre(&self) -> Option<Vec2> {
         (self.kind == Frame::Free).then_some(self.start_frame.centre)

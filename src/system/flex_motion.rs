@@ -45,6 +45,11 @@ impl FlexBlock {
         self.carried(node, |node| node_vec(&self.velocity, node))
     }
 
+    /// Spin of the frame at the iterate (rad/s).
+    pub fn spin(&self) -> f64 {
+        self.frame.spin
+    }
+
     /// Velocity of the material at a node (m/s): that of the mass around a massless one, turned on to where the node is.
     pub fn joint_velocity(&self, node: usize) -> Vec2 {
         let support = self.carried(node, |node| node_vec(&self.position, node));

@@ -138,17 +138,6 @@ fn bar(scene: &mut Scene, from: [f64; 2], to: [f64; 2]) -> RigidBodyHandle {
     body
 }
 
-/// Distance of a joint's anchors (m).
-fn gap(scene: &Scene, joint: &ImpulseJoint) -> f64 {
-    let anchor = |body: RigidBodyHandle, frame: &Pose| {
-        let at = *scene.world.bodies[body].position() * frame.translation;
-        [f64::from(at.x), f64::from(at.y)]
-    };
-    let one = anchor(joint.body1(), &joint.data.local_frame1);
-    let other = anchor(joint.body2(), &joint.data.local_frame2);
-    (one[0] - other[0]).hypot(one[1] - other[1])
-}
-
 #[test]
 fn free_bodies_joined_together_keep_momentum_and_angular_momentum() {
     let mut scene = Scene::in_free_space(DT);

@@ -60,3 +60,14 @@ pub fn angle(scene: &Scene, body: RigidBodyHandle) -> f64 {
     let turn = scene.world.bodies[body].rotation();
     f64::from(turn.im).atan2(f64::from(turn.re))
 }
+
+/// Distance of a joint's anchors (m).
+pub fn gap(scene: &Scene, joint: &ImpulseJoint) -> f64 {
+    let anchor = |body: RigidBodyHandle, frame: &Pose| {
+        let at = *scene.world.bodies[body].position() * frame.translation;
+        [f64::from(at.x), f64::from(at.y)]
+    };
+    let one = anchor(joint.body1(), &joint.data.local_frame1);
+    let other = anchor(joint.body2(), &joint.data.local_frame2);
+    (one[0] - other[0]).hypot(one[1] - other[1])
+}
