@@ -199,6 +199,8 @@ pub struct Island {
     pub(super) joint_rows: Vec<usize>,
     pub(super) joint_slot: Vec<usize>,
     pub(super) joint_answer: Vec<f64>,
+    /// Stiffness against turning by the joints' forces, by block (N m/rad), then the torque that it made (N m).
+    pub(super) twists: Vec<f64>,
     pub(super) is_working: Vec<bool>,
     pub(super) rows: Vec<RowDirection>,
     pub(super) kinds: Vec<RowKind>,
@@ -248,6 +250,7 @@ impl Island {
         let allowance = self.external_work();
         let treatment = settings.treatment();
         treatment.finish(self, settings, &mut summary)?;
+        self.settle_damping();
         let joint_work = self.joint_work(settings);
         let allowance = allowance + joint_work;
         summary.work = self.actual_work(settings) + joint_work;

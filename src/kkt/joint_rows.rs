@@ -105,6 +105,9 @@ struct Resolved {
 impl Island {
     /// Puts every joint row to work, with the multipliers of the last step.
     pub(super) fn open_joints(&mut self, settings: &SolveSettings) {
+        if !self.ties.is_empty() {
+            self.relax_turns();
+        }
         self.ties.clear();
         if self.joints.is_empty() {
             return;
@@ -146,6 +149,7 @@ impl Island {
         self.applied_grips.clear();
         self.applied_grips.extend_from_slice(&self.joint_grips);
         self.list_holders();
+        self.stiffen_turns(settings);
     }
 
     /// Makes the compliances of a row's nodes known; returns whether there are none.

@@ -20,6 +20,7 @@ impl Island {
         if self.ties.is_empty() {
             return;
         }
+        self.kick_turns(settings);
         self.aim_joints_at_end();
         for index in 0..self.ties.len() {
             let tie = &mut self.ties[index];
@@ -345,6 +346,21 @@ impl Island {
             .solve(&problem, &mut self.joint_answer, &mut self.statuses)?;
         self.multipliers.extend_from_slice(&self.joint_answer);
         Ok(())
+    }
+
+    /// Lets the damping of rigid blocks in joints know the velocities that the joints have left.
+    pub(super) fn settle_damping(&mut self) {
+        if self.ties.is_empty() {
+            return;
+        }
+        let mut last = None;
+        for &(block, _) in &self.holders {
+            if last.replace(block) != Some(block)
+                && let Block::Rigid(block) = &mut self.blocks[block]
+            {
+                block.settle_damping();
+            }
+        }
     }
 
     /// Work of the joints on what is not prescribed (J): nothing but for motors, springs and driven bodies.

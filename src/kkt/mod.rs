@@ -14,6 +14,7 @@ mod impact;
 mod island;
 mod joint_rows;
 mod joint_system;
+mod joint_twist;
 mod joint_velocity;
 mod momentum;
 mod multipliers;

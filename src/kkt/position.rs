@@ -50,6 +50,9 @@ impl Island {
         if !self.iterate(settings, memory, tolerance, summary) {
             self.fall_back(settings, memory, tolerance, summary);
         }
+        if !self.ties.is_empty() {
+            self.relax_turns();
+        }
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {
                 block.place_velocities();

@@ -50,6 +50,11 @@ pub struct RigidBlock {
     weights: Weights,
     dt: f64,
     is_prescribed: bool,
+    /// Stiffness against turning within the step (N m/rad), and the free angle and inverse inertia without it.
+    twist: f64,
+    untwisted: [f64; 2],
+    /// The end velocity that damping was reckoned with (m/s, m/s, rad/s).
+    damped_velocity: [f64; 3],
 }
 
 /// Data of a free rigid body for one step.
@@ -79,6 +84,9 @@ impl RigidBlock {
             weights: Weights::default(),
             dt: 0.0,
             is_prescribed: true,
+            twist: 0.0,
+            untwisted: [0.0; 2],
+            damped_velocity: [0.0; 3],
         }
     }
 
@@ -138,6 +146,9 @@ impl RigidBlock {
             weights,
             dt,
             is_prescribed: false,
+            twist: 0.0,
+            untwisted: [0.0; 2],
+            damped_velocity: v,
         }
     }
 
@@ -221,6 +232,36 @@ impl RigidBlock {
         Vec2::new(self.smooth_end[0], self.smooth_end[1]) + self.smooth_end[2] * perp(lever)
     }
 
+    /// Lets a torque `-k (θ' - θ)` act within the position stage: what pulls at levers resists turning.
+    ///
+    /// `mobility` is what the multipliers move positions by, over `A⁻¹` (s²).
+    pub fn stiffen(&mut self, twist: f64, mobility: f64) {
+        if self.is_prescribed || self.inverse_effective[2] <= 0.0 {
+            return;
+        }
+        self.twist = twist;
+        self.untwisted = [self.free.angle, self.inverse_effective[2]];
+        let share = 1.0 / (1.0 + mobility * twist * self.inverse_effective[2]);
+        self.inverse_effective[2] *= share;
+        self.free.angle = self.start.angle + share * (self.free.angle - self.start.angle);
+    }
+
+    /// Ends what [`RigidBlock::stiffen`] began; returns the torque that acted (N m).
+    pub fn relax(&mut self) -> f64 {
+        if self.twist == 0.0 {
+            return 0.0;
+        }
+        let torque = -self.twist * (self.current.angle - self.start.angle);
+        self.twist = 0.0;
+        [self.free.angle, self.inverse_effective[2]] = self.untwisted;
+        torque
+    }
+
+    /// Inverse inertia with damping (1/(kg m²)).
+    pub fn turning_mobility(&self) -> f64 {
+        self.inverse_effective[2]
+    }
+
     /// Moves the iterate away from the free motion by what a wrench does.
     pub fn set_position_increment(&mut self, wrench: [f64; 3]) {
         // With β0 = 0 the multiplier is an impulse at the forward increment.
@@ -262,6 +303,23 @@ impl RigidBlock {
         self.current.spin = self.free.spin + b1 * change[2];
         for (sum, change) in self.smooth_end.iter_mut().zip(change) {
             *sum += change;
+        }
+        self.damped_velocity = self.rates();
+    }
+
+    /// Lets damping act on the end velocity as it has become, instead of what it would have been without joints.
+    pub fn settle_damping(&mut self) {
+        if self.is_prescribed || self.inverse_effective == self.inverse_mass {
+            return;
+        }
+        let end = self.rates();
+        for i in 0..3 {
+            if self.inverse_effective[i] > 0.0 {
+                // inverse / effective = 1 + b1 c
+                let slowed = self.inverse_mass[i] / self.inverse_effective[i] - 1.0;
+                let damping = slowed / self.weights.b1;
+                self.smooth_end[i] -= damping * (end[i] - self.damped_velocity[i]);
+            }
         }
     }
 

@@ -243,9 +243,7 @@ fn a_chain_bridge_of_100_links_carries_a_flexible_plank() {
             .friction(0.8),
     );
     let links_mass = |scene: &Scene| links.iter().map(|&body| scene.mass(body)).sum::<f64>();
-    for _ in 0..2400 {
-        scene.step();
-    }
+    scene.steps(2400);
     assert_eq!(scene.report().n_claimed(), 100);
     let weight = G * (links_mass(&scene) + scene.body(plank).mass());
     let [left, right] = [report(&scene, first).force, report(&scene, last).force];
