@@ -343,7 +343,7 @@ impl Island {
             rows: &self.kinds,
         };
         self.solver
-            .solve(&problem, &mut self.joint_answer, &mut self.statuses)?;
+            .solve_condensed(&problem, &mut self.joint_answer, &mut self.statuses)?;
         self.multipliers.extend_from_slice(&self.joint_answer);
         Ok(())
     }

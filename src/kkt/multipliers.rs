@@ -48,9 +48,9 @@ impl Island {
             free: &self.free,
             rows: &self.kinds,
         };
-        let outcome = self
-            .solver
-            .solve(&problem, &mut self.multipliers, &mut self.statuses)?;
+        let outcome =
+            self.solver
+                .solve_condensed(&problem, &mut self.multipliers, &mut self.statuses)?;
         summary.n_pivots += outcome.n_pivots;
         summary.residual = outcome.residual;
         for (row, direction) in self.rows.iter().enumerate() {

@@ -225,7 +225,7 @@ impl Island {
             rows: &self.kinds,
         };
         self.solver
-            .solve(&problem, &mut self.multipliers, &mut self.statuses)?;
+            .solve_condensed(&problem, &mut self.multipliers, &mut self.statuses)?;
         Ok(())
     }
 

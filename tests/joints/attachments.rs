@@ -311,6 +311,32 @@ fn a_removed_attachment_lets_go_and_its_handle_is_stale() {
 }
 
 #[test]
+fn a_body_that_hangs_on_a_beam_at_rest_falls_when_it_is_let_go() {
+    let mut scene = Scene::new(DT);
+    let beam = scene.flexible(beam());
+    let clamp = AttachmentBuilder::weld(beam).where_(is_left_end).to_world();
+    attach(&mut scene, clamp);
+    // It may sleep, as rapier sees nothing that holds it.
+    let (ball, _) = scene.world.insert(
+        RigidBodyBuilder::dynamic().translation(vec2(2.0, -0.5)),
+        ColliderBuilder::ball(0.1).mass(20.0),
+    );
+    let hang = AttachmentBuilder::pin(beam)
+        .where_(|[x, y]| x > 1.999 && y < 1e-9)
+        .to_rigid_body(ball);
+    let hang = attach(&mut scene, hang);
+    scene.steps(1200);
+    let rest = position(&scene, ball)[1];
+    let pull = reaction(&scene, hang).0[1];
+    assert!((pull / (-20.0 * G) - 1.0).abs() < 1e-3, "{pull}");
+    scene.bodies.detach(hang).expect("it lives");
+    scene.world.bodies[ball].wake_up(true);
+    scene.steps(60);
+    let fallen = position(&scene, ball)[1] - rest;
+    assert!((fallen / (-0.125 * G) - 1.0).abs() < 0.05, "{fallen}");
+}
+
+#[test]
 fn wrong_descriptions_are_refused() {
     let mut scene = Scene::new(DT);
     let one = scene.flexible(beam());

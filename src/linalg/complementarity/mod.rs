@@ -31,6 +31,7 @@
 //! ```
 
 mod active_set;
+mod condense;
 mod dense;
 mod gauss_seidel;
 mod krylov;
@@ -44,6 +45,7 @@ pub use problem::{ComplementarityError, Problem, RowKind, Status};
 pub use residual::natural_map_residual;
 
 use active_set::{ActiveSet, Redundancy};
+use condense::Condensed;
 use lemke::Lemke;
 use problem::Checked;
 use residual::measure;
@@ -131,6 +133,7 @@ pub struct Solver {
     best: Answer,
     trial: Vec<f64>,
     status: Vec<Status>,
+    condensed: Condensed,
 }
 
 impl Default for Solver {
@@ -143,6 +146,7 @@ impl Default for Solver {
             best: Answer::default(),
             trial: Vec::new(),
             status: Vec::new(),
+            condensed: Condensed::default(),
         }
     }
 }
