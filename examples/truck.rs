@@ -83,7 +83,10 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
     for step in 0..options.n_steps(STAND + DRIVE) {
         if step == STAND {
             outcome.compression_ratios = wheels.map(|(wheel, _)| {
-                let down = world.bodies[wheel].translation() - world.bodies[chassis].translation();
+                // Along the chassis, which leans a little.
+                let body = &world.bodies[chassis];
+                let down = world.bodies[wheel].translation() - body.translation();
+                let down = body.rotation().inverse() * down;
                 let pressed = f64::from(down.y) + 0.7;
                 pressed * 2.0 * STIFFNESS / (CHASSIS * GRAVITY)
             });

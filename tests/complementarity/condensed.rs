@@ -42,10 +42,7 @@ fn condensed_problems_have_the_answer_of_the_whole() {
         assert!(outcome.residual < 1e-10 && condensed.residual < 1e-10);
         // Rounding, times the condition of random matrices.
         let residual = natural_map_residual(&case.problem(), &multipliers);
-        assert!(
-            residual.is_ok_and(|residual| residual < 1e-9),
-            "{residual:?}"
-        );
+        assert!(residual < 1e-9, "{residual:e}");
         let size = whole.iter().fold(0.0f64, |size, p| size.max(p.abs()));
         for (one, other) in whole.iter().zip(&multipliers) {
             assert!(
