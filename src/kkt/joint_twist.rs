@@ -6,6 +6,7 @@
 //! does not resolve is damped. The stiffness is that of the last step's forces, so that the problem stays linear.
 
 use super::island::{Island, SolveSettings};
+use super::joint_rows::ActiveJoint;
 use crate::constraint::joint::{JointLaw, unit_wrench};
 use crate::system::Block;
 
@@ -15,6 +16,16 @@ const RESOLVED: f64 = 1.0;
 impl Island {
     /// Finds the stiffness that the last step's forces give against turning, and gives the blocks their share of it.
     pub(super) fn stiffen_turns(&mut self, settings: &SolveSettings) {
+        self.stiffen_by(settings, |tie| tie.row.remembered);
+    }
+
+    /// The same from the forces of this iterate, where those of the last step were far off, as in an impact.
+    pub(super) fn restiffen_turns(&mut self, settings: &SolveSettings) {
+        self.relax_turns();
+        self.stiffen_by(settings, |tie| tie.multiplier);
+    }
+
+    fn stiffen_by(&mut self, settings: &SolveSettings, multiplier: impl Fn(&ActiveJoint) -> f64) {
         self.twists.clear();
         self.twists.resize(self.blocks.len(), 0.0);
         let scale = 2.0 * settings.b0 / (settings.dt * settings.dt);
@@ -31,7 +42,7 @@ impl Island {
                 .iter()
                 .filter(|tie| is_hinge && tie.is_hard)
             {
-                let force = scale * tie.row.remembered;
+                let force = scale * multiplier(tie);
                 for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {
                     let [x, y, _] = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
                     self.twists[grip.block] += force * (grip.lever.x * x + grip.lever.y * y);

@@ -19,6 +19,9 @@ const ROWS_KEPT_FROM: usize = 2;
 /// Iteration from which gaps are extrapolated along the rows.
 const GAPS_KEPT_FROM: usize = 12;
 
+/// Iterations after which the stiffness of hinged bodies against turning is found anew.
+const RESTIFFENED_EVERY: usize = 5;
+
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
 
@@ -109,6 +112,12 @@ impl Island {
                 return false;
             }
             if iteration + 1 < settings.max_newton {
+                let has_joints = !self.ties.is_empty();
+                if has_joints && iteration > 0 && iteration % RESTIFFENED_EVERY == 0 {
+                    self.restiffen_turns(settings);
+                    self.correct();
+                    self.measure(iteration >= GAPS_KEPT_FROM);
+                }
                 let refreshes = iteration < ROWS_KEPT_FROM && !misleads;
                 if refreshes {
                     self.refresh_rows();

@@ -176,6 +176,15 @@ impl RigidBlock {
         }
     }
 
+    /// How far the body has turned beyond what its own spin would have done (rad).
+    pub fn excess_turn(&self) -> f64 {
+        if self.is_prescribed {
+            return 0.0;
+        }
+        let turned = (self.current.angle - self.start.angle).abs();
+        turned - (self.dt * self.start.spin).abs()
+    }
+
     /// Whether the motion is given.
     pub fn is_prescribed(&self) -> bool {
         self.is_prescribed
@@ -312,13 +321,12 @@ impl RigidBlock {
         if self.is_prescribed || self.inverse_effective == self.inverse_mass {
             return;
         }
-        let end = self.rates();
-        for i in 0..3 {
+        for (i, end) in self.rates().into_iter().enumerate() {
             if self.inverse_effective[i] > 0.0 {
                 // inverse / effective = 1 + b1 c
                 let slowed = self.inverse_mass[i] / self.inverse_effective[i] - 1.0;
                 let damping = slowed / self.weights.b1;
-                self.smooth_end[i] -= damping * (end[i] - self.damped_velocity[i]);
+                self.smooth_end[i] -= damping * (end - self.damped_velocity[i]);
             }
         }
     }
