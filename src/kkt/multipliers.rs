@@ -43,14 +43,19 @@ impl Island {
         self.add_joint_positions(settings, has_new_rows);
         let redundancy = self.redundancy_tolerance(tolerance / settings.b0);
         self.solver.set_redundancy_tolerance(redundancy);
+        let has_joints = self.kinds.len() > self.rows.len();
         let problem = Problem {
             delassus: &self.delassus,
             free: &self.free,
             rows: &self.kinds,
         };
-        let outcome =
+        let outcome = (if has_joints {
             self.solver
-                .solve_condensed(&problem, &mut self.multipliers, &mut self.statuses)?;
+                .solve_condensed(&problem, &mut self.multipliers, &mut self.statuses)
+        } else {
+            self.solver
+                .solve(&problem, &mut self.multipliers, &mut self.statuses)
+        })?;
         summary.n_pivots += outcome.n_pivots;
         summary.residual = outcome.residual;
         for (row, direction) in self.rows.iter().enumerate() {

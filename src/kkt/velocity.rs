@@ -219,13 +219,19 @@ impl Island {
         self.statuses.clear();
         self.statuses.resize(self.kinds.len(), Status::Stick);
         self.solver.set_redundancy_tolerance(1e-6);
+        let has_joints = self.kinds.len() > self.rows.len();
         let problem = Problem {
             delassus: &self.delassus,
             free: &self.free,
             rows: &self.kinds,
         };
-        self.solver
-            .solve_condensed(&problem, &mut self.multipliers, &mut self.statuses)?;
+        (if has_joints {
+            self.solver
+                .solve_condensed(&problem, &mut self.multipliers, &mut self.statuses)
+        } else {
+            self.solver
+                .solve(&problem, &mut self.multipliers, &mut self.statuses)
+        })?;
         Ok(())
     }
 
