@@ -29,7 +29,8 @@ pub mod system;
 /// What most programs need.
 pub mod prelude {
     pub use crate::body::{
-        ContactInertia, FlexBody, FlexBodyBuilder, FlexBodyHandle, FlexBodySet, Pin,
+        Attachment, AttachmentBuilder, AttachmentHandle, ContactInertia, FlexBody, FlexBodyBuilder,
+        FlexBodyHandle, FlexBodySet, Pin,
     };
     pub use crate::fe::material::{LinearElastic, Material};
     pub use crate::fe::mesh::{CellKind, Mesh};

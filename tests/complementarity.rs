@@ -1,5 +1,7 @@
 //! The complementarity solver against closed forms, enumeration, symmetry and its own residual.
 
+#[path = "complementarity/condensed.rs"]
+mod condensed;
 #[path = "complementarity/enumeration.rs"]
 mod enumeration;
 #[path = "complementarity/hand_cases.rs"]

@@ -13,6 +13,12 @@ mod cantilever;
 mod custom_element;
 #[path = "../examples/falling_block.rs"]
 mod falling_block;
+#[path = "../examples/grab.rs"]
+mod grab;
+#[path = "../examples/gripper.rs"]
+mod gripper;
+#[path = "../examples/truck.rs"]
+mod truck;
 #[path = "../examples/two_blocks.rs"]
 mod two_blocks;
 
@@ -146,6 +152,47 @@ fn a_users_own_element_conforms_and_locks_as_its_theory_says() -> Outcome {
     Ok(())
 }
 
+/// Equilibrium of a block that hangs on a spring, and on the floor afterwards.
+#[test]
+fn a_mouse_spring_holds_a_block_by_its_weight() -> Outcome {
+    let outcome = grab::run(&grab::cli::Options::default())?;
+    // It still swings a little after eight seconds.
+    assert_within("spring / weight", outcome.force_over_weight, 1.0, 1e-2);
+    assert_within("stretch", outcome.stretch_ratio, 1.0, 1e-2);
+    assert_within("floor / weight", outcome.floor_over_weight, 1.0, 1e-2);
+    assert_within("height", outcome.rest_height_m, 0.25, 0.01);
+    Ok(())
+}
+
+/// Motors at their bounds grip with it, friction carries the weight, and the part rises with the hand but for the fingers' shear.
+#[test]
+fn two_fingers_grip_with_their_motors_force_and_lift_by_friction() -> Outcome {
+    let outcome = gripper::run(&gripper::cli::Options::default())?;
+    for grip in outcome.grip_ratios {
+        assert_within("grip / motor", grip, 1.0, 1e-2);
+    }
+    assert_within("friction / weight", outcome.lift_over_weight, 1.0, 1e-2);
+    assert!(outcome.used_friction < 1.0, "{outcome:?}");
+    assert_within("rise", outcome.rise_ratio, 1.0, 0.02);
+    Ok(())
+}
+
+/// Statics of the springs, and a drive across at the speed of the rims.
+#[test]
+fn a_truck_on_springs_crosses_a_flexible_deck() -> Outcome {
+    let outcome = truck::run(&truck::cli::Options::default())?;
+    for pressed in outcome.compression_ratios {
+        assert_within("compression", pressed, 1.0, 1e-2);
+    }
+    assert_within("speed", outcome.speed_ratio, 1.0, 0.02);
+    assert!(outcome.reached_m > 8.0, "{outcome:?}");
+    assert!(
+        outcome.deepest_sag_m > 1e-3 && outcome.deepest_sag_m < 0.1,
+        "{outcome:?}"
+    );
+    Ok(())
+}
+
 /// `--steps 3` is for smoke tests: it must not trip over motion that has not happened yet.
 #[test]
 fn every_example_runs_shortened() -> Outcome {
@@ -155,5 +202,8 @@ fn every_example_runs_shortened() -> Outcome {
     box_on_beam::run(&box_on_beam::cli::Options { json: true, steps })?;
     two_blocks::run(&two_blocks::cli::Options { json: true, steps })?;
     custom_element::run(&custom_element::cli::Options { json: true, steps })?;
+    grab::run(&grab::cli::Options { json: true, steps })?;
+    gripper::run(&gripper::cli::Options { json: true, steps })?;
+    truck::run(&truck::cli::Options { json: true, steps })?;
     Ok(())
 }

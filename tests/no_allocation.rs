@@ -254,6 +254,45 @@ fn a_flexible_block_on_a_flexible_beam_allocates_nothing() -> Result<(), BuildEr
 }
 
 #[test]
+fn joints_and_attachments_allocate_nothing() -> Result<(), BuildError> {
+    let mut warm = Warm::new().with(beam())?;
+    let small = FlexBodyBuilder::rectangle([0.5, 0.5], [4, 4])
+        .material(rubber())
+        .translation([-0.23, 2.5]);
+    let small = warm.flex_bodies.insert(small, &mut warm.world)?;
+    // A box on the beam, two more on hinges and a motor from it, and a block welded to the last.
+    let bodies: Vec<RigidBodyHandle> = [[0.0, 1.501], [0.6, 1.9], [0.02, 2.3]]
+        .into_iter()
+        .map(|[x, y]| {
+            let body = RigidBodyBuilder::dynamic().translation(Vector::new(x, y));
+            let shape = ColliderBuilder::cuboid(0.2, 0.2).density(300.0);
+            warm.world.insert(body, shape).0
+        })
+        .collect();
+    let hinge = RevoluteJointBuilder::new()
+        .local_anchor1(Vector::new(0.3, 0.2))
+        .local_anchor2(Vector::new(-0.3, -0.2))
+        .motor_position(0.0, 500.0, 50.0);
+    warm.world
+        .impulse_joints
+        .insert(bodies[0], bodies[1], hinge, true);
+    let weld = FixedJointBuilder::new()
+        .local_anchor1(Vector::new(-0.3, 0.2))
+        .local_anchor2(Vector::new(0.28, -0.2));
+    warm.world
+        .impulse_joints
+        .insert(bodies[1], bodies[2], weld, true);
+    let weld = AttachmentBuilder::weld(small)
+        .where_(|[_, y]| y == 0.0)
+        .to_rigid_body(bodies[2]);
+    warm.flex_bodies
+        .attach(weld, &warm.world.bodies)
+        .expect("the description is right");
+    warm.assert_quiet("joints", 600, 1);
+    Ok(())
+}
+
+#[test]
 fn explicit_steps_allocate_nothing() -> Result<(), BuildError> {
     for inertia in [ContactInertia::Redistributed, ContactInertia::Kept] {
         let mut warm = Warm::new();

@@ -251,12 +251,12 @@ impl FlexBody {
         Ok(self.stress()?.iter().map(Stress::von_mises).collect())
     }
 
-    /// Contact force on a node in the last step (N).
+    /// Force of contacts and attachments on a node in the last step (N).
     pub fn contact_force(&self, node: usize) -> [f64; 2] {
         node_vec(&self.contact_force, node).into()
     }
 
-    /// Sum of the contact forces of the last step (N).
+    /// Sum of the forces of contacts and attachments in the last step (N).
     pub fn total_contact_force(&self) -> [f64; 2] {
         sum_of_nodes(&self.contact_force).into()
     }

@@ -1,5 +1,6 @@
 //! Flexible bodies: how they are described, what they remember, and the set that holds them.
 
+mod attachment;
 mod build;
 mod builder;
 mod contact_settings;
@@ -13,6 +14,11 @@ mod set;
 mod state;
 mod steering;
 
+pub(crate) use attachment::{Anchor, Choice, Plan, Shift};
+pub use attachment::{
+    Attachment, AttachmentBuilder, AttachmentError, AttachmentHandle, AttachmentKind,
+    AttachmentTarget,
+};
 pub use builder::{ContactInertia, FlexBodyBuilder};
 pub use contact_settings::ContactSettings;
 pub use error::{BuildError, FlexBodyError};

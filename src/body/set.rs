@@ -1,5 +1,6 @@
 //! The set of all flexible bodies of a world, with generational handles.
 
+use super::attachment::{AttachmentTarget, Attachments};
 use super::error::FlexBodyError;
 use super::flex_body::FlexBody;
 use super::handle::FlexBodyHandle;
@@ -16,6 +17,7 @@ pub struct FlexBodySet {
     id: u32,
     slots: Vec<Slot>,
     vacant: Vec<u32>,
+    attachments: Attachments,
 }
 
 #[derive(Debug)]
@@ -37,6 +39,7 @@ impl FlexBodySet {
             id: NEXT_SET.fetch_add(1, Ordering::Relaxed),
             slots: Vec::new(),
             vacant: Vec::new(),
+            attachments: Attachments::default(),
         }
     }
 
@@ -161,7 +164,22 @@ impl FlexBodySet {
         let body = slot.body.take().ok_or(FlexBodyError::Stale(handle))?;
         slot.generation += 1;
         self.vacant.push(handle.index);
+        self.attachments.retain(|attachment| {
+            attachment.body() != handle && attachment.target() != AttachmentTarget::Flexible(handle)
+        });
         Ok(body)
+    }
+
+    pub(crate) fn attachments(&self) -> &Attachments {
+        &self.attachments
+    }
+
+    pub(crate) fn attachments_mut(&mut self) -> &mut Attachments {
+        &mut self.attachments
+    }
+
+    pub(crate) fn id(&self) -> u32 {
+        self.id
     }
 
     fn check(&self, handle: FlexBodyHandle) -> Result<(), FlexBodyError> {

@@ -3,6 +3,7 @@
 //! From every flexible body the contact graph is walked through dynamic rigid bodies; all that are reached belong to the
 //! flexible stage for this step. Fixed and kinematic bodies are met but not passed through.
 
+use super::claim_attachments::ClaimedAttachment;
 use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box};
 use super::sets::RapierSets;
 use super::sleep::Sleeper;
@@ -48,6 +49,12 @@ pub(crate) struct Claims {
     pub rigid: Vec<RigidBodyHandle>,
     /// Pairs that may touch.
     pub pairs: Vec<ClaimedPair>,
+    /// Impulse joints of claimed bodies, in the order they were reached.
+    pub joints: Vec<ImpulseJointHandle>,
+    /// Attachments, in the order of their bodies' places.
+    pub attached: Vec<ClaimedAttachment>,
+    pub(super) seen_joints: HashSet<ImpulseJointHandle>,
+    pub(super) partners: Vec<(RigidBodyHandle, ImpulseJointHandle)>,
     /// Component of every member: flexible bodies first, then rigid ones.
     parent: Vec<usize>,
     rigid_index: HashMap<RigidBodyHandle, usize>,
@@ -127,6 +134,7 @@ impl Claims {
         for (slot, flex) in self.flex.iter().enumerate() {
             self.flex_of_collider.insert(flex.collider, slot);
         }
+        self.list_attachments(flex_bodies);
     }
 
     /// Finds what the swept boxes meet, with rapier's tree, after the detection step has taken over the user's changes.
@@ -182,9 +190,12 @@ impl Claims {
         self.rigid.clear();
         self.rigid_index.clear();
         self.pairs.clear();
+        self.joints.clear();
+        self.seen_joints.clear();
         self.seen.clear();
         self.parent.clear();
         self.parent.extend(0..self.flex.len());
+        self.claim_attached(sets);
         for flex in 0..self.flex.len() {
             self.collect_neighbours(sets, flex);
             for slot in 0..self.neighbours.len() {
@@ -201,6 +212,7 @@ impl Claims {
             for &collider in body.colliders() {
                 self.add_rigid_pairs(sets, handle, collider);
             }
+            self.add_joints(sets, handle);
         }
     }
 
@@ -226,8 +238,11 @@ impl Claims {
         self.neighbours
             .sort_unstable_by(|&one, &other| order_of_colliders(sets, one, other));
         self.neighbours.dedup();
-        self.neighbours
-            .retain(|&other| may_touch(sets, own.collider, other));
+        let mut neighbours = std::mem::take(&mut self.neighbours);
+        neighbours.retain(|&other| {
+            may_touch(sets, own.collider, other) && !self.attachment_forbids(sets, flex, other)
+        });
+        self.neighbours = neighbours;
     }
 
     fn add_flex_pair(&mut self, sets: &RapierSets<'_>, flex: usize, other: ColliderHandle) {
@@ -318,7 +333,7 @@ impl Claims {
     }
 
     /// Member index of a rigid body, claimed now if it was not.
-    fn claim(&mut self, handle: RigidBodyHandle) -> usize {
+    pub(super) fn claim(&mut self, handle: RigidBodyHandle) -> usize {
         let n_flex = self.flex.len();
         if let Some(&index) = self.rigid_index.get(&handle) {
             return n_flex + index;
@@ -338,7 +353,7 @@ impl Claims {
         member
     }
 
-    fn unite(&mut self, one: usize, other: usize) {
+    pub(super) fn unite(&mut self, one: usize, other: usize) {
         let (one, other) = (self.root(one), self.root(other));
         // The smaller index stays the root, so that components do not depend on the order of unions.
         self.parent[one.max(other)] = one.min(other);
@@ -351,10 +366,16 @@ pub(crate) fn claimable_parent(
     collider: &Collider,
 ) -> Option<RigidBodyHandle> {
     let parent = collider.parent()?;
-    let body = sets.bodies.get(parent)?;
+    claimable_body(sets, parent).then_some(parent)
+}
+
+/// Whether the flexible stage can solve for a rigid body.
+pub(super) fn claimable_body(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bool {
+    let Some(body) = sets.bodies.get(handle) else {
+        return false;
+    };
     let is_free = body.is_dynamic() && body.is_enabled() && !body.is_soft_frame();
-    let is_link = sets.multibody_joints.rigid_body_link(parent).is_some();
-    (is_free && !is_link).then_some(parent)
+    is_free && sets.multibody_joints.rigid_body_link(handle).is_none()
 }
 
 /// Whether two colliders may push each other: what rapier's narrow phase asks of a pair, the user's hook included.

@@ -14,6 +14,7 @@ use super::shapes::{ShapeCache, pose_of};
 use crate::body::FlexBodySet;
 use crate::constraint::contact::Owner;
 use crate::constraint::geometry::Pose2;
+use crate::constraint::joint::JointMemory;
 use crate::kkt::Island;
 use crate::math::{Vec2, from_rapier};
 use crate::rapier::prelude::*;
@@ -40,6 +41,8 @@ pub(crate) struct Gatherer {
     block_of_body: HashMap<RigidBodyHandle, usize>,
     flex_blocks: HashMap<usize, usize>,
     agitation: Agitation,
+    /// Multipliers of joints in the last step.
+    pub joint_memory: JointMemory,
     /// Claimed bodies of the island, by block.
     pub bodies: Vec<(usize, RigidBodyHandle)>,
 }
@@ -69,8 +72,10 @@ impl Gatherer {
     pub fn turn_over(&mut self, keeps: bool) {
         if keeps {
             self.references.turn_over();
+            self.joint_memory.turn_over();
         } else {
             self.references.discard_notes();
+            self.joint_memory.discard_notes();
         }
     }
 
@@ -134,6 +139,7 @@ impl Gatherer {
             let pair = claims.pairs[slot];
             self.add_pair(pair, settings, sets, claims, island)?;
         }
+        self.add_joints(settings, sets, flex_bodies, claims, island)?;
         Ok(())
     }
 
@@ -241,7 +247,17 @@ impl Gatherer {
         Ok(())
     }
 
-    fn push_rigid(
+    /// The block of a rigid body that is in the island already.
+    pub(super) fn known_block(&self, handle: RigidBodyHandle) -> Option<usize> {
+        self.block_of_body.get(&handle).copied()
+    }
+
+    /// The block of a claimed flexible body.
+    pub(super) fn flex_block(&self, flex: usize) -> Option<usize> {
+        self.flex_blocks.get(&flex).copied()
+    }
+
+    pub(super) fn push_rigid(
         &mut self,
         block: RigidBlock,
         handle: Option<RigidBodyHandle>,

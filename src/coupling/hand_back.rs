@@ -39,6 +39,11 @@ pub(crate) fn hand_back(landings: &mut [Landing], sets: &mut RapierSets<'_>) {
     let dt = f64::from(sets.integration_parameters.dt);
     let iterations = sets.integration_parameters.num_solver_iterations;
     for landing in landings {
+        let is_sleeping = |body: &RigidBody| body.is_sleeping();
+        if sets.bodies.get(landing.handle).is_some_and(is_sleeping) {
+            // Rapier knows nothing of attachments and may find an attached body at rest alone.
+            sets.islands.wake_up(sets.bodies, landing.handle, true);
+        }
         let Some(body) = sets.bodies.get_mut(landing.handle) else {
             continue;
         };

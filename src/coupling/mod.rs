@@ -2,11 +2,16 @@
 //!
 //! Together with [`crate::pipeline`] this is the only part that reads or writes rapier's sets.
 
+mod attach;
 mod candidates;
 mod carrier;
 mod claim;
+mod claim_attachments;
+mod claim_joints;
 mod gather;
+mod gather_joints;
 mod hand_back;
+mod joints;
 mod masters;
 mod nearby;
 mod places;
@@ -21,6 +26,7 @@ pub(crate) use carrier::{is_carried, write_surface};
 pub(crate) use claim::Claims;
 pub(crate) use gather::{GatherSettings, Gatherer};
 pub(crate) use hand_back::{Landing, hand_back, land};
+pub(crate) use joints::{JointImpulse, write_impulses};
 pub(crate) use masters::Masters;
 pub(crate) use reading::{GatherError, is_held_motion};
 pub use sets::RapierSets;

@@ -24,6 +24,23 @@ pub(super) fn order_of_colliders(
     .then_with(|| one.into_raw_parts().cmp(&other.into_raw_parts()))
 }
 
+/// Order of two rigid bodies by their places.
+pub(super) fn order_of_bodies(
+    sets: &RapierSets<'_>,
+    one: RigidBodyHandle,
+    other: RigidBodyHandle,
+) -> Ordering {
+    let place = |handle| {
+        let pose = sets.bodies.get(handle)?.position();
+        Some([pose.translation.x, pose.translation.y, pose.rotation.re])
+    };
+    order_of_numbers(
+        &place(one).unwrap_or_default(),
+        &place(other).unwrap_or_default(),
+    )
+    .then_with(|| one.into_raw_parts().cmp(&other.into_raw_parts()))
+}
+
 pub(super) fn order_of_boxes(one: &Aabb, other: &Aabb) -> Ordering {
     let corners = |aabb: &Aabb| [aabb.mins.x, aabb.mins.y, aabb.maxs.x, aabb.maxs.y];
     order_of_numbers(&corners(one), &corners(other))

@@ -25,6 +25,9 @@ pub(crate) enum GatherError {
     /// A rigid body moves, weighs or is loaded by what is not finite.
     #[error("{0:?} is not finite")]
     RigidBody(RigidBodyHandle),
+    /// A joint of a claimed body has an anchor, motor or softness that is not finite.
+    #[error("{0:?} is not finite")]
+    Joint(ImpulseJointHandle),
     /// A collider's friction or restitution is not finite.
     #[error("a coefficient of {0:?} is not finite")]
     Coefficient(ColliderHandle),

@@ -150,6 +150,10 @@ impl Island {
         if self.rows.is_empty() {
             return 0.0;
         }
+        // Along what contacts and joints together allow.
+        if self.hold_joints(settings).is_err() {
+            return 0.0;
+        }
         self.clear_impulses();
         self.gather_rows(Response::Velocity);
         self.respond();

@@ -12,6 +12,9 @@ const LINEAR_ROUNDS: usize = 3;
 /// Motion within a step, beyond the body's own and relative to its size, that no contact explains.
 const THROWN: f64 = 0.5;
 
+/// Turn (rad) of a joined rigid body within a step, beyond its own, that no joint explains.
+const TURNED: f64 = 0.5;
+
 /// Multiple of the greatest speed before a collision that none gives: a light body between heavy ones gets twice, the
 /// tip of a bar some times more.
 const FLUNG: f64 = 10.0;
@@ -33,10 +36,11 @@ impl Island {
         let is_solved = self
             .linear_step(settings, memory, tolerance, summary)
             .is_ok();
-        let is_thrown = self
-            .blocks
-            .iter()
-            .any(|block| matches!(block, Block::Flex(block) if block.excess_motion() > THROWN));
+        let has_joints = !self.ties.is_empty();
+        let is_thrown = self.blocks.iter().any(|block| match block {
+            Block::Flex(block) => block.excess_motion() > THROWN,
+            Block::Rigid(block) => has_joints && block.excess_turn() > TURNED,
+        });
         if is_thrown || !is_solved {
             self.hold(summary);
         }
@@ -98,6 +102,7 @@ impl Island {
         summary.is_held = true;
         self.contacts.clear();
         self.pressed_before.clear();
+        self.ties.clear();
         for block in &mut self.blocks {
             match block {
                 Block::Flex(block) => block.hold(),

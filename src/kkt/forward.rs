@@ -66,7 +66,10 @@ impl Island {
                 Block::Flex(block) => !block.is_damped(),
                 Block::Rigid(_) => true,
             });
-        if !keeps_energy || !self.contacts.iter().all(is_smooth) || !self.gather_switches(settings)
+        if !keeps_energy
+            || !self.ties.is_empty()
+            || !self.contacts.iter().all(is_smooth)
+            || !self.gather_switches(settings)
         {
             return;
         }

@@ -3,9 +3,11 @@
 use super::constraint_function::{ContactMethod, Newton};
 use super::delassus::RowDirection;
 use super::impact::ImpactTreatment;
+use super::joint_rows::ActiveJoint;
 use crate::constraint::contact::{
     Candidate, ContactMemory, Kinematics, PlacedPart, Remembered, Scene,
 };
+use crate::constraint::joint::{JointGrip, JointRow};
 use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
@@ -181,6 +183,23 @@ pub struct Island {
     pub candidates: Vec<Candidate>,
     /// The working set after a solve.
     pub contacts: Vec<ActiveContact>,
+    /// Rows of joints.
+    pub joints: Vec<JointRow>,
+    /// What they hold on to.
+    pub joint_grips: Vec<JointGrip>,
+    /// The joint rows after a solve.
+    pub ties: Vec<ActiveJoint>,
+    /// The grips when the last iterate was found, and at the end of the step.
+    pub(super) applied_grips: Vec<JointGrip>,
+    pub(super) end_grips: Vec<JointGrip>,
+    /// Blocks that move and the joint rows that hold them, ascending.
+    pub(super) holders: Vec<(usize, usize)>,
+    /// Joint rows of the problem at hand, after those of contacts, and their places in it.
+    pub(super) joint_rows: Vec<usize>,
+    pub(super) joint_slot: Vec<usize>,
+    pub(super) joint_answer: Vec<f64>,
+    /// Stiffness against turning by the joints' forces, by block (N m/rad), then the torque that it made (N m).
+    pub(super) twists: Vec<f64>,
     pub(super) is_working: Vec<bool>,
     pub(super) rows: Vec<RowDirection>,
     pub(super) kinds: Vec<RowKind>,
@@ -209,6 +228,9 @@ impl Island {
         self.segments.clear();
         self.candidates.clear();
         self.contacts.clear();
+        self.joints.clear();
+        self.joint_grips.clear();
+        self.ties.clear();
     }
 
     /// Solves the step for predicted blocks: positions, velocities and contact forces at its end.
@@ -230,7 +252,10 @@ impl Island {
         let allowance = self.external_work();
         let treatment = settings.treatment();
         treatment.finish(self, settings, &mut summary)?;
-        summary.work = self.actual_work(settings);
+        self.settle_damping();
+        let joint_work = self.joint_work(settings);
+        let allowance = allowance + joint_work;
+        summary.work = self.actual_work(settings) + joint_work;
         summary.start_energy = before;
         summary.end_energy = self.end_energy();
         if treatment.limits_energy() {
@@ -258,6 +283,7 @@ impl Island {
                 |block, node, force, lever| block.add_contact_force(node, force, lever),
             );
         }
+        self.publish_joint_forces(dt);
     }
 
     pub(super) fn scene<'a>(

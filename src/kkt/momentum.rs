@@ -16,7 +16,14 @@ impl Island {
         self.groups.extend(0..self.blocks.len());
         let closed = self.contacts.iter().filter(|contact| contact.is_closed());
         let pressed = closed.map(|contact| self.candidates[contact.candidate].pair.blocks());
-        for pair in pressed.chain(self.pressed_before.iter().copied()) {
+        let tied = self.ties.iter().map(|tie| {
+            let (first, last) = tie.row.grips;
+            [first, last - 1].map(|grip| self.joint_grips[grip].block)
+        });
+        for pair in pressed
+            .chain(self.pressed_before.iter().copied())
+            .chain(tied)
+        {
             let [one, other] = pair.map(|block| root(&self.groups, block));
             self.groups[one.max(other)] = one.min(other);
         }

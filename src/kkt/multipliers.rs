@@ -20,7 +20,7 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
-        if self.contacts.is_empty() {
+        if self.contacts.is_empty() && self.ties.is_empty() {
             return Ok(());
         }
         for contact in &self.contacts {
@@ -40,17 +40,23 @@ impl Island {
             &mut self.delassus,
         );
         self.take_out_multipliers(has_new_rows);
+        self.add_joint_positions(settings, has_new_rows);
         let redundancy = self.redundancy_tolerance(tolerance / settings.b0);
         self.solver.set_redundancy_tolerance(redundancy);
+        let has_joints = self.kinds.len() > self.rows.len();
         let problem = Problem {
             delassus: &self.delassus,
             free: &self.free,
             rows: &self.kinds,
             acted: &[],
         };
-        let outcome = self
-            .solver
-            .solve(&problem, &mut self.multipliers, &mut self.statuses)?;
+        let outcome = (if has_joints {
+            self.solver
+                .solve_condensed(&problem, &mut self.multipliers, &mut self.statuses)
+        } else {
+            self.solver
+                .solve(&problem, &mut self.multipliers, &mut self.statuses)
+        })?;
         summary.n_pivots += outcome.n_pivots;
         summary.residual = outcome.residual;
         for (row, direction) in self.rows.iter().enumerate() {
@@ -59,6 +65,7 @@ impl Island {
             contact.multiplier[which] = self.multipliers[row];
             contact.status[which] = self.statuses[row];
         }
+        self.take_joint_multipliers();
         Ok(())
     }
 
@@ -100,7 +107,7 @@ impl Island {
     /// The natural-map residual of rows that move by `velocity` beyond what they may (m/s²): redundant rows that contradict
     /// each other by less are averaged.
     fn redundancy_tolerance(&self, velocity: f64) -> f64 {
-        let n = self.rows.len();
+        let n = self.kinds.len();
         let (mut largest, mut scale) = (0.0f64, 0.0f64);
         for (row, free) in self.free.iter().enumerate() {
             let own = self.delassus[row * n + row];
@@ -120,6 +127,9 @@ impl Island {
     /// heavy neighbour a force that turns by 1e-4 rad may throw a light body across the scene.
     pub(super) fn take_out_multipliers(&mut self, has_new_rows: bool) {
         let n = self.rows.len();
+        if n == 0 {
+            return;
+        }
         if !has_new_rows {
             for (free, row) in self.free.iter_mut().zip(self.delassus.chunks_exact(n)) {
                 let response: f64 = row.iter().zip(&self.multipliers).map(|(w, p)| w * p).sum();

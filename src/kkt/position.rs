@@ -20,6 +20,9 @@ pub(super) const ROWS_KEPT_FROM: usize = 2;
 /// Iteration from which gaps are extrapolated along the rows.
 const GAPS_KEPT_FROM: usize = 12;
 
+/// Iterations after which the stiffness of hinged bodies against turning is found anew.
+const RESTIFFENED_EVERY: usize = 5;
+
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
 
@@ -63,6 +66,9 @@ impl Island {
         if !is_solved && !self.iterate(settings, memory, tolerance, summary) {
             self.fall_back(settings, memory, tolerance, summary);
         }
+        if !self.ties.is_empty() {
+            self.relax_turns();
+        }
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {
                 block.place_velocities();
@@ -84,6 +90,7 @@ impl Island {
         self.is_working.clear();
         self.is_working.resize(self.candidates.len(), false);
         self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
+        self.open_joints(settings);
     }
 
     /// Newton's iterations; returns whether they converged.
@@ -99,7 +106,7 @@ impl Island {
         for iteration in 0..settings.max_newton {
             summary.n_newton += 1;
             let turned = self.correct();
-            let is_guess = iteration == 0 && !self.contacts.is_empty();
+            let is_guess = iteration == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let mut error = self.measure(is_guess || iteration >= GAPS_KEPT_FROM);
             // Under the last step's multipliers bodies may be anywhere: geometry counts if these are nearly right.
             let misleads = is_guess && error > NEAR * tolerance;
@@ -118,6 +125,12 @@ impl Island {
                 return false;
             }
             if iteration + 1 < settings.max_newton {
+                let has_joints = !self.ties.is_empty();
+                if has_joints && iteration > 0 && iteration % RESTIFFENED_EVERY == 0 {
+                    self.restiffen_turns(settings);
+                    self.correct();
+                    self.measure(iteration >= GAPS_KEPT_FROM);
+                }
                 let refreshes = iteration < ROWS_KEPT_FROM && !misleads;
                 if refreshes {
                     self.refresh_rows();
@@ -188,6 +201,7 @@ impl Island {
                 |block, node, force, lever| block.add_stage_force(node, force, lever, is_late),
             );
         }
+        self.spread_joints();
         let mut turned = 0.0f64;
         for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
             match block {
@@ -204,8 +218,8 @@ impl Island {
     /// The forces keep acting along the rows they have: gaps are true, and Newton's matrix is that of the rows. With
     /// `extrapolates` gaps follow the rows too, which always converges.
     pub(super) fn measure(&mut self, extrapolates: bool) -> f64 {
+        let mut error = self.measure_joints();
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
-        let mut error = 0.0f64;
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
             let at = moved(&contact.kinematics, &self.blocks);
@@ -250,6 +264,7 @@ impl Island {
             contact.kinematics.gap = gap;
             contact.known = None;
         }
+        self.refresh_joints();
     }
 
     /// Adds candidates that overlap now; returns whether there were any.

@@ -48,11 +48,14 @@ impl Island {
     /// Solves the impact law at the contacts that hold velocities, and gathers its impulses, which rigid bodies take at once;
     /// returns whether there are any.
     pub(super) fn impact_rows(&mut self, settings: &SolveSettings) -> Result<bool, KktError> {
+        self.kick_joints(settings);
         self.velocity_rows(settings);
-        if self.rows.is_empty() {
+        self.add_joint_velocities(settings);
+        if self.kinds.is_empty() {
             return Ok(false);
         }
         self.solve_rows()?;
+        self.take_joint_impulses();
         self.read_impulses();
         self.clear_impulses();
         self.gather_rows(Response::Velocity);
@@ -72,6 +75,7 @@ impl Island {
                 Self::spread(blocks, kinematics, force, wrenches, |_, _, _, _| {});
             }
         }
+        self.add_soft_joints();
         self.set_soft_forces();
     }
 
@@ -89,6 +93,7 @@ impl Island {
                 |_, _, _, _| {},
             );
         }
+        self.add_soft_joints();
         self.set_soft_forces();
     }
 
@@ -116,6 +121,11 @@ impl Island {
                 }
             }
         }
+        Self::share_of(rigid, actual)
+    }
+
+    /// Maps a share of rigid mobility to [0, 1].
+    pub(super) fn share_of(rigid: f64, actual: f64) -> f64 {
         let share = if actual > 0.0 { rigid / actual } else { 0.0 };
         let t = ((share - RESOLVED) / (UNRESOLVED - RESOLVED)).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
@@ -193,7 +203,7 @@ impl Island {
 
     /// Leaves impulses and the velocities of rows after them on the contacts.
     fn read_impulses(&mut self) {
-        let n = self.rows.len();
+        let n = self.kinds.len();
         for (row, direction) in self.rows.iter().enumerate() {
             let response = self.delassus[row * n..(row + 1) * n]
                 .iter()
@@ -227,18 +237,28 @@ impl Island {
 
     pub(super) fn solve_rows(&mut self) -> Result<(), KktError> {
         self.multipliers.clear();
-        self.multipliers.resize(self.rows.len(), 0.0);
+        self.multipliers.resize(self.kinds.len(), 0.0);
         self.statuses.clear();
-        self.statuses.resize(self.rows.len(), Status::Stick);
+        self.statuses.resize(self.kinds.len(), Status::Stick);
         self.solver.set_redundancy_tolerance(1e-6);
+        let has_joints = self.kinds.len() > self.rows.len();
+        if !self.acted.is_empty() {
+            // Rows of joints follow those of contacts.
+            self.acted.resize(self.kinds.len(), 0.0);
+        }
         let problem = Problem {
             delassus: &self.delassus,
             free: &self.free,
             rows: &self.kinds,
             acted: &self.acted,
         };
-        self.solver
-            .solve(&problem, &mut self.multipliers, &mut self.statuses)?;
+        (if has_joints {
+            self.solver
+                .solve_condensed(&problem, &mut self.multipliers, &mut self.statuses)
+        } else {
+            self.solver
+                .solve(&problem, &mut self.multipliers, &mut self.statuses)
+        })?;
         Ok(())
     }
 
@@ -266,6 +286,7 @@ impl Island {
                 |block, node, impulse, lever| block.gather_impulse(of, node, impulse, lever),
             );
         }
+        self.gather_joint_rows(of);
     }
 
     pub(super) fn clear_impulses(&mut self) {
@@ -310,6 +331,7 @@ impl Island {
     /// Unresolved contacts that stay closed keep no relative acceleration either, or their multipliers would alternate.
     fn settle_accelerations(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
         self.hard_accelerations(settings);
+        self.add_spring_forces(settings.dt);
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
@@ -340,7 +362,7 @@ impl Island {
                 self.push_row(index, tangent, along, kind);
             }
         }
-        if self.rows.is_empty() {
+        if self.rows.is_empty() && !self.has_soft_joints() {
             return Ok(());
         }
         let contacts = &self.contacts;
@@ -353,6 +375,7 @@ impl Island {
         );
         self.soften();
         self.list_acted(1.0);
+        self.add_joint_accelerations();
         self.solve_rows()?;
         // What the stored acceleration loses will not act in the next step.
         let late = settings.dt - settings.b1;

@@ -45,6 +45,7 @@ impl FlexPipeline {
                 self.report.contacts.extend(report);
             }
         }
+        self.note_joints(step, flex_bodies);
         let report = &mut self.report;
         report.gap_violation = report.gap_violation.max(summary.gap_violation);
         report.solver_residual = report.solver_residual.max(summary.residual);

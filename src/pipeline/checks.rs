@@ -45,6 +45,11 @@ impl FlexPipeline {
                     source,
                 })?;
         }
+        if self.integrator().is_explicit()
+            && let Some((handle, _)) = flex_bodies.iter_attachments().next()
+        {
+            return Err(StepError::ExplicitAttachment(handle));
+        }
         Ok(Step {
             dt,
             weights: self.integrator().weights(dt),
@@ -112,6 +117,7 @@ impl FlexPipeline {
     pub(super) fn undo(&mut self, flex_bodies: &mut FlexBodySet, dissipated: f64) {
         self.landings.clear();
         self.reserves.clear();
+        self.joint_impulses.clear();
         self.memory.discard_notes();
         self.report.clear();
         self.report.energy.dissipated = dissipated;

@@ -1,11 +1,11 @@
 //! Why a step was not taken.
 
-use crate::body::{FlexBodyError, FlexBodyHandle};
+use crate::body::{AttachmentHandle, FlexBodyError, FlexBodyHandle};
 use crate::coupling::GatherError;
 use crate::integrator::IntegratorError;
 use crate::kkt::KktError;
 use crate::linalg::cholesky::CholeskyError;
-use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
+use crate::rapier::prelude::{ColliderHandle, ImpulseJointHandle, RigidBodyHandle};
 use thiserror::Error;
 
 /// Why a step was not taken. Flexible bodies, rigid bodies and contacts are as they were before it.
@@ -66,6 +66,21 @@ pub enum StepError {
         "{0:?} touches a flexible body, and its motion, mass, damping, force or torque is not finite: reset its forces and set its velocity, or remove it"
     )]
     RigidBody(RigidBodyHandle),
+    /// A joint of a claimed body holds numbers that are not finite.
+    #[error(
+        "{0:?} joins a body that touches a flexible one, and its anchors, motor or softness are not finite: set them anew, or remove it"
+    )]
+    Joint(ImpulseJointHandle),
+    /// A joint holds on to the carrier of a flexible body, which is where rapier keeps its surface and moves with nothing.
+    #[error(
+        "{0:?} holds on to the carrier of a flexible body, which moves with nothing: remove it and attach the body with `FlexBodySet::attach`"
+    )]
+    CarrierJoint(ImpulseJointHandle),
+    /// An explicit integrator cannot hold attachments.
+    #[error(
+        "{0:?} cannot be held by an integrator with beta0 = 0: choose one with beta0 > 0, pin nodes in the builder, or detach it"
+    )]
+    ExplicitAttachment(AttachmentHandle),
     /// A collider that touches a flexible body has a coefficient that is not finite.
     #[error(
         "{0:?} touches a flexible body, and its friction or restitution is not finite: set both to finite numbers"
@@ -78,6 +93,7 @@ impl From<GatherError> for StepError {
         match error {
             GatherError::Factorization { body, source } => Self::Factorization { body, source },
             GatherError::RigidBody(handle) => Self::RigidBody(handle),
+            GatherError::Joint(handle) => Self::Joint(handle),
             GatherError::Coefficient(handle) => Self::Coefficient(handle),
         }
     }

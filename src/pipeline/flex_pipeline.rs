@@ -1,12 +1,13 @@
 //! The pipeline: settings and buffers, no state of its own but the memory of contacts and claimed bodies.
 
 use super::error::StepError;
+use super::joint_accounts::drop_orphans;
 use super::report::StepReport;
 use crate::body::FlexBodySet;
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
-    Claims, GatherSettings, Gatherer, Landing, Masters, RapierSets, hand_back, is_all_asleep, land,
-    stop_if_asleep, wake_disturbed, write_surface,
+    Claims, GatherSettings, Gatherer, JointImpulse, Landing, Masters, RapierSets, hand_back,
+    is_all_asleep, land, stop_if_asleep, wake_disturbed, write_impulses, write_surface,
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ContactMethod, ImpactTreatment, Island, SolveSettings};
@@ -54,6 +55,7 @@ pub struct FlexPipeline {
     pub(super) island: Island,
     pub(super) landings: Vec<Landing>,
     pub(super) reserves: Vec<(u32, f64)>,
+    pub(super) joint_impulses: Vec<JointImpulse>,
     components: Vec<usize>,
     pub(super) report: StepReport,
 }
@@ -82,6 +84,7 @@ impl FlexPipeline {
             island: Island::default(),
             landings: Vec::new(),
             reserves: Vec::new(),
+            joint_impulses: Vec::new(),
             components: Vec::new(),
             report: StepReport::default(),
         }
@@ -229,6 +232,7 @@ impl FlexPipeline {
         let mut clock = Clock::start();
         let dissipated = self.report.energy.dissipated;
         let step = self.check(&sets, flex_bodies)?;
+        drop_orphans(&sets, flex_bodies);
         let has_changed = self.claims.has_world_changed(&sets);
         if step.dt > 0.0 && !has_changed && is_all_asleep(&sets, flex_bodies) {
             sets.step();
@@ -243,7 +247,12 @@ impl FlexPipeline {
             self.claims.look_ahead(&sets, flex_bodies);
         }
         self.report.n_asleep = self.claims.n_asleep();
-        let is_detected = step.dt == 0.0 || self.claims.needs_detection(&sets);
+        if let Some(joint) = self.claims.joint_to_carrier(&sets) {
+            return Err(StepError::CarrierJoint(joint));
+        }
+        let is_detected = step.dt == 0.0
+            || self.claims.needs_detection(&sets)
+            || self.claims.has_attached_bodies(&sets);
         clock.lap(&mut self.report.times.claim);
         if is_detected {
             sets.detect();
@@ -275,6 +284,8 @@ impl FlexPipeline {
         clock.lap(&mut self.report.times.rapier);
         self.wake_moving(&mut sets, flex_bodies);
         land(&self.landings, &mut sets, &mut self.masters);
+        write_impulses(&self.joint_impulses, &mut sets);
+        self.commit_attachments(flex_bodies);
         self.commit(&mut sets, flex_bodies);
         clock.lap(&mut self.report.times.hand_back);
         Ok(&self.report)
@@ -290,6 +301,7 @@ impl FlexPipeline {
     ) -> Result<(), StepError> {
         self.landings.clear();
         self.reserves.clear();
+        self.joint_impulses.clear();
         self.memory.discard_notes();
         self.gatherer.turn_over(false);
         self.components.clear();

@@ -4,8 +4,11 @@ mod accounts;
 mod checks;
 mod error;
 mod flex_pipeline;
+mod joint_accounts;
 mod report;
 
 pub use error::StepError;
 pub use flex_pipeline::FlexPipeline;
-pub use report::{ContactReport, EnergyReport, Participant, StageTimes, StepReport};
+pub use report::{
+    ContactReport, EnergyReport, Held, JointReport, Participant, StageTimes, StepReport,
+};

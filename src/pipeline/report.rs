@@ -1,8 +1,8 @@
 //! What a step tells about itself.
 
-use crate::body::FlexBodyHandle;
+use crate::body::{AttachmentHandle, FlexBodyHandle};
 use crate::coupling::RapierSets;
-use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
+use crate::rapier::prelude::{ColliderHandle, ImpulseJointHandle, RigidBodyHandle};
 
 /// One side of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +35,28 @@ pub struct ContactReport {
     pub contactor: Participant,
     /// The body whose surface is touched.
     pub target: Participant,
+}
+
+/// What holds without touching.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Held {
+    /// An impulse joint of rapier.
+    Joint(ImpulseJointHandle),
+    /// An attachment of a flexible body.
+    Attachment(AttachmentHandle),
+}
+
+/// Reaction of one joint of claimed bodies, or of one attachment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointReport {
+    /// Which.
+    pub joint: Held,
+    /// Where it pulls at the second body, or the mean of the nodes it holds (m).
+    pub position: [f64; 2],
+    /// Mean force over the step on the second body of the joint, or on the attached body (N).
+    pub force: [f64; 2],
+    /// Mean torque on it about the position (N m).
+    pub torque: f64,
 }
 
 /// Energy of all flexible and claimed rigid bodies (J).
@@ -89,6 +111,7 @@ pub struct StepReport {
     pub(super) contacts: Vec<ContactReport>,
     /// Contacts of the step before, of which those of sleepers are kept.
     pub(super) contacts_before: Vec<ContactReport>,
+    pub(super) joints: Vec<JointReport>,
     pub(super) energy: EnergyReport,
     pub(super) momentum: [f64; 2],
     pub(super) angular_momentum: f64,
@@ -116,6 +139,11 @@ impl StepReport {
     /// Closed contacts.
     pub fn contacts(&self) -> &[ContactReport] {
         &self.contacts
+    }
+
+    /// Reactions of joints between claimed bodies, and of attachments.
+    pub fn joints(&self) -> &[JointReport] {
+        &self.joints
     }
 
     /// Energy balance.
@@ -268,10 +296,13 @@ impl StepReport {
         let contacts_before = std::mem::take(&mut self.contacts);
         let mut contacts = std::mem::take(&mut self.contacts_before);
         contacts.clear();
+        let mut joints = std::mem::take(&mut self.joints);
+        joints.clear();
         let dissipated = self.energy.dissipated;
         *self = Self {
             contacts,
             contacts_before,
+            joints,
             ..Self::default()
         };
         self.energy.dissipated = dissipated;

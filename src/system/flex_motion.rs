@@ -45,6 +45,18 @@ impl FlexBlock {
         self.carried(node, |node| node_vec(&self.velocity, node))
     }
 
+    /// Spin of the frame at the iterate (rad/s).
+    pub fn spin(&self) -> f64 {
+        self.frame.spin
+    }
+
+    /// Velocity of the material at a node (m/s): that of the mass around a massless one, turned on to where the node is.
+    pub fn joint_velocity(&self, node: usize) -> Vec2 {
+        let support = self.carried(node, |node| node_vec(&self.position, node));
+        let offset = node_vec(&self.position, node) - support;
+        self.velocity(node) + self.frame.spin * perp(offset)
+    }
+
     /// A value at a node with mass, or its mean over the nodes that carry a massless node's mass.
     fn carried(&self, node: usize, value: impl Fn(usize) -> Vec2) -> Vec2 {
         match self.model.support_of(node) {

@@ -131,6 +131,14 @@ impl Block {
         }
     }
 
+    /// Angular velocity of the block, or of its frame, at the current iterate (rad/s).
+    pub fn spin(&self) -> f64 {
+        match self {
+            Self::Flex(block) => block.spin(),
+            Self::Rigid(block) => block.current().spin,
+        }
+    }
+
     /// Mobility `n·M⁻¹·n` of the block at a grip if it were rigid (1/kg).
     pub fn rigid_mobility(&self, grip: Grip, direction: Vec2) -> f64 {
         match (self, grip.point) {

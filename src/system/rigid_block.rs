@@ -50,6 +50,11 @@ pub struct RigidBlock {
     weights: Weights,
     dt: f64,
     is_prescribed: bool,
+    /// Stiffness against turning within the step (N m/rad), and the free angle and inverse inertia without it.
+    twist: f64,
+    untwisted: [f64; 2],
+    /// The end velocity that damping was reckoned with (m/s, m/s, rad/s).
+    damped_velocity: [f64; 3],
 }
 
 /// Data of a free rigid body for one step.
@@ -79,6 +84,9 @@ impl RigidBlock {
             weights: Weights::default(),
             dt: 0.0,
             is_prescribed: true,
+            twist: 0.0,
+            untwisted: [0.0; 2],
+            damped_velocity: [0.0; 3],
         }
     }
 
@@ -138,6 +146,9 @@ impl RigidBlock {
             weights,
             dt,
             is_prescribed: false,
+            twist: 0.0,
+            untwisted: [0.0; 2],
+            damped_velocity: v,
         }
     }
 
@@ -165,6 +176,15 @@ impl RigidBlock {
         }
     }
 
+    /// How far the body has turned beyond what its own spin would have done (rad).
+    pub fn excess_turn(&self) -> f64 {
+        if self.is_prescribed {
+            return 0.0;
+        }
+        let turned = (self.current.angle - self.start.angle).abs();
+        turned - (self.dt * self.start.spin).abs()
+    }
+
     /// Whether the motion is given.
     pub fn is_prescribed(&self) -> bool {
         self.is_prescribed
@@ -180,6 +200,37 @@ impl RigidBlock {
         mobility(&self.inverse_effective, at, from)
     }
 
+    /// How the unit wrench `at` moves along under the unit wrench `from`, `G A⁻¹ Gᵀ` (1/kg).
+    pub fn mobility_between(&self, at: [f64; 3], from: [f64; 3]) -> f64 {
+        let terms = at.iter().zip(from).zip(&self.inverse_effective);
+        terms.map(|((at, from), inverse)| at * inverse * from).sum()
+    }
+
+    /// Smooth acceleration at the end of the step, and what a wrench adds (m/s², rad/s²).
+    pub fn acceleration_under(&self, wrench: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|i| self.smooth_end[i] + self.inverse_effective[i] * wrench[i])
+    }
+
+    /// Velocity and spin at the current iterate (m/s, rad/s).
+    pub fn rates(&self) -> [f64; 3] {
+        let RigidMotion { velocity, spin, .. } = self.current;
+        [velocity.x, velocity.y, spin]
+    }
+
+    /// Work of an impulse that acted over the step, at the mean velocity (J).
+    pub fn work_of(&self, impulse: [f64; 3]) -> f64 {
+        let start = [
+            self.start.velocity.x,
+            self.start.velocity.y,
+            self.start.spin,
+        ];
+        let means = start
+            .iter()
+            .zip(self.rates())
+            .map(|(v, end)| 0.5 * (v + end));
+        means.zip(impulse).map(|(v, p)| v * p).sum()
+    }
+
     /// Velocity at the end of a lever (m/s).
     pub fn velocity(&self, lever: Vec2) -> Vec2 {
         self.current.velocity + self.current.spin * perp(lever)
@@ -188,6 +239,36 @@ impl RigidBlock {
     /// See [`super::Block::smooth_acceleration`]; the centripetal part is left out, as in `G a`.
     pub fn smooth_acceleration(&self, lever: Vec2) -> Vec2 {
         Vec2::new(self.smooth_end[0], self.smooth_end[1]) + self.smooth_end[2] * perp(lever)
+    }
+
+    /// Lets a torque `-k (θ' - θ)` act within the position stage: what pulls at levers resists turning.
+    ///
+    /// `mobility` is what the multipliers move positions by, over `A⁻¹` (s²).
+    pub fn stiffen(&mut self, twist: f64, mobility: f64) {
+        if self.is_prescribed || self.inverse_effective[2] <= 0.0 {
+            return;
+        }
+        self.twist = twist;
+        self.untwisted = [self.free.angle, self.inverse_effective[2]];
+        let share = 1.0 / (1.0 + mobility * twist * self.inverse_effective[2]);
+        self.inverse_effective[2] *= share;
+        self.free.angle = self.start.angle + share * (self.free.angle - self.start.angle);
+    }
+
+    /// Ends what [`RigidBlock::stiffen`] began; returns the torque that acted (N m).
+    pub fn relax(&mut self) -> f64 {
+        if self.twist == 0.0 {
+            return 0.0;
+        }
+        let torque = -self.twist * (self.current.angle - self.start.angle);
+        self.twist = 0.0;
+        [self.free.angle, self.inverse_effective[2]] = self.untwisted;
+        torque
+    }
+
+    /// Inverse inertia with damping (1/(kg m²)).
+    pub fn turning_mobility(&self) -> f64 {
+        self.inverse_effective[2]
     }
 
     /// Moves the iterate away from the free motion by what a wrench does.
@@ -231,6 +312,22 @@ impl RigidBlock {
         self.current.spin = self.free.spin + b1 * change[2];
         for (sum, change) in self.smooth_end.iter_mut().zip(change) {
             *sum += change;
+        }
+        self.damped_velocity = self.rates();
+    }
+
+    /// Lets damping act on the end velocity as it has become, instead of what it would have been without joints.
+    pub fn settle_damping(&mut self) {
+        if self.is_prescribed || self.inverse_effective == self.inverse_mass {
+            return;
+        }
+        for (i, end) in self.rates().into_iter().enumerate() {
+            if self.inverse_effective[i] > 0.0 {
+                // inverse / effective = 1 + b1 c
+                let slowed = self.inverse_mass[i] / self.inverse_effective[i] - 1.0;
+                let damping = slowed / self.weights.b1;
+                self.smooth_end[i] -= damping * (end - self.damped_velocity[i]);
+            }
         }
     }
 

@@ -31,7 +31,7 @@ impl Treatment for ImplicitForces {
         }
         island.take_out_hard_forces();
         // Between rigid bodies there is only the impact law.
-        island.impact_rows(settings)?;
+        island.finish_joints(settings)?;
         island.take_from_acceleration(settings);
         island.balance_angular_momentum();
         Ok(())

@@ -12,10 +12,17 @@ impl Treatment for Plain {
     fn finish(
         &self,
         island: &mut Island,
-        _settings: &SolveSettings,
+        settings: &SolveSettings,
         _summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
         island.keep_plain_forces();
+        if !island.ties.is_empty() {
+            // Joints hold their velocities all the same.
+            for contact in &mut island.contacts {
+                contact.is_settled = true;
+            }
+            island.finish_joints(settings)?;
+        }
         Ok(())
     }
 }

@@ -32,6 +32,7 @@
 //! ```
 
 mod active_set;
+mod condense;
 mod dense;
 mod gauss_seidel;
 mod krylov;
@@ -47,6 +48,7 @@ pub use residual::natural_map_residual;
 pub(crate) use dense::solve_lu_in_place;
 
 use active_set::{ActiveSet, Redundancy};
+use condense::Condensed;
 use lemke::Lemke;
 use problem::Checked;
 use residual::measure;
@@ -134,6 +136,7 @@ pub struct Solver {
     best: Answer,
     trial: Vec<f64>,
     status: Vec<Status>,
+    condensed: Condensed,
 }
 
 impl Default for Solver {
@@ -146,6 +149,7 @@ impl Default for Solver {
             best: Answer::default(),
             trial: Vec::new(),
             status: Vec::new(),
+            condensed: Condensed::default(),
         }
     }
 }

@@ -1,0 +1,163 @@
+//! Joint kinematics: one number of a relative position, and the row of `G` that changes it.
+
+use crate::math::{Vec2, cross, rotation};
+use crate::system::{Block, Grip, Point};
+
+/// What a row measures of the separation `d = Σ w_i x_i` of its grips, the weights of which add up to zero, or of angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Measure {
+    /// `d` along a direction fixed in the world (m).
+    Along(Vec2),
+    /// `d` along an axis that turns with the first grip's rigid block, given at angle zero (m).
+    ///
+    /// All forces act at the last grip's point, so that they have no couple.
+    Axis(Vec2),
+    /// The length of `d` (m).
+    Distance,
+    /// `Σ w_i θ_i` and an offset (rad).
+    Turn(f64),
+}
+
+/// When a row is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum When {
+    /// At the beginning of the step.
+    Start,
+    /// At the current iterate of its end.
+    Now,
+}
+
+/// One grip of a joint row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointGrip {
+    /// Index of the block in the island.
+    pub block: usize,
+    /// Node or arm.
+    pub point: Point,
+    /// Weight in `d` or in the turn (-).
+    pub weight: f64,
+    /// Lever of the force from the block's centre (m).
+    pub lever: Vec2,
+}
+
+impl JointGrip {
+    /// A grip whose lever has not been measured yet.
+    pub fn new(block: usize, point: Point, weight: f64) -> Self {
+        Self {
+            block,
+            point,
+            weight,
+            lever: Vec2::zeros(),
+        }
+    }
+
+    /// The grip as a force acts on it.
+    pub fn grip(&self) -> Grip {
+        Grip {
+            point: self.point,
+            lever: self.lever,
+        }
+    }
+
+    fn position(&self, blocks: &[Block], when: When) -> Vec2 {
+        let block = &blocks[self.block];
+        match when {
+            When::Start => block.start_position(self.point),
+            When::Now => block.position(self.point),
+        }
+    }
+
+    fn angle(&self, blocks: &[Block], when: When) -> f64 {
+        match (&blocks[self.block], when) {
+            (Block::Rigid(block), When::Start) => block.start().angle,
+            (Block::Rigid(block), When::Now) => block.current().angle,
+            (Block::Flex(_), _) => 0.0,
+        }
+    }
+
+    fn centre(&self, blocks: &[Block], when: When) -> Vec2 {
+        match (&blocks[self.block], when) {
+            (Block::Rigid(block), When::Start) => block.start().centre,
+            (block, _) => block.centre(),
+        }
+    }
+}
+
+/// Distance (m) below which a length has no direction.
+const NO_LENGTH: f64 = 1e-9;
+
+impl Measure {
+    /// Whether a couple holds the row instead of forces.
+    pub fn is_turn(&self) -> bool {
+        matches!(self, Self::Turn(_))
+    }
+
+    /// The measured number.
+    pub fn value(&self, blocks: &[Block], grips: &[JointGrip], when: When) -> f64 {
+        match *self {
+            Self::Along(direction) => direction.dot(&separation(blocks, grips, when)),
+            Self::Axis(axis) => {
+                let axis = turned(axis, blocks, grips, when);
+                axis.dot(&separation(blocks, grips, when))
+            }
+            Self::Distance => separation(blocks, grips, when).norm(),
+            Self::Turn(offset) => {
+                let turns = grips
+                    .iter()
+                    .map(|grip| grip.weight * grip.angle(blocks, when));
+                offset + turns.sum::<f64>()
+            }
+        }
+    }
+
+    /// The direction of the row's forces; its levers are written to the grips. A turn has `[1, 0]`, of which only the sign counts.
+    pub fn aim(&self, blocks: &[Block], grips: &mut [JointGrip], when: When) -> Vec2 {
+        let common = match self {
+            Self::Axis(_) => grips.last().map(|last| last.position(blocks, when)),
+            _ => None,
+        };
+        let direction = match *self {
+            Self::Along(direction) => direction,
+            Self::Axis(axis) => turned(axis, blocks, grips, when),
+            Self::Distance => {
+                let apart = separation(blocks, grips, when);
+                let length = apart.norm();
+                if length > NO_LENGTH {
+                    apart / length
+                } else {
+                    Vec2::zeros()
+                }
+            }
+            Self::Turn(_) => Vec2::new(1.0, 0.0),
+        };
+        if !self.is_turn() {
+            for grip in grips {
+                let point = common.unwrap_or_else(|| grip.position(blocks, when));
+                grip.lever = point - grip.centre(blocks, when);
+            }
+        }
+        direction
+    }
+}
+
+/// `d = Σ w x` (m).
+fn separation(blocks: &[Block], grips: &[JointGrip], when: When) -> Vec2 {
+    let terms = grips
+        .iter()
+        .map(|grip| grip.weight * grip.position(blocks, when));
+    terms.sum()
+}
+
+fn turned(axis: Vec2, blocks: &[Block], grips: &[JointGrip], when: When) -> Vec2 {
+    let angle = grips.first().map_or(0.0, |first| first.angle(blocks, when));
+    rotation(angle) * axis
+}
+
+/// The force and couple on a rigid block of a unit multiplier at a grip (-, -, m or -).
+pub(crate) fn unit_wrench(grip: &JointGrip, direction: Vec2, is_turn: bool) -> [f64; 3] {
+    if is_turn {
+        return [0.0, 0.0, grip.weight * direction.x];
+    }
+    let force = grip.weight * direction;
+    [force.x, force.y, cross(grip.lever, force)]
+}

@@ -1,0 +1,228 @@
+//! Gathering joints and attachments as joint rows.
+
+use super::claim::Claims;
+use super::gather::{GatherSettings, Gatherer};
+use super::joints::{self, RowWriter, Side, is_held_joint};
+use super::masters::local_centre;
+use super::reading::{GatherError, prescribed_block};
+use super::sets::RapierSets;
+use crate::body::{Anchor, Attachment, AttachmentKind, AttachmentTarget, FlexBodySet, Shift};
+use crate::constraint::joint::{
+    JointGrip, JointKey, JointLaw, JointOwner, JointRow, Measure, Spring,
+};
+use crate::kkt::Island;
+use crate::math::Vec2;
+use crate::rapier::prelude::*;
+use crate::system::{Point, RigidBlock, RigidMotion};
+
+impl Gatherer {
+    /// Adds the joints and attachments of a component.
+    pub(super) fn add_joints(
+        &mut self,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+        claims: &mut Claims,
+        island: &mut Island,
+    ) -> Result<(), GatherError> {
+        for slot in 0..claims.joints.len() {
+            self.add_joint(claims.joints[slot], settings, sets, claims, island)?;
+        }
+        for slot in 0..claims.attached.len() {
+            let attached = claims.attached[slot];
+            if claims.component_of_flex(attached.flex) != settings.component {
+                continue;
+            }
+            let Some(attachment) = flex_bodies.attachments().get(attached.parts) else {
+                continue;
+            };
+            let owner = JointOwner::Attachment(attached.parts.0, attached.parts.1);
+            let flex = [Some(attached.flex), attached.other];
+            self.add_attachment(attachment, (owner, flex), settings, sets, island);
+        }
+        Ok(())
+    }
+
+    fn add_joint(
+        &mut self,
+        handle: ImpulseJointHandle,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        claims: &mut Claims,
+        island: &mut Island,
+    ) -> Result<(), GatherError> {
+        let Some(joint) = sets.impulse_joints.get(handle) else {
+            return Ok(());
+        };
+        let bodies = [joint.body1(), joint.body2()];
+        let claimed = bodies
+            .iter()
+            .find_map(|&body| claims.component_of_rigid(body));
+        if claimed != Some(settings.component) {
+            return Ok(());
+        }
+        if !is_held_joint(&joint.data) {
+            return Err(GatherError::Joint(handle));
+        }
+        let frames = [&joint.data.local_frame1, &joint.data.local_frame2];
+        let mut sides = [None; 2];
+        for ((side, body), frame) in sides.iter_mut().zip(bodies).zip(frames) {
+            let block = self.block_of(body, settings, sets, island);
+            let body = sets.bodies.get(body);
+            *side = block
+                .zip(body)
+                .map(|(block, body)| Side::new(block, body, frame));
+        }
+        let [Some(first), Some(second)] = sides else {
+            return Ok(());
+        };
+        let mut writer = RowWriter {
+            island,
+            memory: &self.joint_memory,
+            owner: joints::owner_of(handle),
+            sides: [first, second],
+            dt: settings.step.dt,
+        };
+        writer.write(&joint.data);
+        Ok(())
+    }
+
+    /// The block of a rigid body: its own if it is claimed, or one that moves as rapier says.
+    fn block_of(
+        &mut self,
+        handle: RigidBodyHandle,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) -> Option<usize> {
+        if let Some(block) = self.known_block(handle) {
+            return Some(block);
+        }
+        let block = prescribed_block(sets.bodies.get(handle)?, settings.step.dt);
+        Some(self.push_rigid(block, Some(handle), island))
+    }
+
+    fn add_attachment(
+        &mut self,
+        attachment: &Attachment,
+        (owner, flex): (JointOwner, [Option<usize>; 2]),
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) {
+        let [own, other] = flex.map(|flex| flex.and_then(|flex| self.flex_block(flex)));
+        let (target, centre) = match attachment.target {
+            AttachmentTarget::World => {
+                let block = moved_world(attachment, settings.step.dt);
+                (Some(self.push_rigid(block, None, island)), attachment.pivot)
+            }
+            AttachmentTarget::RigidBody(handle) => {
+                let body = sets.bodies.get(handle).filter(|body| body.is_enabled());
+                let Some(body) = body else {
+                    return;
+                };
+                let block = self.block_of(handle, settings, sets, island);
+                (block, local_centre(body))
+            }
+            AttachmentTarget::Flexible(_) => (other, Vec2::zeros()),
+        };
+        let (Some(own), Some(target)) = (own, target) else {
+            return;
+        };
+        let mut row = 0;
+        for (slot, anchor) in attachment.anchors.iter().enumerate() {
+            let nodes = match attachment.kind {
+                AttachmentKind::Weld => &attachment.nodes[slot..=slot],
+                _ => &attachment.nodes[..],
+            };
+            for (measure, law) in rows_of(attachment.kind) {
+                let key = JointKey { owner, row };
+                row += 1;
+                let remembered = self.joint_memory.recall(&key);
+                let first = island.joint_grips.len();
+                hold_anchor(island, (target, centre), anchor);
+                let weight = 1.0 / nodes.len() as f64;
+                let grips = nodes
+                    .iter()
+                    .map(|&node| JointGrip::new(own, Point::Node(node), weight));
+                island.joint_grips.extend(grips);
+                island.joints.push(JointRow {
+                    key,
+                    measure,
+                    sign: 1.0,
+                    grips: (first, island.joint_grips.len()),
+                    law,
+                    remembered,
+                });
+            }
+        }
+    }
+}
+
+/// Adds the grips of an anchor, with weights that add up to -1.
+fn hold_anchor(island: &mut Island, (target, centre): (usize, Vec2), anchor: &Anchor) {
+    match *anchor {
+        Anchor::Point(local) => {
+            let arm = Point::Arm(local - centre);
+            island.joint_grips.push(JointGrip::new(target, arm, -1.0));
+        }
+        Anchor::Surface([a, b], xi) => {
+            for (node, weight) in [(a, xi - 1.0), (b, -xi)] {
+                let grip = JointGrip::new(target, Point::Node(node), weight);
+                island.joint_grips.push(grip);
+            }
+        }
+    }
+}
+
+/// What is measured at one anchor, and how it is held.
+fn rows_of(kind: AttachmentKind) -> impl Iterator<Item = (Measure, JointLaw)> {
+    let along = [Measure::Along(Vec2::x()), Measure::Along(Vec2::y())];
+    let (measures, law) = match kind {
+        AttachmentKind::Pin | AttachmentKind::Weld => {
+            let law = JointLaw::Rigid {
+                goal: 0.0,
+                rate: 0.0,
+            };
+            ([Some(along[0]), Some(along[1])], law)
+        }
+        AttachmentKind::Spring {
+            stiffness,
+            damping,
+            rest_length,
+        } => {
+            let law = JointLaw::Spring(Spring {
+                stiffness,
+                damping,
+                rest: rest_length,
+                rate: 0.0,
+                most: f64::INFINITY,
+                is_relative: false,
+            });
+            // Without a length there is no direction: two springs across each other are the same from everywhere.
+            if rest_length > 0.0 {
+                ([Some(Measure::Distance), None], law)
+            } else {
+                ([Some(along[0]), Some(along[1])], law)
+            }
+        }
+    };
+    measures
+        .into_iter()
+        .flatten()
+        .map(move |measure| (measure, law))
+}
+
+/// The world's side of an attachment, which moves as the user has said.
+fn moved_world(attachment: &Attachment, dt: f64) -> RigidBlock {
+    let Attachment {
+        pivot, last, next, ..
+    } = attachment;
+    let place = |shift: &Shift| RigidMotion {
+        centre: pivot + shift.offset,
+        angle: shift.angle,
+        velocity: (next.offset - last.offset) / dt,
+        spin: (next.angle - last.angle) / dt,
+    };
+    RigidBlock::prescribed(place(last), place(next))
+}

@@ -1,0 +1,385 @@
+//! Joint rows in the position stage: their laws at this step length, their gaps and their forces.
+//!
+//! *Hard* rows, between rigid blocks only, follow RATTLE (Andersen 1983): the force `λ` of the position stage acts along the rows
+//! of the step's beginning and gives the velocity `dt/2 M⁻¹G₀ᵀλ`; the velocity stage adds `dt/2 M⁻¹G'ᵀμ` along those of the end,
+//! with `G'v' = 0`. That is second order, symmetric, keeps momentum and angular momentum exactly and energy within a band, and
+//! leaves no force in the stored accelerations. As the position stage moves by `b0 M⁻¹G₀ᵀp`, `λ = 2 b0 p / dt²`.
+//!
+//! *Soft* rows, with a flexible block, act as (C.5) says, along rows that follow the iterates as those of contacts do.
+
+use super::island::{Island, SolveSettings};
+use super::position::PARTING_RATE;
+use crate::constraint::joint::{JointGrip, JointLaw, JointRow, Spring, When, unit_wrench};
+use crate::linalg::complementarity::{RowKind, Status};
+use crate::math::Vec2;
+use crate::system::{Block, Point, Response};
+
+/// Violation at the beginning of a step (m or rad) beyond which a joint closes over several steps: someone has put it there.
+const SLACK: f64 = 1e-3;
+
+/// What the velocity stage does about a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Finish {
+    /// `G'v' = rate`, for rows that hold, or drive with bounds.
+    Hold {
+        /// Velocity (m/s or rad/s).
+        rate: f64,
+    },
+    /// `0 <= P ⊥ G'v' >= 0` where the row is closed.
+    Limit,
+    /// A resolved spring: the force of the position stage acts at the end too.
+    Spring,
+    /// A spring or damper that the step does not resolve, implicit once more.
+    Stiff(Spring),
+    /// Nothing: a spring at a flexible block.
+    Nothing,
+}
+
+/// A joint row at work.
+#[derive(Clone, Copy, Debug)]
+pub struct ActiveJoint {
+    /// The row.
+    pub row: JointRow,
+    /// Whether only rigid blocks take part.
+    pub is_hard: bool,
+    /// Share of the velocity that the velocity stage holds, 0 to 1 (-).
+    pub(super) share: f64,
+    pub(super) finish: Finish,
+    /// Measured number at the beginning, and where it is to be (m or rad).
+    pub(super) start: f64,
+    pub(super) goal: f64,
+    /// How far a unit multiplier lets the row give way (m/N or rad/(N m)).
+    pub(super) give: f64,
+    pub(super) kind: RowKind,
+    /// Distance from the goal at the last iterate (m or rad).
+    pub(super) gap: f64,
+    /// Directions of the forces: now, when the last iterate was found, and at the end of the step.
+    pub(super) direction: Vec2,
+    pub(super) applied: Vec2,
+    pub(super) end: Vec2,
+    /// Multiplier of the position stage (N or N m).
+    pub multiplier: f64,
+    pub(super) status: Status,
+    /// Impulses along the rows of the beginning and of the end (N s or N m s).
+    pub(super) kick: f64,
+    pub(super) impulse: f64,
+    /// Whether something can move the row at all.
+    pub(super) is_movable: bool,
+}
+
+impl ActiveJoint {
+    /// Mean force or torque over the step, along `+∂q/∂x` (N or N m).
+    pub fn force(&self, dt: f64) -> f64 {
+        let impulse = (self.kick + self.impulse) / dt;
+        let steady = if self.is_hard { 0.0 } else { self.multiplier };
+        self.row.sign * (steady + impulse)
+    }
+
+    /// How far the law is from holding (m or rad).
+    fn error(&self) -> f64 {
+        if !self.is_movable {
+            return 0.0;
+        }
+        let off = self.gap + self.give * self.multiplier;
+        match (self.kind, self.status) {
+            (RowKind::Unilateral, Status::Open) | (_, Status::SlipNegative) => (-off).max(0.0),
+            (_, Status::SlipPositive) => off.max(0.0),
+            _ => off.abs(),
+        }
+    }
+
+    /// Whether the row holds its velocity in this step.
+    pub(super) fn is_closed(&self) -> bool {
+        !matches!(self.kind, RowKind::Unilateral) || self.multiplier > 0.0
+    }
+}
+
+/// The law of a row at this step length.
+struct Resolved {
+    goal: f64,
+    give: f64,
+    kind: RowKind,
+    finish: Finish,
+}
+
+impl Island {
+    /// Puts every joint row to work, with the multipliers of the last step.
+    pub(super) fn open_joints(&mut self, settings: &SolveSettings) {
+        if !self.ties.is_empty() {
+            self.relax_turns();
+        }
+        self.ties.clear();
+        if self.joints.is_empty() {
+            return;
+        }
+        for slot in 0..self.joints.len() {
+            let row = self.joints[slot];
+            let is_hard = self.prepare_joint(&row);
+            let when = if is_hard { When::Start } else { When::Now };
+            let grips = &mut self.joint_grips[row.grips.0..row.grips.1];
+            let direction = row.sign * row.measure.aim(&self.blocks, grips, when);
+            let start = row.sign * row.measure.value(&self.blocks, grips, When::Start);
+            let view = (&*grips, direction, row.measure.is_turn());
+            let mobility = own_mobility(&self.blocks, view);
+            let resolved = resolve(&row, is_hard, (start, mobility), settings);
+            let status = match resolved.kind {
+                RowKind::Unilateral if row.remembered <= 0.0 => Status::Open,
+                _ => Status::Stick,
+            };
+            self.ties.push(ActiveJoint {
+                row,
+                is_hard,
+                share: 1.0,
+                finish: resolved.finish,
+                start,
+                goal: resolved.goal,
+                give: resolved.give,
+                kind: resolved.kind,
+                gap: start - resolved.goal,
+                direction,
+                applied: direction,
+                end: direction,
+                multiplier: row.remembered,
+                status,
+                kick: 0.0,
+                impulse: 0.0,
+                is_movable: mobility > 0.0,
+            });
+        }
+        self.applied_grips.clear();
+        self.applied_grips.extend_from_slice(&self.joint_grips);
+        self.list_holders();
+        self.stiffen_turns(settings);
+    }
+
+    /// Makes the compliances of a row's nodes known; returns whether there are none.
+    fn prepare_joint(&mut self, row: &JointRow) -> bool {
+        let mut is_hard = true;
+        for grip in &self.joint_grips[row.grips.0..row.grips.1] {
+            if let (Block::Flex(block), Point::Node(node)) =
+                (&mut self.blocks[grip.block], grip.point)
+            {
+                block.prepare_compliance(node);
+                is_hard = false;
+            }
+        }
+        is_hard
+    }
+
+    /// Lists which rows hold which block, so that only rows that couple are ever combined.
+    fn list_holders(&mut self) {
+        self.holders.clear();
+        for (index, tie) in self.ties.iter().enumerate() {
+            for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {
+                let moves = !matches!(&self.blocks[grip.block], Block::Rigid(block) if block.is_prescribed());
+                if moves && tie.is_movable {
+                    self.holders.push((grip.block, index));
+                }
+            }
+        }
+        self.holders.sort_unstable();
+        self.holders.dedup();
+    }
+
+    /// Adds the forces of the joints to the stage forces and wrenches.
+    pub(super) fn spread_joints(&mut self) {
+        for tie in &self.ties {
+            let p = tie.multiplier;
+            if p == 0.0 {
+                continue;
+            }
+            let is_turn = tie.row.measure.is_turn();
+            for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {
+                match (&mut self.blocks[grip.block], grip.point) {
+                    (Block::Flex(block), Point::Node(node)) => {
+                        let force = p * grip.weight * tie.direction;
+                        block.add_stage_force(node, force, grip.lever, false);
+                    }
+                    _ => add_wrench(
+                        &mut self.wrenches[grip.block],
+                        p,
+                        unit_wrench(grip, tie.direction, is_turn),
+                    ),
+                }
+            }
+        }
+    }
+
+    /// Measures all joint rows where the blocks are now; returns how far the laws are from holding (m or rad).
+    pub(super) fn measure_joints(&mut self) -> f64 {
+        let mut error = 0.0f64;
+        for tie in &mut self.ties {
+            let grips = &self.joint_grips[tie.row.grips.0..tie.row.grips.1];
+            let value = tie.row.measure.value(&self.blocks, grips, When::Now);
+            tie.gap = tie.row.sign * value - tie.goal;
+            error = error.max(tie.error());
+        }
+        error
+    }
+
+    /// Makes the present geometry the rows that the forces of soft joints act along.
+    pub(super) fn refresh_joints(&mut self) {
+        for tie in &mut self.ties {
+            if tie.is_hard {
+                continue;
+            }
+            let (first, last) = tie.row.grips;
+            self.applied_grips[first..last].copy_from_slice(&self.joint_grips[first..last]);
+            tie.applied = tie.direction;
+            let grips = &mut self.joint_grips[first..last];
+            tie.direction = tie.row.sign * tie.row.measure.aim(&self.blocks, grips, When::Now);
+        }
+    }
+}
+
+/// Adds a multiple of a wrench.
+pub(super) fn add_wrench(sum: &mut [f64; 3], factor: f64, wrench: [f64; 3]) {
+    for (sum, value) in sum.iter_mut().zip(wrench) {
+        *sum += factor * value;
+    }
+}
+
+/// `G A⁻¹ Gᵀ` of one row (1/kg).
+fn own_mobility(blocks: &[Block], (grips, direction, is_turn): (&[JointGrip], Vec2, bool)) -> f64 {
+    let mut sum = 0.0;
+    for at in grips {
+        for from in grips.iter().filter(|from| from.block == at.block) {
+            sum += pair_mobility(
+                blocks,
+                (at, direction, is_turn),
+                (from, direction, is_turn),
+                Response::Position,
+            );
+        }
+    }
+    sum
+}
+
+/// How a grip of one row moves by a unit multiplier at a grip of another, on the same block (1/kg).
+pub(super) fn pair_mobility(
+    blocks: &[Block],
+    (at, along, turns): (&JointGrip, Vec2, bool),
+    (from, push, is_turned): (&JointGrip, Vec2, bool),
+    of: Response,
+) -> f64 {
+    match &blocks[at.block] {
+        Block::Rigid(block) => block.mobility_between(
+            unit_wrench(at, along, turns),
+            unit_wrench(from, push, is_turned),
+        ),
+        Block::Flex(_) => {
+            let compliance = blocks[at.block].compliance(at.grip(), from.grip(), of);
+            at.weight * from.weight * along.dot(&(compliance * push))
+        }
+    }
+}
+
+fn resolve(
+    row: &JointRow,
+    is_hard: bool,
+    (start, mobility): (f64, f64),
+    settings: &SolveSettings,
+) -> Resolved {
+    let kept = (-PARTING_RATE * settings.dt).exp();
+    // A force over the step, λ, is `scale` times the multiplier.
+    let scale = if is_hard {
+        2.0 * settings.b0 / (settings.dt * settings.dt)
+    } else {
+        1.0
+    };
+    match row.law {
+        JointLaw::Rigid { goal, rate } => {
+            let (goal, rate) = (row.sign * goal, row.sign * rate);
+            let off = start + settings.dt * rate - goal;
+            Resolved {
+                goal: if off.abs() > SLACK {
+                    goal + kept * off
+                } else {
+                    goal
+                },
+                give: 0.0,
+                kind: RowKind::Bilateral,
+                finish: Finish::Hold { rate },
+            }
+        }
+        JointLaw::Limit { bound } => {
+            let bound = row.sign * bound;
+            let off = start - bound;
+            Resolved {
+                goal: if off < -SLACK {
+                    bound + kept * off
+                } else {
+                    bound
+                },
+                give: 0.0,
+                kind: RowKind::Unilateral,
+                finish: Finish::Limit,
+            }
+        }
+        JointLaw::Drive { rate, most } => Resolved {
+            goal: start + settings.dt * rate,
+            give: 0.0,
+            kind: bounded(most / scale),
+            finish: Finish::Hold { rate },
+        },
+        JointLaw::Spring(spring) => {
+            let spring = spring.absolute(mobility);
+            resolve_spring(spring, is_hard, (start, mobility, scale), settings.dt)
+        }
+    }
+}
+
+/// A spring that the step resolves acts with its mean force, `q` in the middle of the step; others, and those of flexible
+/// blocks, with that of the end.
+fn resolve_spring(
+    spring: Spring,
+    is_hard: bool,
+    (start, mobility, scale): (f64, f64, f64),
+    dt: f64,
+) -> Resolved {
+    let Spring {
+        stiffness: k,
+        damping: c,
+        rest,
+        rate,
+        most,
+        ..
+    } = spring;
+    let sampling = mobility * (0.25 * dt * dt * k + 0.5 * dt * c);
+    let is_resolved = is_hard && sampling <= 1.0;
+    let share = if is_resolved { 0.5 } else { 1.0 };
+    let total = share * k + c / dt;
+    let held = k * (rest - (1.0 - share) * start) + c * (start / dt + rate);
+    let (goal, give, kind) = if total > 0.0 {
+        (held / total, scale / total, bounded(most / scale))
+    } else {
+        let none = RowKind::Box {
+            low: 0.0,
+            high: 0.0,
+        };
+        (start, 0.0, none)
+    };
+    let finish = match (is_hard, is_resolved) {
+        (false, _) => Finish::Nothing,
+        (true, true) => Finish::Spring,
+        (true, false) => Finish::Stiff(spring),
+    };
+    Resolved {
+        goal,
+        give,
+        kind,
+        finish,
+    }
+}
+
+/// The law of a row whose multiplier is at most `most`, either way.
+pub(super) fn bounded(most: f64) -> RowKind {
+    if most.is_finite() {
+        RowKind::Box {
+            low: -most,
+            high: most,
+        }
+    } else {
+        RowKind::Bilateral
+    }
+}

@@ -1,0 +1,196 @@
+//! Condensation: bilateral rows are eliminated once, so that only the others are left to the active set.
+//!
+//! With `B` the bilateral rows and `C` the others, `p_B = -W_BB⁻¹ (b_B + W_BC p_C)` leaves
+//! `W_CC - W_CB W_BB⁻¹ W_BC` and `b_C - W_CB W_BB⁻¹ b_B`. A chain of a hundred links that carries one box then costs one factorization
+//! and a problem of the box's contacts, instead of a factorization per pivot.
+
+use super::dense::{dot, factorize_cholesky, solve_cholesky_in_place};
+use super::problem::{ComplementarityError, Problem, RowKind, Status};
+use super::{Outcome, Solver};
+
+/// Bilateral rows from which condensing pays.
+const LEAST: usize = 8;
+
+/// What must be left of a row's mobility once the bilateral rows hold (-); rows with less are redundant.
+const LEFT: f64 = 1e-9;
+
+/// Rank tolerance of the bilateral rows.
+const RANK_TOLERANCE: f64 = 1e-11;
+
+/// Buffers of the condensed problem.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Condensed {
+    tied: Vec<usize>,
+    others: Vec<usize>,
+    /// Place among `others`.
+    place: Vec<usize>,
+    matrix: Vec<f64>,
+    /// `W_BB⁻¹ W_BC` by columns, then `W_BB⁻¹ b_B`.
+    columns: Vec<f64>,
+    delassus: Vec<f64>,
+    free: Vec<f64>,
+    rows: Vec<RowKind>,
+    acted: Vec<f64>,
+    multipliers: Vec<f64>,
+    status: Vec<Status>,
+    scratch: Vec<f64>,
+}
+
+impl Solver {
+    /// [`Solver::solve`] for problems with many bilateral rows, which are eliminated first where they are independent.
+    ///
+    /// # Panics
+    /// If the shapes do not agree.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub fn solve_condensed(
+        &mut self,
+        problem: &Problem,
+        multipliers: &mut [f64],
+        status: &mut [Status],
+    ) -> Result<Outcome, ComplementarityError> {
+        problem.check()?;
+        let mut condensed = std::mem::take(&mut self.condensed);
+        let outcome = if condensed.condense(problem, multipliers, status) {
+            let reduced = Problem {
+                delassus: &condensed.delassus,
+                free: &condensed.free,
+                rows: &condensed.rows,
+                acted: &condensed.acted,
+            };
+            let solved = if condensed.rows.is_empty() {
+                Ok(Outcome::default())
+            } else {
+                self.solve(&reduced, &mut condensed.multipliers, &mut condensed.status)
+            };
+            if solved.is_ok() {
+                condensed.expand(multipliers, status);
+            }
+            solved
+        } else {
+            self.solve(problem, multipliers, status)
+        };
+        self.condensed = condensed;
+        outcome
+    }
+}
+
+impl Condensed {
+    /// Writes the condensed problem; false if there is nothing to gain or rows depend on each other.
+    fn condense(&mut self, problem: &Problem, multipliers: &[f64], status: &[Status]) -> bool {
+        let n = problem.rows.len();
+        self.split(problem);
+        let n_tied = self.tied.len();
+        if n_tied < LEAST {
+            return false;
+        }
+        self.matrix.clear();
+        for &row in &self.tied {
+            let line = &problem.delassus[row * n..(row + 1) * n];
+            self.matrix
+                .extend(self.tied.iter().map(|&column| line[column]));
+        }
+        if !factorize_cholesky(&mut self.matrix, n_tied, RANK_TOLERANCE) {
+            return false;
+        }
+        self.columns.clear();
+        for &other in &self.others {
+            let line = &problem.delassus[other * n..(other + 1) * n];
+            self.columns.extend(self.tied.iter().map(|&row| line[row]));
+        }
+        self.columns
+            .extend(self.tied.iter().map(|&row| problem.free[row]));
+        for column in self.columns.chunks_exact_mut(n_tied) {
+            solve_cholesky_in_place(&self.matrix, n_tied, column);
+        }
+        self.reduce(problem, multipliers, status)
+    }
+
+    fn split(&mut self, problem: &Problem) {
+        let n = problem.rows.len();
+        let diagonal = |row: usize| problem.delassus[row * (n + 1)];
+        let largest = (0..n).map(diagonal).fold(0.0, f64::max);
+        self.tied.clear();
+        self.others.clear();
+        self.place.clear();
+        for (row, kind) in problem.rows.iter().enumerate() {
+            self.place.push(self.others.len());
+            if *kind == RowKind::Bilateral && diagonal(row) > f64::EPSILON * largest {
+                self.tied.push(row);
+            } else {
+                self.others.push(row);
+            }
+        }
+    }
+
+    fn reduce(&mut self, problem: &Problem, multipliers: &[f64], status: &[Status]) -> bool {
+        let (n, n_tied, n_others) = (problem.rows.len(), self.tied.len(), self.others.len());
+        self.delassus.clear();
+        self.delassus.resize(n_others * n_others, 0.0);
+        self.free.clear();
+        self.rows.clear();
+        self.acted.clear();
+        self.multipliers.clear();
+        self.status.clear();
+        let mut coupling = std::mem::take(&mut self.scratch);
+        let mut is_regular = true;
+        for (place, &row) in self.others.iter().enumerate() {
+            let line = &problem.delassus[row * n..(row + 1) * n];
+            coupling.clear();
+            coupling.extend(self.tied.iter().map(|&column| line[column]));
+            let mut columns = self.columns.chunks_exact(n_tied);
+            for (other, &column) in self.others.iter().enumerate() {
+                let answer = columns.next().map_or(0.0, |column| dot(&coupling, column));
+                self.delassus[place * n_others + other] = line[column] - answer;
+            }
+            let answer = columns.next().map_or(0.0, |column| dot(&coupling, column));
+            self.free.push(problem.free[row] - answer);
+            let left = self.delassus[place * (n_others + 1)];
+            is_regular &= left > LEFT * line[row] || line[row] == 0.0;
+            self.rows.push(match problem.rows[row] {
+                RowKind::Friction {
+                    normal,
+                    coefficient,
+                } => RowKind::Friction {
+                    normal: self.place[normal],
+                    coefficient,
+                },
+                kind => kind,
+            });
+            self.acted.extend(problem.acted.get(row));
+            self.multipliers.push(multipliers[row]);
+            self.status.push(status[row]);
+        }
+        self.scratch = coupling;
+        self.symmetrize(n_others);
+        is_regular
+    }
+
+    fn symmetrize(&mut self, n: usize) {
+        for row in 0..n {
+            for column in 0..row {
+                let (a, b) = (row * n + column, column * n + row);
+                let mean = 0.5 * (self.delassus[a] + self.delassus[b]);
+                (self.delassus[a], self.delassus[b]) = (mean, mean);
+            }
+        }
+    }
+
+    /// Writes the answer of the condensed problem over that of the whole.
+    fn expand(&self, multipliers: &mut [f64], status: &mut [Status]) {
+        let (n_tied, n_others) = (self.tied.len(), self.others.len());
+        for (place, &row) in self.others.iter().enumerate() {
+            multipliers[row] = self.multipliers[place];
+            status[row] = self.status[place];
+        }
+        for (index, &row) in self.tied.iter().enumerate() {
+            let mut sum = self.columns[n_others * n_tied + index];
+            for (place, p) in self.multipliers.iter().enumerate() {
+                sum += p * self.columns[place * n_tied + index];
+            }
+            multipliers[row] = -sum;
+            status[row] = Status::Stick;
+        }
+    }
+}

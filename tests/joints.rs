@@ -1,0 +1,21 @@
+//! Joints and attachments: rapier's impulse joints on claimed bodies, and flexible bodies held by something.
+
+mod common;
+
+#[path = "joints/support.rs"]
+mod support;
+
+#[path = "joints/hinges.rs"]
+mod hinges;
+
+#[path = "joints/beside_rapier.rs"]
+mod beside_rapier;
+
+#[path = "joints/attachments.rs"]
+mod attachments;
+
+#[path = "joints/forces.rs"]
+mod forces;
+
+#[path = "joints/coming_and_going.rs"]
+mod coming_and_going;
