@@ -164,8 +164,13 @@ fn is_awake(sets: &RapierSets<'_>, collider: &Collider) -> bool {
         && parent.is_some_and(|body| !body.is_fixed() && !body.is_sleeping())
 }
 
-/// Keeps the carrier of a body awake while a node moves, before rapier's step counts the time that it has been still.
-pub(crate) fn keep_awake(body: &FlexBody, velocities: &[f64], sets: &mut RapierSets<'_>) {
+/// Keeps the carrier of a body awake while a node moves, or while it is attached to something, of which rapier knows nothing, before rapier's step counts the time that it has been still.
+pub(crate) fn keep_awake(
+    body: &FlexBody,
+    velocities: &[f64],
+    is_attached: bool,
+    sets: &mut RapierSets<'_>,
+) {
     let handle = body.rigid_body_handle();
     let Some(carrier) = sets.bodies.get(handle) else {
         return;
@@ -177,7 +182,7 @@ pub(crate) fn keep_awake(body: &FlexBody, velocities: &[f64], sets: &mut RapierS
     if activation.normalized_linear_threshold < 0.0 || !is_due {
         return;
     }
-    if moves(body, velocities, patience, sets)
+    if (is_attached || moves(body, velocities, patience, sets))
         && let Some(carrier) = sets.bodies.get_mut(handle)
     {
         // The step adds its length.
@@ -187,14 +192,19 @@ pub(crate) fn keep_awake(body: &FlexBody, velocities: &[f64], sets: &mut RapierS
 
 /// Wakes the carrier of a body that moves all the same: surfaces that were written set its timer to zero, and a step may be longer
 /// than the time until sleep.
-pub(crate) fn wake_moving(body: &FlexBody, velocities: &[f64], sets: &mut RapierSets<'_>) {
+pub(crate) fn wake_moving(
+    body: &FlexBody,
+    velocities: &[f64],
+    is_attached: bool,
+    sets: &mut RapierSets<'_>,
+) {
     let handle = body.rigid_body_handle();
     let carrier = sets.bodies.get(handle);
     let Some(carrier) = carrier.filter(|carrier| carrier.is_sleeping()) else {
         return;
     };
     let patience = carrier.activation().time_until_sleep;
-    if moves(body, velocities, patience, sets) {
+    if is_attached || moves(body, velocities, patience, sets) {
         sets.islands.wake_up(sets.bodies, handle, true);
     }
 }

@@ -84,8 +84,9 @@ impl FlexPipeline {
     pub(super) fn keep_awake(&self, sets: &mut RapierSets<'_>, flex_bodies: &FlexBodySet) {
         for &(index, _) in &self.reserves {
             let block = self.gatherer.block(index);
-            if let (Some(block), Some((_, body))) = (block, flex_bodies.at_index(index)) {
-                keep_awake(body, block.velocities(), sets);
+            if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(index)) {
+                let is_attached = flex_bodies.is_attached(handle);
+                keep_awake(body, block.velocities(), is_attached, sets);
             }
         }
     }
@@ -94,8 +95,9 @@ impl FlexPipeline {
     pub(super) fn wake_moving(&self, sets: &mut RapierSets<'_>, flex_bodies: &FlexBodySet) {
         for &(index, _) in &self.reserves {
             let block = self.gatherer.block(index);
-            if let (Some(block), Some((_, body))) = (block, flex_bodies.at_index(index)) {
-                wake_moving(body, block.velocities(), sets);
+            if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(index)) {
+                let is_attached = flex_bodies.is_attached(handle);
+                wake_moving(body, block.velocities(), is_attached, sets);
             }
         }
     }

@@ -10,6 +10,7 @@ pub const DT: f64 = 1.0 / 120.0;
 pub fn claimed_anchor(scene: &mut Scene) -> RigidBodyHandle {
     let anchor = scene.world.insert_body(
         RigidBodyBuilder::dynamic()
+            .can_sleep(false)
             .locked_axes(LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED),
     );
     scene.world.insert_collider(
@@ -32,6 +33,7 @@ pub fn claimed_anchor(scene: &mut Scene) -> RigidBodyHandle {
 pub fn free_body(scene: &mut Scene, at: [f64; 2], mass: f64, inertia: f64) -> RigidBodyHandle {
     scene.world.insert_body(
         RigidBodyBuilder::dynamic()
+            .can_sleep(false)
             .translation(vec2(at[0], at[1]))
             .additional_mass_properties(MassProperties::new(
                 vec2(0.0, 0.0),

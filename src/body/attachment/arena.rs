@@ -1,7 +1,7 @@
 //! All attachments of a set, with generational handles.
 
-use super::{Attachment, AttachmentError};
-use crate::body::FlexBodySet;
+use super::{Attachment, AttachmentError, AttachmentTarget};
+use crate::body::{FlexBodyHandle, FlexBodySet};
 
 /// Names an attachment of one [`FlexBodySet`]; stays invalid for ever once it is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -128,7 +128,9 @@ impl FlexBodySet {
         self.check_attachment(handle)?;
         let parts = handle.into_raw_parts();
         let found = self.attachments_mut().remove(parts);
-        found.ok_or(AttachmentError::Stale(handle))
+        let removed = found.ok_or(AttachmentError::Stale(handle))?;
+        self.wake_ends(&removed);
+        Ok(removed)
     }
 
     /// All attachments with their handles.
@@ -138,8 +140,29 @@ impl FlexBodySet {
     }
 
     pub(crate) fn insert_attachment(&mut self, attachment: Attachment) -> AttachmentHandle {
+        self.wake_ends(&attachment);
         let parts = self.attachments_mut().insert(attachment);
         self.attachment_handle(parts)
+    }
+
+    /// Wakes the flexible bodies at the ends of an attachment.
+    fn wake_ends(&mut self, attachment: &Attachment) {
+        let other = match attachment.target() {
+            AttachmentTarget::Flexible(other) => Some(other),
+            AttachmentTarget::World | AttachmentTarget::RigidBody(_) => None,
+        };
+        for handle in [Some(attachment.body()), other].into_iter().flatten() {
+            if let Some(body) = self.get_mut(handle) {
+                body.wake_up();
+            }
+        }
+    }
+
+    /// Whether something is attached to a body.
+    pub fn is_attached(&self, handle: FlexBodyHandle) -> bool {
+        self.attachments().iter().any(|(_, attachment)| {
+            attachment.body() == handle || attachment.target() == AttachmentTarget::Flexible(handle)
+        })
     }
 
     pub(crate) fn attachment_handle(&self, (index, generation): (u32, u32)) -> AttachmentHandle {
