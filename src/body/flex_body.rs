@@ -22,7 +22,8 @@ pub struct FlexBody {
     nodal_force: Vec<f64>,
     body_force: Vec2,
     gravity_scale: f64,
-    contact: ContactSettings,
+    pub(super) contact: ContactSettings,
+    pub(super) has_new_contact: bool,
     /// Anything the user wants to keep with the body.
     pub user_data: u128,
     state: FlexState,
@@ -53,6 +54,7 @@ impl FlexBody {
             body_force: Vec2::zeros(),
             gravity_scale: 1.0,
             contact,
+            has_new_contact: false,
             user_data,
             state: FlexState::at_rest(model.rest_positions(), arms.origin),
             arms,

@@ -5,7 +5,8 @@
 //! pushes nothing.
 
 use crate::body::{
-    BuildError, FlexBody, FlexBodyBuilder, FlexBodyError, FlexBodyHandle, FlexBodySet,
+    BuildError, ContactSettings, FlexBody, FlexBodyBuilder, FlexBodyError, FlexBodyHandle,
+    FlexBodySet,
 };
 use crate::math::{node_vec, to_rapier};
 use crate::rapier::parry::shape::{Polyline, PolylineFlags};
@@ -50,7 +51,12 @@ impl FlexBodySet {
             .restitution_combine_rule(contact.restitution_combine_rule)
             .collision_groups(contact.collision_groups)
             .solver_groups(InteractionGroups::none())
-            .active_events(contact.active_events);
+            .active_collision_types(contact.active_collision_types)
+            .active_hooks(contact.active_hooks)
+            .active_events(contact.active_events)
+            .contact_force_event_threshold(contact.contact_force_event_threshold as Real)
+            .contact_skin(contact.contact_skin as Real)
+            .sensor(contact.is_sensor);
         let collider = colliders.insert_with_parent(collider, carrier, bodies);
         body.bind(carrier, collider);
         Ok(self.insert_body(body))
@@ -103,6 +109,44 @@ pub(crate) fn is_carried(body: &FlexBody, bodies: &RigidBodySet, colliders: &Col
             vertices.len() == nodes.len()
                 && pairs.all(|(&node, old)| *old == to_rapier(node_vec(body.positions(), node)))
         })
+}
+
+/// Gives carriers the settings that were changed since the last step, and takes over solver groups set on them: rapier
+/// itself must never push a surface.
+pub(crate) fn sync_settings(flex_bodies: &mut FlexBodySet, colliders: &mut ColliderSet) {
+    for (_, body) in flex_bodies.iter_mut() {
+        let handle = body.collider_handle();
+        let settings = body.take_new_contact();
+        let groups = colliders.get(handle).map(Collider::solver_groups);
+        let has_groups = groups.is_some_and(|groups| groups != InteractionGroups::none());
+        if settings.is_none() && !has_groups {
+            continue;
+        }
+        let Some(collider) = colliders.get_mut(handle) else {
+            continue;
+        };
+        if let Some(groups) = groups.filter(|_| has_groups) {
+            body.adopt_solver_groups(groups);
+            collider.set_solver_groups(InteractionGroups::none());
+        }
+        if let Some(contact) = settings {
+            write_settings(&contact, collider);
+        }
+    }
+}
+
+fn write_settings(contact: &ContactSettings, collider: &mut Collider) {
+    collider.set_friction(contact.friction as Real);
+    collider.set_friction_combine_rule(contact.friction_combine_rule);
+    collider.set_restitution(contact.restitution as Real);
+    collider.set_restitution_combine_rule(contact.restitution_combine_rule);
+    collider.set_collision_groups(contact.collision_groups);
+    collider.set_active_collision_types(contact.active_collision_types);
+    collider.set_active_hooks(contact.active_hooks);
+    collider.set_active_events(contact.active_events);
+    collider.set_contact_force_event_threshold(contact.contact_force_event_threshold as Real);
+    collider.set_contact_skin(contact.contact_skin as Real);
+    collider.set_sensor(contact.is_sensor);
 }
 
 /// The surface of a body as a closed polyline, material on the left.

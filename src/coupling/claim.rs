@@ -3,6 +3,7 @@
 //! From every flexible body the contact graph is walked through dynamic rigid bodies; all that are reached belong to the
 //! flexible stage for this step. Fixed and kinematic bodies are met but not passed through.
 
+use super::events::{PairName, pair_name};
 use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box};
 use super::sets::RapierSets;
 use crate::body::FlexBodySet;
@@ -36,6 +37,8 @@ pub(crate) struct ClaimedFlex {
     pub travel: Real,
     /// Size of a boundary segment (m).
     pub edge: f64,
+    /// What it pushes; its surface in rapier pushes nothing.
+    pub solver_groups: InteractionGroups,
 }
 
 /// The result of a claim, with its buffers.
@@ -55,9 +58,21 @@ pub(crate) struct Claims {
     /// What the swept boxes meet, by flexible body.
     pub(super) swept_hits: Vec<(usize, ColliderHandle)>,
     neighbours: Vec<ColliderHandle>,
+    /// What the user's filter said of pairs that it was asked about.
+    answers: HashMap<PairName, Option<SolverFlags>>,
 }
 
 impl Claims {
+    /// Whether a collider is the surface of a flexible body.
+    pub fn is_surface(&self, handle: ColliderHandle) -> bool {
+        self.flex_of_collider.contains_key(&handle)
+    }
+
+    /// What the user's filter said of a pair in this step, if it was asked.
+    pub fn answer(&self, name: PairName) -> Option<Option<SolverFlags>> {
+        self.answers.get(&name).copied()
+    }
+
     /// Component that a flexible body belongs to.
     pub fn component_of_flex(&mut self, flex: usize) -> usize {
         self.root(flex)
@@ -67,6 +82,13 @@ impl Claims {
     pub fn component_of_rigid(&mut self, handle: RigidBodyHandle) -> Option<usize> {
         let index = *self.rigid_index.get(&handle)?;
         Some(self.root(self.flex.len() + index))
+    }
+
+    /// Whether a collider is a surface, or that of a claimed body.
+    pub fn holds(&self, handle: ColliderHandle, colliders: &ColliderSet) -> bool {
+        let parent = || colliders.get(handle).and_then(Collider::parent);
+        self.flex_of_collider.contains_key(&handle)
+            || parent().is_some_and(|parent| self.rigid_index.contains_key(&parent))
     }
 
     /// Looks ahead along the velocities of the flexible bodies, before the detection step.
@@ -97,7 +119,8 @@ impl Claims {
             }
             let edge = length / nodes.len() as f64;
             let fall = from_rapier(sets.gravity).norm() * body.gravity_scale().abs() * dt * dt;
-            let swept = loosened(swept, (0.5 * edge + fall) as Real);
+            let skin = body.contact_settings().contact_skin;
+            let swept = loosened(swept, (0.5 * edge + fall + skin) as Real);
             let index = handle.into_raw_parts().0;
             self.flex.push(ClaimedFlex {
                 index,
@@ -105,6 +128,7 @@ impl Claims {
                 swept,
                 travel: travel.sqrt() as Real,
                 edge,
+                solver_groups: body.contact_settings().solver_groups,
             });
         }
         // The order of insertion is not physics.
@@ -169,6 +193,7 @@ impl Claims {
         self.rigid_index.clear();
         self.pairs.clear();
         self.seen.clear();
+        self.answers.clear();
         self.parent.clear();
         self.parent.extend(0..self.flex.len());
         for flex in 0..self.flex.len() {
@@ -212,8 +237,9 @@ impl Claims {
         self.neighbours
             .sort_unstable_by(|&one, &other| order_of_colliders(sets, one, other));
         self.neighbours.dedup();
+        let answers = &mut self.answers;
         self.neighbours
-            .retain(|&other| may_touch(sets, own.collider, other));
+            .retain(|&other| may_touch(sets, own.collider, other, answers));
     }
 
     fn add_flex_pair(&mut self, sets: &RapierSets<'_>, flex: usize, other: ColliderHandle) {
@@ -222,7 +248,9 @@ impl Claims {
             let (low, high) = (flex.min(target), flex.max(target));
             let names = (self.flex[low].collider, self.flex[high].collider);
             let is_near = self.flex[low].swept.intersects(&self.flex[high].swept);
-            if low < high && is_near && self.seen.insert(names) {
+            let groups = [low, high].map(|flex| self.flex[flex].solver_groups);
+            let meets = is_near && groups[0].test(groups[1]);
+            if low < high && meets && self.seen.insert(names) {
                 self.unite(low, high);
                 self.pairs.push(ClaimedPair::FlexFlex(low, high));
             }
@@ -232,7 +260,8 @@ impl Claims {
             return;
         };
         let swept = swept_box(sets.bodies, collider, sets.integration_parameters.dt);
-        if !swept.intersects(&self.flex[flex].swept) {
+        let groups = [self.flex[flex].solver_groups, collider.solver_groups()];
+        if !swept.intersects(&self.flex[flex].swept) || !groups[0].test(groups[1]) {
             return;
         }
         self.pairs.push(ClaimedPair::FlexRigid(flex, other));
@@ -286,7 +315,10 @@ impl Claims {
                 continue;
             };
             let solves = own_collider.solver_groups().test(collider.solver_groups());
-            if !solves || !self.seen.insert(ordered) || !may_touch(sets, ordered.0, ordered.1) {
+            if !solves || !self.seen.insert(ordered) {
+                continue;
+            }
+            if !may_touch(sets, ordered.0, ordered.1, &mut self.answers) {
                 continue;
             }
             self.pairs
@@ -328,24 +360,33 @@ impl Claims {
 }
 
 /// The dynamic rigid body of a collider, if the flexible stage can solve for it.
+///
+/// One that dominates flexible bodies, whose dominance is zero, does not feel them: rapier moves it, and it is met with the
+/// motion its velocity prescribes.
 pub(crate) fn claimable_parent(
     sets: &RapierSets<'_>,
     collider: &Collider,
 ) -> Option<RigidBodyHandle> {
     let parent = collider.parent()?;
     let body = sets.bodies.get(parent)?;
-    let is_free = body.is_dynamic() && body.is_enabled() && !body.is_soft_frame();
+    let is_free = body.is_dynamic()
+        && body.is_enabled()
+        && !body.is_soft_frame()
+        && body.dominance_group() <= 0;
     let is_link = sets.multibody_joints.rigid_body_link(parent).is_some();
     (is_free && !is_link).then_some(parent)
 }
 
 /// Whether two colliders may push each other: what rapier's narrow phase asks of a pair, the user's hook included.
-fn may_touch(sets: &RapierSets<'_>, one: ColliderHandle, other: ColliderHandle) -> bool {
-    let (collider1, collider2) = if one.into_raw_parts() < other.into_raw_parts() {
-        (one, other)
-    } else {
-        (other, one)
-    };
+fn may_touch(
+    sets: &RapierSets<'_>,
+    one: ColliderHandle,
+    other: ColliderHandle,
+    answers: &mut HashMap<PairName, Option<SolverFlags>>,
+) -> bool {
+    let name = pair_name(one, other);
+    let pair = sets.narrow_phase.contact_pair(one, other);
+    let [collider1, collider2] = pair.map_or(name, |pair| [pair.collider1, pair.collider2]);
     let (Some(first), Some(second)) =
         (sets.colliders.get(collider1), sets.colliders.get(collider2))
     else {
@@ -378,7 +419,10 @@ fn may_touch(sets: &RapierSets<'_>, one: ColliderHandle, other: ColliderHandle) 
         rigid_body1: first.parent(),
         rigid_body2: second.parent(),
     };
-    let flags = sets.hooks.filter_contact_pair(&context);
+    // From both sides, a pair is asked about once.
+    let flags = *answers
+        .entry(name)
+        .or_insert_with(|| sets.hooks.filter_contact_pair(&context));
     flags.is_some_and(|flags| flags.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
 }
 

@@ -59,20 +59,25 @@ impl<'a> RapierSets<'a> {
         }
     }
 
-    /// Rapier's own step.
-    pub fn step(&mut self) {
+    /// Rapier's own step, with these hooks, heard by `events`.
+    pub(crate) fn step(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
         let parameters = *self.integration_parameters;
-        self.step_with(&parameters);
+        self.step_with(&parameters, hooks, events);
     }
 
     /// Applies the user's changes and updates the contact graph, moving nothing.
-    pub fn detect(&mut self) {
+    pub(crate) fn detect(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
         let mut parameters = *self.integration_parameters;
         parameters.dt = 0.0;
-        self.step_with(&parameters);
+        self.step_with(&parameters, hooks, events);
     }
 
-    fn step_with(&mut self, parameters: &IntegrationParameters) {
+    fn step_with(
+        &mut self,
+        parameters: &IntegrationParameters,
+        hooks: &dyn PhysicsHooks,
+        events: &dyn EventHandler,
+    ) {
         self.physics_pipeline.step(
             self.gravity,
             parameters,
@@ -85,8 +90,8 @@ impl<'a> RapierSets<'a> {
             self.multibody_joints,
             self.soft_bodies,
             self.ccd_solver,
-            self.hooks,
-            self.events,
+            hooks,
+            events,
         );
     }
 }

@@ -92,6 +92,7 @@ impl FlexPipeline {
         self.landings.clear();
         self.reserves.clear();
         self.memory.discard_notes();
+        self.events.discard_notes();
         self.report.clear();
         self.report.energy.dissipated = dissipated;
         for (_, body) in flex_bodies.iter_mut() {

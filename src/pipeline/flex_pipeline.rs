@@ -5,7 +5,8 @@ use super::report::StepReport;
 use crate::body::FlexBodySet;
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
-    Claims, GatherSettings, Gatherer, Landing, Masters, RapierSets, hand_back, land, write_surface,
+    Claims, EventBook, GatherSettings, Gatherer, HookGate, Landing, Masters, RapierSets, hand_back,
+    land, sync_settings, write_surface,
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ImpactTreatment, Island, SolveSettings};
@@ -53,6 +54,7 @@ pub struct FlexPipeline {
     pub(super) landings: Vec<Landing>,
     pub(super) reserves: Vec<(u32, f64)>,
     components: Vec<usize>,
+    pub(super) events: EventBook,
     pub(super) report: StepReport,
 }
 
@@ -80,6 +82,7 @@ impl FlexPipeline {
             landings: Vec::new(),
             reserves: Vec::new(),
             components: Vec::new(),
+            events: EventBook::default(),
             report: StepReport::default(),
         }
     }
@@ -212,23 +215,31 @@ impl FlexPipeline {
         flex_bodies: &mut FlexBodySet,
     ) -> Result<&StepReport, StepError> {
         self.report.clear();
+        let (user, hooks) = (sets.events, sets.hooks);
         if flex_bodies.is_empty() {
-            sets.step();
+            if self.events.is_empty() {
+                sets.step(hooks, user);
+            } else {
+                sets.step(hooks, &self.events.gate(user, None));
+                self.events.tell(&sets);
+            }
             return Ok(&self.report);
         }
         let mut clock = Clock::start();
         let dissipated = self.report.energy.dissipated;
         let step = self.check(&sets, flex_bodies)?;
+        sync_settings(flex_bodies, sets.colliders);
         self.claims.look_ahead(&sets, flex_bodies);
         let is_detected = step.dt == 0.0 || self.claims.needs_detection(&sets);
         clock.lap(&mut self.report.times.claim);
         if is_detected {
-            sets.detect();
+            self.detect(&mut sets);
             self.report.note_quarantine(&sets);
             clock.lap(&mut self.report.times.rapier);
             if step.dt == 0.0 {
                 // The tree may be out to be optimized: a detection step without changes puts it back for queries.
-                sets.detect();
+                self.detect(&mut sets);
+                self.events.tell_detected(&sets);
                 return Ok(&self.report);
             }
             self.claims.sweep(&sets);
@@ -240,19 +251,36 @@ impl FlexPipeline {
             self.undo(flex_bodies, dissipated);
             if is_detected {
                 // As above.
-                sets.detect();
+                self.detect(&mut sets);
             }
             return Err(error);
         }
         hand_back(&mut self.landings, &mut sets);
         clock.lap(&mut self.report.times.hand_back);
-        sets.step();
+        let gate = self.hook_gate(hooks, true);
+        sets.step(&gate, &self.events.gate(user, Some(&self.claims)));
         self.report.note_quarantine(&sets);
         clock.lap(&mut self.report.times.rapier);
         land(&self.landings, &mut sets, &mut self.masters);
         self.commit(&mut sets, flex_bodies);
+        self.events.tell(&sets);
         clock.lap(&mut self.report.times.hand_back);
         Ok(&self.report)
+    }
+
+    /// Rapier's step without length: what it stops is not told before the full step confirms it.
+    fn detect(&self, sets: &mut RapierSets<'_>) {
+        let gate = self.hook_gate(sets.hooks, false);
+        sets.detect(&gate, &self.events.gate(sets.events, None));
+    }
+
+    fn hook_gate<'a>(&'a self, user: &'a dyn PhysicsHooks, is_full: bool) -> HookGate<'a> {
+        HookGate {
+            user,
+            book: &self.gatherer.hooks,
+            claims: &self.claims,
+            is_full,
+        }
     }
 
     /// Solves every component; commits nothing.
@@ -266,6 +294,7 @@ impl FlexPipeline {
         self.landings.clear();
         self.reserves.clear();
         self.memory.discard_notes();
+        self.events.discard_notes();
         self.gatherer.turn_over(false);
         self.components.clear();
         for flex in 0..self.claims.flex.len() {
