@@ -4,6 +4,8 @@ mod common;
 
 #[path = "events/collisions.rs"]
 mod collisions;
+#[path = "events/drops.rs"]
+mod drops;
 #[path = "events/filters.rs"]
 mod filters;
 #[path = "events/forces.rs"]

@@ -303,6 +303,27 @@ fn threshold(name: PairName, colliders: &ColliderSet) -> Option<f64> {
 }
 
 impl EventGate<'_> {
+    /// Tells that a pair which became a sensor's has stopped to touch, before it starts to intersect.
+    fn end_contact(&self, name: PairName, bodies: &RigidBodySet, colliders: &ColliderSet) {
+        let mut heard = lock(&self.book.heard);
+        let held = heard.held.iter().find(|held| name_of(held) == name);
+        let stop = held.copied().filter(|held| held.stopped());
+        let is_ahead = heard.ahead.remove(&name);
+        heard.held.retain(|held| name_of(held) != name);
+        let [one, other] = match stop {
+            Some(stop) => [stop.collider1(), stop.collider2()],
+            None if is_ahead => name,
+            None => return,
+        };
+        let mut pairs = std::mem::take(&mut heard.pairs);
+        drop(heard);
+        let pair = pairs.fill([one, other], false, &[], colliders, 0.0);
+        let event = CollisionEvent::Stopped(one, other, CollisionEventFlags::empty());
+        self.user
+            .handle_collision_event(bodies, colliders, event, Some(pair));
+        lock(&self.book.heard).pairs = pairs;
+    }
+
     /// Whether the flexible stage solves a pair in this step.
     fn is_ours(&self, [one, other]: [ColliderHandle; 2], colliders: &ColliderSet) -> bool {
         let Some(claims) = self.claims else {
@@ -326,10 +347,11 @@ impl EventHandler for EventGate<'_> {
             self.user
                 .handle_collision_event(bodies, colliders, event, pair);
         };
+        let name = name_of(&event);
         if event.sensor() {
+            self.end_contact(name, bodies, colliders);
             return forward();
         }
-        let name = name_of(&event);
         let mut heard = lock(&self.book.heard);
         if event.removed() {
             heard.ahead.remove(&name);
