@@ -13,6 +13,8 @@ mod cantilever;
 mod custom_element;
 #[path = "../examples/falling_block.rs"]
 mod falling_block;
+#[path = "../examples/sensor_gate.rs"]
+mod sensor_gate;
 #[path = "../examples/two_blocks.rs"]
 mod two_blocks;
 
@@ -146,6 +148,19 @@ fn a_users_own_element_conforms_and_locks_as_its_theory_says() -> Outcome {
     Ok(())
 }
 
+/// Free fall is exact under the trapezoidal rule for rigid motion; a gate's times are known to a step of 1/240 s in one second.
+#[test]
+fn light_gates_measure_gravity_and_push_nothing() -> Outcome {
+    let outcome = sensor_gate::run(&sensor_gate::cli::Options::default())?;
+    assert_eq!((outcome.reached_s.len(), outcome.left_s.len()), (12, 12));
+    assert_within("g", outcome.g_error, 0.0, 5e-3);
+    assert_eq!(outcome.sheet_events, [2, 2], "block and ball");
+    assert_eq!(outcome.n_forces, 0);
+    // Positions of 15 m in steps that rapier holds to 1e-7 of a second.
+    assert!(outcome.deviation_m < 1e-5, "{:e} m", outcome.deviation_m);
+    Ok(())
+}
+
 /// `--steps 3` is for smoke tests: it must not trip over motion that has not happened yet.
 #[test]
 fn every_example_runs_shortened() -> Outcome {
@@ -155,5 +170,6 @@ fn every_example_runs_shortened() -> Outcome {
     box_on_beam::run(&box_on_beam::cli::Options { json: true, steps })?;
     two_blocks::run(&two_blocks::cli::Options { json: true, steps })?;
     custom_element::run(&custom_element::cli::Options { json: true, steps })?;
+    sensor_gate::run(&sensor_gate::cli::Options { json: true, steps })?;
     Ok(())
 }

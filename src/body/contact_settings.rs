@@ -57,8 +57,7 @@ impl Default for ContactSettings {
 impl FlexBody {
     /// Sets how the surface meets others, from the next step on.
     ///
-    /// Every setting of rapier's collider is then that of `settings`; to change one, change a copy of
-    /// [`FlexBody::contact_settings`].
+    /// Rapier's collider is given what differs from the settings before; what the user has set on the collider itself stays.
     ///
     /// # Errors
     /// If a coefficient or the skin is negative, or no finite number that rapier's precision holds; nothing is then changed.
@@ -76,53 +75,48 @@ impl FlexBody {
             return Err(FlexBodyError::NotFinite("the contact settings"));
         }
         self.contact = settings;
-        self.has_new_contact = true;
         Ok(())
-    }
-
-    /// Changes a copy of the settings and sets it.
-    fn change(&mut self, change: impl FnOnce(&mut ContactSettings)) {
-        change(&mut self.contact);
-        self.has_new_contact = true;
     }
 
     /// Sets which colliders the body meets, from the next step on.
     pub fn set_collision_groups(&mut self, groups: InteractionGroups) {
-        self.change(|contact| contact.collision_groups = groups);
+        self.contact.collision_groups = groups;
     }
 
     /// Sets which of the colliders it meets the body pushes, from the next step on.
     pub fn set_solver_groups(&mut self, groups: InteractionGroups) {
-        self.change(|contact| contact.solver_groups = groups);
+        self.contact.solver_groups = groups;
     }
 
     /// Sets which types of rigid bodies the body meets, from the next step on.
     pub fn set_active_collision_types(&mut self, types: ActiveCollisionTypes) {
-        self.change(|contact| contact.active_collision_types = types);
+        self.contact.active_collision_types = types;
     }
 
     /// Sets which of the user's hooks are asked about the body, from the next step on.
     pub fn set_active_hooks(&mut self, hooks: ActiveHooks) {
-        self.change(|contact| contact.active_hooks = hooks);
+        self.contact.active_hooks = hooks;
     }
 
     /// Sets which events are reported, from the next step on.
     pub fn set_active_events(&mut self, events: ActiveEvents) {
-        self.change(|contact| contact.active_events = events);
+        self.contact.active_events = events;
     }
 
     /// Makes the body a sensor, which touches nothing, or a solid one again, from the next step on.
     pub fn set_sensor(&mut self, is_sensor: bool) {
-        self.change(|contact| contact.is_sensor = is_sensor);
+        self.contact.is_sensor = is_sensor;
     }
 
-    /// The settings that rapier's collider does not have yet.
-    pub(crate) fn take_new_contact(&mut self) -> Option<ContactSettings> {
-        std::mem::take(&mut self.has_new_contact).then_some(self.contact)
+    /// The settings that rapier's collider was given last and those it should have, if they differ.
+    pub(crate) fn take_new_contact(&mut self) -> Option<[ContactSettings; 2]> {
+        let given = std::mem::replace(&mut self.carrier_contact, self.contact);
+        (given != self.contact).then_some([given, self.contact])
     }
 
     /// Takes over solver groups that were set on rapier's collider.
     pub(crate) fn adopt_solver_groups(&mut self, groups: InteractionGroups) {
         self.contact.solver_groups = groups;
+        self.carrier_contact.solver_groups = groups;
     }
 }

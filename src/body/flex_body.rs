@@ -23,7 +23,7 @@ pub struct FlexBody {
     body_force: Vec2,
     gravity_scale: f64,
     pub(super) contact: ContactSettings,
-    pub(super) has_new_contact: bool,
+    pub(super) carrier_contact: ContactSettings,
     /// Anything the user wants to keep with the body.
     pub user_data: u128,
     state: FlexState,
@@ -54,7 +54,7 @@ impl FlexBody {
             body_force: Vec2::zeros(),
             gravity_scale: 1.0,
             contact,
-            has_new_contact: false,
+            carrier_contact: contact,
             user_data,
             state: FlexState::at_rest(model.rest_positions(), arms.origin),
             arms,

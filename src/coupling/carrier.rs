@@ -129,24 +129,61 @@ pub(crate) fn sync_settings(flex_bodies: &mut FlexBodySet, colliders: &mut Colli
             body.adopt_solver_groups(groups);
             collider.set_solver_groups(InteractionGroups::none());
         }
-        if let Some(contact) = settings {
-            write_settings(&contact, collider);
+        if let Some([given, wanted]) = settings {
+            write_settings(&given, &wanted, collider);
         }
     }
 }
 
-fn write_settings(contact: &ContactSettings, collider: &mut Collider) {
-    collider.set_friction(contact.friction as Real);
-    collider.set_friction_combine_rule(contact.friction_combine_rule);
-    collider.set_restitution(contact.restitution as Real);
-    collider.set_restitution_combine_rule(contact.restitution_combine_rule);
-    collider.set_collision_groups(contact.collision_groups);
-    collider.set_active_collision_types(contact.active_collision_types);
-    collider.set_active_hooks(contact.active_hooks);
-    collider.set_active_events(contact.active_events);
-    collider.set_contact_force_event_threshold(contact.contact_force_event_threshold as Real);
-    collider.set_contact_skin(contact.contact_skin as Real);
-    collider.set_sensor(contact.is_sensor);
+/// Writes what differs, so that settings made on the collider itself stay.
+fn write_settings(given: &ContactSettings, wanted: &ContactSettings, collider: &mut Collider) {
+    let ContactSettings {
+        friction,
+        friction_combine_rule,
+        restitution,
+        restitution_combine_rule,
+        collision_groups,
+        solver_groups: _,
+        active_collision_types,
+        active_hooks,
+        active_events,
+        contact_force_event_threshold,
+        contact_skin,
+        is_sensor,
+    } = *wanted;
+    if given.friction != friction {
+        collider.set_friction(friction as Real);
+    }
+    if given.friction_combine_rule != friction_combine_rule {
+        collider.set_friction_combine_rule(friction_combine_rule);
+    }
+    if given.restitution != restitution {
+        collider.set_restitution(restitution as Real);
+    }
+    if given.restitution_combine_rule != restitution_combine_rule {
+        collider.set_restitution_combine_rule(restitution_combine_rule);
+    }
+    if given.collision_groups != collision_groups {
+        collider.set_collision_groups(collision_groups);
+    }
+    if given.active_collision_types != active_collision_types {
+        collider.set_active_collision_types(active_collision_types);
+    }
+    if given.active_hooks != active_hooks {
+        collider.set_active_hooks(active_hooks);
+    }
+    if given.active_events != active_events {
+        collider.set_active_events(active_events);
+    }
+    if given.contact_force_event_threshold != contact_force_event_threshold {
+        collider.set_contact_force_event_threshold(contact_force_event_threshold as Real);
+    }
+    if given.contact_skin != contact_skin {
+        collider.set_contact_skin(contact_skin as Real);
+    }
+    if given.is_sensor != is_sensor {
+        collider.set_sensor(is_sensor);
+    }
 }
 
 /// The surface of a body as a closed polyline, material on the left.

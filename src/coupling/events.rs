@@ -59,6 +59,8 @@ pub(crate) struct EventBook {
     heard: Mutex<Heard>,
     /// Pairs that pressed in the last step: whether above their threshold.
     pressed: HashMap<PairName, bool>,
+    /// Those of the step before.
+    pressed_before: HashMap<PairName, bool>,
     points: Vec<PressedPoint>,
     names: Vec<PairName>,
 }
@@ -237,7 +239,8 @@ impl EventBook {
         names.extend(self.points.iter().map(PressedPoint::name));
         names.dedup();
         let mut pairs = std::mem::take(&mut lock(&self.heard).pairs);
-        let last = std::mem::take(&mut self.pressed);
+        std::mem::swap(&mut self.pressed, &mut self.pressed_before);
+        self.pressed.clear();
         for &name in &names {
             let Some(threshold) = threshold(name, sets.colliders) else {
                 continue;
@@ -247,7 +250,7 @@ impl EventBook {
             let is_above = total > threshold;
             if is_above {
                 let order = in_rapiers_order(name, sets);
-                let known = last.get(&name).copied();
+                let known = self.pressed_before.get(&name).copied();
                 let was_above = known.unwrap_or_else(|| points.iter().any(|point| point.was_above));
                 let pair = pairs.fill(order, was_above, points, sets.colliders, dt);
                 let (bodies, colliders) = (&*sets.bodies, &*sets.colliders);

@@ -150,6 +150,14 @@ impl FlexPipeline {
 
     /// [`FlexPipeline::step`] with the user's hooks and event handler.
     ///
+    /// Of flexible bodies, and of rigid ones solved with them, the handler hears after the step: a collision starts in the
+    /// step in which it presses, or when rapier sees it coming, and forces are those that acted (normal ones in
+    /// [`ContactForceEvent::total_force`](crate::rapier::geometry::ContactForceEvent), as in rapier).
+    ///
+    /// `modify_solver_contacts` is shown every such contact as a manifold of one point. It may change friction, restitution, normal and
+    /// distance, or clear the contact; `tangent_velocity` is not looked at. Pairs of two rigid bodies it sees in rapier's manifolds
+    /// as well, and the carrier of a flexible body is a rigid body with all axes locked.
+    ///
     /// # Errors
     /// As [`FlexPipeline::step`].
     pub fn step_with_events(

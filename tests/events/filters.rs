@@ -195,3 +195,42 @@ fn contact_skins_keep_surfaces_apart_by_their_sum() {
         assert!((gaps - expected).abs() < 1e-4, "{gaps} m, not {expected}");
     }
 }
+
+#[test]
+fn settings_changed_at_run_time_count_and_wrong_ones_are_refused() {
+    let mut scene = Scene::new(DT);
+    scene.ground(0.5);
+    let sliding = scene.flexible(block().linvel([3.0, 0.0]));
+    scene.steps(20);
+    let surface = scene.body(sliding).collider_handle();
+    // What the user sets on rapier's collider stays when something else is changed on the body.
+    scene.world.colliders[surface].set_restitution(0.25);
+    let settings = *scene.body(sliding).contact_settings();
+    let smooth = foil2d::body::ContactSettings {
+        friction: 0.0,
+        friction_combine_rule: CoefficientCombineRule::Min,
+        ..settings
+    };
+    scene.bodies[sliding]
+        .set_contact_settings(smooth)
+        .expect("they are right");
+    scene.step();
+    let speed = scene.body(sliding).linvel()[0];
+    scene.steps(30);
+    let kept = scene.body(sliding).linvel()[0];
+    // The friction of the last step acts on for half a step: 0.04 m/s.
+    assert!(
+        (kept - speed).abs() < 1e-3 + 0.25 * G * DT,
+        "{kept} of {speed} m/s"
+    );
+    assert_eq!(scene.world.colliders[surface].restitution(), 0.25);
+    for wrong in [-0.1, f64::NAN, 1e300] {
+        let settings = foil2d::body::ContactSettings {
+            friction: wrong,
+            ..settings
+        };
+        let refused = scene.bodies[sliding].set_contact_settings(settings);
+        assert!(refused.is_err(), "{wrong}");
+        assert_eq!(scene.body(sliding).contact_settings(), &smooth);
+    }
+}
