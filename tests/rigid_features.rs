@@ -3,7 +3,6 @@
 mod common;
 
 use common::*;
-use foil2d::rapier::math::Real;
 
 const DT: f64 = 1.0 / 240.0;
 
@@ -501,6 +500,6 @@ fn a_change_of_type_counts_from_the_next_step_on() {
     assert_eq!(scene.world.bodies[body].translation().y, 0.5);
     scene.world.bodies[body].set_body_type(RigidBodyType::Dynamic, true);
     scene.steps(240);
-    let y = scene.world.bodies[body].translation().y;
-    assert!((y - 0.25).abs() < 1e-3 as Real, "{y}");
+    let y = f64::from(scene.world.bodies[body].translation().y);
+    assert!((y - 0.25).abs() < 1e-3, "{y}");
 }

@@ -97,21 +97,28 @@ impl HookBook {
             }
         }
         island.candidates.truncate(kept);
-        if let (false, Some((_, law))) = (removes, nearest) {
-            // What faces away now may turn up within the step: as the nearest of the others.
-            let direction = law.direction.map(|direction| Direction {
-                gap: None,
-                ..direction
-            });
-            let law = ContactLaw { direction, ..law };
-            let unseen = self.unseen.drain(..);
-            let unseen = unseen.map(|candidate| Candidate { law, ..candidate });
-            island.candidates.extend(unseen);
+        if !removes {
+            self.keep_unseen(nearest.map(|(_, law)| law), island);
         }
         let [one, other] = pair.colliders;
         let is_left = island.candidates.len() > first;
         self.left.insert(pair_name(one, other), is_left);
         Ok(())
+    }
+
+    /// Keeps what faces away now and may turn up within the step: under the law of the nearest contact that was shown.
+    fn keep_unseen(&mut self, nearest: Option<ContactLaw>, island: &mut Island) {
+        let unseen = self.unseen.drain(..).map(|candidate| {
+            let law = nearest.unwrap_or(candidate.law);
+            // The gap along a direction of the user's is that of the contact shown.
+            let direction = law.direction.map(|direction| Direction {
+                gap: None,
+                ..direction
+            });
+            let law = ContactLaw { direction, ..law };
+            Candidate { law, ..candidate }
+        });
+        island.candidates.extend(unseen);
     }
 
     /// Shows one candidate to the hook; returns whether it is kept.

@@ -59,14 +59,24 @@ impl<'a> RapierSets<'a> {
         }
     }
 
-    /// Rapier's own step, with these hooks, heard by `events`.
-    pub(crate) fn step(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
+    /// Rapier's own step.
+    pub fn step(&mut self) {
+        self.step_through(self.hooks, self.events);
+    }
+
+    /// Applies the user's changes and updates the contact graph, moving nothing.
+    pub fn detect(&mut self) {
+        self.detect_through(self.hooks, self.events);
+    }
+
+    /// Rapier's own step with other hooks and another handler than the user's.
+    pub(crate) fn step_through(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
         let parameters = *self.integration_parameters;
         self.step_with(&parameters, hooks, events);
     }
 
-    /// Applies the user's changes and updates the contact graph, moving nothing.
-    pub(crate) fn detect(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
+    /// [`RapierSets::detect`] with other hooks and another handler than the user's.
+    pub(crate) fn detect_through(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
         let mut parameters = *self.integration_parameters;
         parameters.dt = 0.0;
         self.step_with(&parameters, hooks, events);

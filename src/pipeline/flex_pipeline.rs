@@ -226,9 +226,9 @@ impl FlexPipeline {
         let (user, hooks) = (sets.events, sets.hooks);
         if flex_bodies.is_empty() {
             if self.events.is_empty() {
-                sets.step(hooks, user);
+                sets.step();
             } else {
-                sets.step(hooks, &self.events.gate(user, None));
+                sets.step_through(hooks, &self.events.gate(user, None));
                 self.events.tell(&sets);
             }
             return Ok(&self.report);
@@ -266,7 +266,7 @@ impl FlexPipeline {
         hand_back(&mut self.landings, &mut sets);
         clock.lap(&mut self.report.times.hand_back);
         let gate = self.hook_gate(hooks, true);
-        sets.step(&gate, &self.events.gate(user, Some(&self.claims)));
+        sets.step_through(&gate, &self.events.gate(user, Some(&self.claims)));
         self.report.note_quarantine(&sets);
         clock.lap(&mut self.report.times.rapier);
         land(&self.landings, &mut sets, &mut self.masters);
@@ -279,7 +279,7 @@ impl FlexPipeline {
     /// Rapier's step without length: what it stops is not told before the full step confirms it.
     fn detect(&self, sets: &mut RapierSets<'_>) {
         let gate = self.hook_gate(sets.hooks, false);
-        sets.detect(&gate, &self.events.gate(sets.events, None));
+        sets.detect_through(&gate, &self.events.gate(sets.events, None));
     }
 
     fn hook_gate<'a>(&'a self, user: &'a dyn PhysicsHooks, is_full: bool) -> HookGate<'a> {

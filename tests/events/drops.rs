@@ -80,8 +80,8 @@ fn ten_thousand_random_drops_start_and_stop_once_per_touch() {
             .map(|lane| add_lane(&mut scene, lane, &mut dice))
             .collect();
         let (listener, mut touching) = (Listener::default(), Touching::default());
-        let mut changes = vec![0; LANES];
-        let mut was = vec![false; LANES];
+        let mut changes = [0; LANES];
+        let mut was = [false; LANES];
         for step in 0..16 {
             let heard = scene.hear(&listener);
             touching.take(&heard.collisions, &format!("world {world}, step {step}"));

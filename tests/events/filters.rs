@@ -189,7 +189,7 @@ fn contact_skins_keep_surfaces_apart_by_their_sum() {
         let (top, _) = scene.rigid(at(2.2), shape().contact_skin(real(own)));
         scene.steps(240);
         let y = f64::from(scene.world.bodies[top].translation().y);
-        let surface = f64::from(scene.body(slab).position(22)[1]);
+        let surface = scene.body(slab).position(22)[1];
         let gaps = y - 0.6 - surface;
         let expected = 2.0 * (own + others);
         assert!((gaps - expected).abs() < 1e-4, "{gaps} m, not {expected}");
