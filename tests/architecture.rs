@@ -39,8 +39,10 @@ const SETS: [&str; 13] = [
 ];
 
 /// What `body` may name of rapier: handles, and settings it only passes on.
-const HANDLES_AND_SETTINGS: [&str; 7] = [
+const HANDLES_AND_SETTINGS: [&str; 9] = [
+    "ActiveCollisionTypes",
     "ActiveEvents",
+    "ActiveHooks",
     "CoefficientCombineRule",
     "ColliderHandle",
     "Group",

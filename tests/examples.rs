@@ -17,6 +17,8 @@ mod falling_block;
 mod grab;
 #[path = "../examples/gripper.rs"]
 mod gripper;
+#[path = "../examples/sensor_gate.rs"]
+mod sensor_gate;
 #[path = "../examples/truck.rs"]
 mod truck;
 #[path = "../examples/two_blocks.rs"]
@@ -193,6 +195,19 @@ fn a_truck_on_springs_crosses_a_flexible_deck() -> Outcome {
     Ok(())
 }
 
+/// Free fall is exact under the trapezoidal rule for rigid motion; a gate's times are known to a step of 1/240 s in one second.
+#[test]
+fn light_gates_measure_gravity_and_push_nothing() -> Outcome {
+    let outcome = sensor_gate::run(&sensor_gate::cli::Options::default())?;
+    assert_eq!((outcome.reached_s.len(), outcome.left_s.len()), (12, 12));
+    assert_within("g", outcome.g_error, 0.0, 5e-3);
+    assert_eq!(outcome.sheet_events, [2, 2], "block and ball");
+    assert_eq!(outcome.n_forces, 0);
+    // Positions of 15 m in steps that rapier holds to 1e-7 of a second.
+    assert!(outcome.deviation_m < 1e-5, "{:e} m", outcome.deviation_m);
+    Ok(())
+}
+
 /// `--steps 3` is for smoke tests: it must not trip over motion that has not happened yet.
 #[test]
 fn every_example_runs_shortened() -> Outcome {
@@ -205,5 +220,6 @@ fn every_example_runs_shortened() -> Outcome {
     grab::run(&grab::cli::Options { json: true, steps })?;
     gripper::run(&gripper::cli::Options { json: true, steps })?;
     truck::run(&truck::cli::Options { json: true, steps })?;
+    sensor_gate::run(&sensor_gate::cli::Options { json: true, steps })?;
     Ok(())
 }

@@ -222,6 +222,18 @@ fn a_block_that_rests_on_the_floor_with_friction_allocates_nothing() -> Result<(
 }
 
 #[test]
+fn events_and_hooks_of_resting_bodies_allocate_nothing() -> Result<(), BuildError> {
+    let listening = block()
+        .active_events(ActiveEvents::all())
+        .active_hooks(ActiveHooks::all());
+    Warm::new()
+        .with(listening)?
+        .with_box([0.2, 0.2], [0.5, 1.202])
+        .assert_quiet("events and hooks", 300, 7);
+    Ok(())
+}
+
+#[test]
 fn a_rigid_box_on_a_flexible_beam_allocates_nothing() -> Result<(), BuildError> {
     Warm::new()
         .with(beam())?

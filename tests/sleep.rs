@@ -164,12 +164,14 @@ fn a_body_that_moves_anywhere_stays_awake() {
     assert!(!sleeps(&scene, patient), "it may not sleep");
 }
 
+type Change = fn(&mut FlexBody);
+
 #[test]
 fn whatever_is_changed_wakes() {
     let mut scene = Scene::new(1.0 / 60.0);
     scene.ground(0.5);
     let body = scene.flexible(block(1e7));
-    let changes: [(&str, fn(&mut FlexBody)); 4] = [
+    let changes: [(&str, Change); 4] = [
         ("a force", |body| {
             body.set_nodal_force(0, [1.0, 0.0]).expect("a force")
         }),

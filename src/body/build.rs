@@ -85,6 +85,7 @@ impl FlexBodyBuilder {
         let contact = [
             ("friction", self.contact.friction),
             ("restitution", self.contact.restitution),
+            ("contact_skin", self.contact.contact_skin),
         ];
         for (name, value) in contact {
             if !(value.is_finite() && value >= 0.0) {
@@ -101,6 +102,7 @@ impl FlexBodyBuilder {
             ("translation.y", self.translation.y),
             ("friction", self.contact.friction),
             ("restitution", self.contact.restitution),
+            ("contact_skin", self.contact.contact_skin),
         ];
         for (name, value) in held {
             if !is_held(value) {

@@ -8,7 +8,9 @@ use crate::fe::mesh::generate::{self, PolygonOptions};
 use crate::fe::mesh::{CellKind, Mesh, MeshError};
 use crate::fe::model::MassKind;
 use crate::math::Vec2;
-use crate::rapier::prelude::{ActiveEvents, CoefficientCombineRule, InteractionGroups};
+use crate::rapier::prelude::{
+    ActiveCollisionTypes, ActiveEvents, ActiveHooks, CoefficientCombineRule, InteractionGroups,
+};
 use std::sync::Arc;
 
 /// Whether the contact boundary of a body carries inertia.
@@ -248,6 +250,46 @@ impl FlexBodyBuilder {
     /// Which colliders this body meets.
     pub fn collision_groups(mut self, groups: InteractionGroups) -> Self {
         self.contact.collision_groups = groups;
+        self
+    }
+
+    /// Which of the colliders it meets this body pushes.
+    ///
+    /// Rapier's collider keeps empty groups of its own; groups set there are taken over here by the next step.
+    pub fn solver_groups(mut self, groups: InteractionGroups) -> Self {
+        self.contact.solver_groups = groups;
+        self
+    }
+
+    /// Which types of rigid bodies this body meets; it counts as a dynamic one.
+    pub fn active_collision_types(mut self, types: ActiveCollisionTypes) -> Self {
+        self.contact.active_collision_types = types;
+        self
+    }
+
+    /// Which of the user's hooks are asked about this body.
+    pub fn active_hooks(mut self, hooks: ActiveHooks) -> Self {
+        self.contact.active_hooks = hooks;
+        self
+    }
+
+    /// Force of a pair (N) above which [`ActiveEvents::CONTACT_FORCE_EVENTS`] are reported.
+    pub fn contact_force_event_threshold(mut self, threshold: f64) -> Self {
+        self.contact.contact_force_event_threshold = threshold;
+        self
+    }
+
+    /// Distance at which the surface touches (m), added to the skin of the other collider.
+    pub fn contact_skin(mut self, skin: f64) -> Self {
+        self.contact.contact_skin = skin;
+        self
+    }
+
+    /// Makes the body a sensor: it reports what crosses its surface and touches nothing.
+    ///
+    /// What lies wholly inside crosses no surface, so rapier tells that it stopped to intersect.
+    pub fn sensor(mut self, is_sensor: bool) -> Self {
+        self.contact.is_sensor = is_sensor;
         self
     }
 

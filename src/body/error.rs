@@ -84,7 +84,7 @@ pub enum BuildError {
 }
 
 /// Why a call that names a body failed. Nothing was changed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum FlexBodyError {
     /// The handle's body was removed.
     #[error("{0:?} names a flexible body that was removed: drop the handle")]
@@ -116,6 +116,9 @@ pub enum FlexBodyError {
     /// A value is not finite, or too large for rapier's precision.
     #[error("{0} holds a number that is not finite or too large for rapier: nothing was changed")]
     NotFinite(&'static str),
+    /// A coefficient or distance is negative.
+    #[error("a contact setting is {0}: friction, restitution and skin must not be negative")]
+    Negative(f64),
     /// The world does not hold the body's carrier.
     #[error(
         "the world given does not hold the carrier of {0:?} as it was left: use the world it was inserted into, leave the pose and shape of its carrier alone, and remove the body from its set first"

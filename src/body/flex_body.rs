@@ -21,7 +21,8 @@ pub struct FlexBody {
     pub(super) nodal_force: Vec<f64>,
     pub(super) body_force: Vec2,
     pub(super) gravity_scale: f64,
-    contact: ContactSettings,
+    pub(super) contact: ContactSettings,
+    pub(super) carrier_contact: ContactSettings,
     /// Anything the user wants to keep with the body.
     pub user_data: u128,
     pub(super) state: FlexState,
@@ -53,6 +54,7 @@ impl FlexBody {
             body_force: Vec2::zeros(),
             gravity_scale: 1.0,
             contact,
+            carrier_contact: contact,
             user_data,
             state: FlexState::at_rest(model.rest_positions(), arms.origin),
             arms,

@@ -5,7 +5,8 @@
 //! pushes nothing.
 
 use crate::body::{
-    BuildError, FlexBody, FlexBodyBuilder, FlexBodyError, FlexBodyHandle, FlexBodySet,
+    BuildError, ContactSettings, FlexBody, FlexBodyBuilder, FlexBodyError, FlexBodyHandle,
+    FlexBodySet,
 };
 use crate::math::{node_vec, to_rapier};
 use crate::rapier::parry::shape::{Polyline, PolylineFlags};
@@ -51,7 +52,12 @@ impl FlexBodySet {
             .restitution_combine_rule(contact.restitution_combine_rule)
             .collision_groups(contact.collision_groups)
             .solver_groups(InteractionGroups::none())
-            .active_events(contact.active_events);
+            .active_collision_types(contact.active_collision_types)
+            .active_hooks(contact.active_hooks)
+            .active_events(contact.active_events)
+            .contact_force_event_threshold(contact.contact_force_event_threshold as Real)
+            .contact_skin(contact.contact_skin as Real)
+            .sensor(contact.is_sensor);
         let collider = colliders.insert_with_parent(collider, carrier, bodies);
         body.bind(carrier, collider);
         Ok(self.insert_body(body))
@@ -119,6 +125,81 @@ fn is_placed(body: &FlexBody, vertices: &[Vector]) -> bool {
     })
 }
 
+/// Gives carriers the settings that were changed since the last step, and takes over solver groups set on them: rapier
+/// itself must never push a surface.
+pub(crate) fn sync_settings(flex_bodies: &mut FlexBodySet, colliders: &mut ColliderSet) {
+    for (_, body) in flex_bodies.iter_mut() {
+        let handle = body.collider_handle();
+        let settings = body.take_new_contact();
+        let groups = colliders.get(handle).map(Collider::solver_groups);
+        let has_groups = groups.is_some_and(|groups| groups != InteractionGroups::none());
+        if settings.is_none() && !has_groups {
+            continue;
+        }
+        let Some(collider) = colliders.get_mut(handle) else {
+            continue;
+        };
+        if let Some(groups) = groups.filter(|_| has_groups) {
+            body.adopt_solver_groups(groups);
+            collider.set_solver_groups(InteractionGroups::none());
+        }
+        if let Some([given, wanted]) = settings {
+            write_settings(&given, &wanted, collider);
+        }
+    }
+}
+
+/// Writes what differs, so that settings made on the collider itself stay.
+fn write_settings(given: &ContactSettings, wanted: &ContactSettings, collider: &mut Collider) {
+    let ContactSettings {
+        friction,
+        friction_combine_rule,
+        restitution,
+        restitution_combine_rule,
+        collision_groups,
+        solver_groups: _,
+        active_collision_types,
+        active_hooks,
+        active_events,
+        contact_force_event_threshold,
+        contact_skin,
+        is_sensor,
+    } = *wanted;
+    if given.friction != friction {
+        collider.set_friction(friction as Real);
+    }
+    if given.friction_combine_rule != friction_combine_rule {
+        collider.set_friction_combine_rule(friction_combine_rule);
+    }
+    if given.restitution != restitution {
+        collider.set_restitution(restitution as Real);
+    }
+    if given.restitution_combine_rule != restitution_combine_rule {
+        collider.set_restitution_combine_rule(restitution_combine_rule);
+    }
+    if given.collision_groups != collision_groups {
+        collider.set_collision_groups(collision_groups);
+    }
+    if given.active_collision_types != active_collision_types {
+        collider.set_active_collision_types(active_collision_types);
+    }
+    if given.active_hooks != active_hooks {
+        collider.set_active_hooks(active_hooks);
+    }
+    if given.active_events != active_events {
+        collider.set_active_events(active_events);
+    }
+    if given.contact_force_event_threshold != contact_force_event_threshold {
+        collider.set_contact_force_event_threshold(contact_force_event_threshold as Real);
+    }
+    if given.contact_skin != contact_skin {
+        collider.set_contact_skin(contact_skin as Real);
+    }
+    if given.is_sensor != is_sensor {
+        collider.set_sensor(is_sensor);
+    }
+}
+
 /// The surface of a body as a closed polyline, material on the left.
 fn surface(body: &FlexBody) -> Polyline {
     let boundary = body.mesh().boundary();
@@ -152,7 +233,7 @@ pub(crate) fn write_surface(
     let current = colliders
         .get(handle)
         .and_then(|collider| collider.shape().as_polyline());
-    if !current.is_some_and(|polyline| !is_placed(body, polyline.vertices())) {
+    if current.is_none_or(|polyline| is_placed(body, polyline.vertices())) {
         return;
     }
     let Some(collider) = colliders.get_mut(handle) else {

@@ -4,6 +4,8 @@
 //! flexible stage for this step. Fixed and kinematic bodies are met but not passed through.
 
 use super::claim_attachments::ClaimedAttachment;
+use super::events::PairName;
+use super::filter::{claimable_parent, may_touch};
 use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box};
 use super::sets::RapierSets;
 use super::sleep::Sleeper;
@@ -38,6 +40,8 @@ pub(crate) struct ClaimedFlex {
     pub travel: Real,
     /// Size of a boundary segment (m).
     pub edge: f64,
+    /// What it pushes; its surface in rapier pushes nothing.
+    pub solver_groups: InteractionGroups,
 }
 
 /// The result of a claim, with its buffers.
@@ -70,9 +74,16 @@ pub(crate) struct Claims {
     pub(super) woken: Vec<RigidBodyHandle>,
     /// Number of colliders and gravity in the last step.
     pub(super) world: (usize, Vector),
+    /// What the user's filter said of pairs that it was asked about.
+    answers: HashMap<PairName, Option<SolverFlags>>,
 }
 
 impl Claims {
+    /// What the user's filter said of a pair in this step, if it was asked.
+    pub fn answer(&self, name: PairName) -> Option<Option<SolverFlags>> {
+        self.answers.get(&name).copied()
+    }
+
     /// Component that a flexible body belongs to.
     pub fn component_of_flex(&mut self, flex: usize) -> usize {
         self.root(flex)
@@ -82,6 +93,13 @@ impl Claims {
     pub fn component_of_rigid(&mut self, handle: RigidBodyHandle) -> Option<usize> {
         let index = *self.rigid_index.get(&handle)?;
         Some(self.root(self.flex.len() + index))
+    }
+
+    /// Whether a collider is a surface, or that of a claimed body.
+    pub fn holds(&self, handle: ColliderHandle, colliders: &ColliderSet) -> bool {
+        let parent = || colliders.get(handle).and_then(Collider::parent);
+        self.flex_of_collider.contains_key(&handle)
+            || parent().is_some_and(|parent| self.rigid_index.contains_key(&parent))
     }
 
     /// Looks ahead along the velocities of the flexible bodies, before the detection step.
@@ -117,7 +135,8 @@ impl Claims {
             }
             let edge = length / nodes.len() as f64;
             let fall = from_rapier(sets.gravity).norm() * body.gravity_scale().abs() * dt * dt;
-            let swept = loosened(swept, (0.5 * edge + fall) as Real);
+            let skin = body.contact_settings().contact_skin;
+            let swept = loosened(swept, (0.5 * edge + fall + skin) as Real);
             let index = handle.into_raw_parts().0;
             self.flex.push(ClaimedFlex {
                 index,
@@ -125,6 +144,7 @@ impl Claims {
                 swept,
                 travel: travel.sqrt() as Real,
                 edge,
+                solver_groups: body.contact_settings().solver_groups,
             });
         }
         // The order of insertion is not physics.
@@ -193,6 +213,7 @@ impl Claims {
         self.joints.clear();
         self.seen_joints.clear();
         self.seen.clear();
+        self.answers.clear();
         self.parent.clear();
         self.parent.extend(0..self.flex.len());
         self.claim_attached(sets);
@@ -239,10 +260,12 @@ impl Claims {
             .sort_unstable_by(|&one, &other| order_of_colliders(sets, one, other));
         self.neighbours.dedup();
         let mut neighbours = std::mem::take(&mut self.neighbours);
+        let mut answers = std::mem::take(&mut self.answers);
         neighbours.retain(|&other| {
-            may_touch(sets, own.collider, other) && !self.attachment_forbids(sets, flex, other)
+            may_touch(sets, own.collider, other, &mut answers)
+                && !self.attachment_forbids(sets, flex, other)
         });
-        self.neighbours = neighbours;
+        (self.neighbours, self.answers) = (neighbours, answers);
     }
 
     fn add_flex_pair(&mut self, sets: &RapierSets<'_>, flex: usize, other: ColliderHandle) {
@@ -251,7 +274,9 @@ impl Claims {
             let (low, high) = (flex.min(target), flex.max(target));
             let names = (self.flex[low].collider, self.flex[high].collider);
             let is_near = self.flex[low].swept.intersects(&self.flex[high].swept);
-            if low < high && is_near && self.seen.insert(names) {
+            let groups = [low, high].map(|flex| self.flex[flex].solver_groups);
+            let meets = is_near && groups[0].test(groups[1]);
+            if low < high && meets && self.seen.insert(names) {
                 self.unite(low, high);
                 self.pairs.push(ClaimedPair::FlexFlex(low, high));
             }
@@ -264,7 +289,8 @@ impl Claims {
             return;
         };
         let swept = swept_box(sets.bodies, collider, sets.integration_parameters.dt);
-        if !swept.intersects(&self.flex[flex].swept) {
+        let groups = [self.flex[flex].solver_groups, collider.solver_groups()];
+        if !swept.intersects(&self.flex[flex].swept) || !groups[0].test(groups[1]) {
             return;
         }
         self.pairs.push(ClaimedPair::FlexRigid(flex, other));
@@ -319,7 +345,10 @@ impl Claims {
                 continue;
             };
             let solves = own_collider.solver_groups().test(collider.solver_groups());
-            if !solves || !self.seen.insert(ordered) || !may_touch(sets, ordered.0, ordered.1) {
+            if !solves || !self.seen.insert(ordered) {
+                continue;
+            }
+            if !may_touch(sets, ordered.0, ordered.1, &mut self.answers) {
                 continue;
             }
             self.pairs
@@ -358,74 +387,4 @@ impl Claims {
         // The smaller index stays the root, so that components do not depend on the order of unions.
         self.parent[one.max(other)] = one.min(other);
     }
-}
-
-/// The dynamic rigid body of a collider, if the flexible stage can solve for it.
-pub(crate) fn claimable_parent(
-    sets: &RapierSets<'_>,
-    collider: &Collider,
-) -> Option<RigidBodyHandle> {
-    let parent = collider.parent()?;
-    claimable_body(sets, parent).then_some(parent)
-}
-
-/// Whether the flexible stage can solve for a rigid body.
-pub(super) fn claimable_body(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bool {
-    let Some(body) = sets.bodies.get(handle) else {
-        return false;
-    };
-    let is_free = body.is_dynamic() && body.is_enabled() && !body.is_soft_frame();
-    is_free && sets.multibody_joints.rigid_body_link(handle).is_none()
-}
-
-/// Whether two colliders may push each other: what rapier's narrow phase asks of a pair, the user's hook included.
-fn may_touch(sets: &RapierSets<'_>, one: ColliderHandle, other: ColliderHandle) -> bool {
-    let (collider1, collider2) = if one.into_raw_parts() < other.into_raw_parts() {
-        (one, other)
-    } else {
-        (other, one)
-    };
-    let (Some(first), Some(second)) =
-        (sets.colliders.get(collider1), sets.colliders.get(collider2))
-    else {
-        return false;
-    };
-    let is_solid = |collider: &Collider| collider.is_enabled() && !collider.is_sensor();
-    let type_of = |collider: &Collider| {
-        let body = collider.parent().and_then(|parent| sets.bodies.get(parent));
-        body.map_or(RigidBodyType::Fixed, RigidBody::body_type)
-    };
-    let types = (type_of(first), type_of(second));
-    let passes = is_solid(first)
-        && is_solid(second)
-        && first.collision_groups().test(second.collision_groups())
-        && [first, second]
-            .iter()
-            .any(|collider| collider.active_collision_types().test(types.0, types.1));
-    if !passes || joint_forbids(sets, first, second) {
-        return false;
-    }
-    let hooks = first.active_hooks() | second.active_hooks();
-    if !hooks.contains(ActiveHooks::FILTER_CONTACT_PAIRS) {
-        return true;
-    }
-    let context = PairFilterContext {
-        bodies: sets.bodies,
-        colliders: sets.colliders,
-        collider1,
-        collider2,
-        rigid_body1: first.parent(),
-        rigid_body2: second.parent(),
-    };
-    let flags = sets.hooks.filter_contact_pair(&context);
-    flags.is_some_and(|flags| flags.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
-}
-
-/// Whether a joint between the bodies of two colliders keeps them from touching.
-fn joint_forbids(sets: &RapierSets<'_>, one: &Collider, other: &Collider) -> bool {
-    let (Some(one), Some(other)) = (one.parent(), other.parent()) else {
-        return false;
-    };
-    let mut joints = sets.impulse_joints.joints_between(one, other);
-    joints.any(|(_, joint)| !joint.data.contacts_enabled())
 }

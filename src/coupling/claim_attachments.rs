@@ -1,6 +1,7 @@
 //! Claiming along attachments: what a flexible body is attached to is solved with it.
 
-use super::claim::{Claims, claimable_body};
+use super::claim::Claims;
+use super::filter::claimable_body;
 use super::sets::RapierSets;
 use crate::body::{AttachmentTarget, FlexBodySet};
 use crate::rapier::prelude::*;

@@ -1,6 +1,7 @@
 //! Claiming along impulse joints: what is joined to a claimed body is claimed with it.
 
-use super::claim::{Claims, claimable_body};
+use super::claim::Claims;
+use super::filter::claimable_body;
 use super::places::order_of_bodies;
 use super::sets::RapierSets;
 use crate::rapier::prelude::*;

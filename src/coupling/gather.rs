@@ -1,7 +1,9 @@
 //! Gathering: an island of blocks and candidates for every component of the claim.
 
 use super::candidates::{self, Names};
-use super::claim::{ClaimedPair, Claims, claimable_parent};
+use super::claim::{ClaimedPair, Claims};
+use super::filter::claimable_parent;
+use super::hooks::{HookBook, HookedPair};
 use super::masters::Masters;
 use super::reading::{
     GatherError, at_rest, is_held_load, is_held_motion, law_of, load_of, offset_of, owner_of,
@@ -43,6 +45,8 @@ pub(crate) struct Gatherer {
     agitation: Agitation,
     /// Multipliers of joints in the last step.
     pub joint_memory: JointMemory,
+    /// What the user's hooks said of the contacts gathered.
+    pub hooks: HookBook,
     /// Claimed bodies of the island, by block.
     pub bodies: Vec<(usize, RigidBodyHandle)>,
 }
@@ -73,9 +77,11 @@ impl Gatherer {
         if keeps {
             self.references.turn_over();
             self.joint_memory.turn_over();
+            self.hooks.turn_over();
         } else {
             self.references.discard_notes();
             self.joint_memory.discard_notes();
+            self.hooks.begin();
         }
     }
 
@@ -297,6 +303,7 @@ impl Gatherer {
                     other: owner_of(collider),
                 };
                 let law = law_of(sets.colliders, own.collider, collider)?;
+                let first = island.candidates.len();
                 candidates::flex_rigid(
                     island,
                     block,
@@ -304,8 +311,9 @@ impl Gatherer {
                     placed.parts,
                     names,
                     law,
-                    own.edge,
+                    own.edge + 2.0 * law.skin,
                 );
+                self.hook([own.collider, collider], names, first, sets, island)?;
             }
             ClaimedPair::FlexFlex(one, other) if claims.component_of_flex(one) == component => {
                 // The finer surface is the contactor; the first by place if they are equal.
@@ -321,8 +329,11 @@ impl Gatherer {
                     other: Owner::Flex(surface_of.index),
                 };
                 let law = law_of(sets.colliders, points_of.collider, surface_of.collider)?;
-                let edge = points_of.edge.max(surface_of.edge);
+                let edge = points_of.edge.max(surface_of.edge) + 2.0 * law.skin;
+                let first = island.candidates.len();
                 candidates::flex_flex(island, points, surface, names, law, edge);
+                let colliders = [points_of.collider, surface_of.collider];
+                self.hook(colliders, names, first, sets, island)?;
             }
             ClaimedPair::RigidRigid(one, other) => {
                 if self.component_of_pair([one, other], sets, claims) != Some(component) {
@@ -341,19 +352,35 @@ impl Gatherer {
                 let law = law_of(sets.colliders, one, other)?;
                 let blocks = [first.block, second.block];
                 let parts = [first.parts, second.parts];
+                let first = island.candidates.len();
                 let pair = RigidPair {
                     blocks,
                     parts,
                     names,
                     law,
-                    prediction: settings.prediction,
+                    prediction: settings.prediction + law.skin,
                     agitation: &self.agitation,
                 };
                 pair.add_candidates(island, &mut self.references);
+                self.hook([one, other], names, first, sets, island)?;
             }
             _ => {}
         }
         Ok(())
+    }
+
+    /// Shows the candidates from the `first` on to the user's hook.
+    fn hook(
+        &mut self,
+        colliders: [ColliderHandle; 2],
+        names: Names,
+        first: usize,
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) -> Result<(), GatherError> {
+        let owners = [names.one, names.other];
+        let pair = HookedPair { colliders, owners };
+        self.hooks.modify(pair, first, sets, island)
     }
 
     fn component_of_pair(

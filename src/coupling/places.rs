@@ -68,10 +68,12 @@ pub(super) fn placed_on(body: &RigidBody, collider: &Collider) -> Pose {
 
 /// Box of a collider from where it is to where its velocity takes it.
 pub(super) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) -> Aabb {
+    let skin = collider.contact_skin();
     let Some(body) = collider.parent().and_then(|parent| bodies.get(parent)) else {
-        return collider.compute_aabb();
+        return loosened(collider.compute_aabb(), skin);
     };
     let aabb = collider.shape().compute_aabb(&placed_on(body, collider));
+    let aabb = loosened(aabb, skin);
     if body.is_fixed() {
         return aabb;
     }

@@ -28,9 +28,12 @@ pub(crate) enum GatherError {
     /// A joint of a claimed body has an anchor, motor or softness that is not finite.
     #[error("{0:?} is not finite")]
     Joint(ImpulseJointHandle),
-    /// A collider's friction or restitution is not finite.
+    /// A collider's friction, restitution or skin is not finite.
     #[error("a coefficient of {0:?} is not finite")]
     Coefficient(ColliderHandle),
+    /// A hook left numbers that are not finite, or no normal.
+    #[error("the hook leaves numbers that are not finite between {0:?}")]
+    Hook([ColliderHandle; 2]),
 }
 
 /// The name of a collider in contact keys.
@@ -85,6 +88,11 @@ pub(super) fn prescribed_block(body: &RigidBody, dt: f64) -> RigidBlock {
     RigidBlock::prescribed(start, end)
 }
 
+/// Share of its inertia by which a body of negative dominance is felt by those that dominate it.
+///
+/// Mass ratios of a million are solved to full precision, and what falls with all its forces scaled falls as before.
+const DOMINATED: f64 = 1e-6;
+
 /// Mass, forces and damping of a dynamic body.
 pub(super) fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
     let properties = body.mass_properties();
@@ -99,9 +107,14 @@ pub(super) fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
         f64::from(body.linear_damping()),
         f64::from(body.angular_damping()),
     );
+    let scale = if body.dominance_group() < 0 {
+        DOMINATED
+    } else {
+        1.0
+    };
     RigidLoad {
-        inverse_mass,
-        force: [force.x, force.y, f64::from(body.user_torque())],
+        inverse_mass: inverse_mass.map(|inverse| inverse / scale),
+        force: [force.x, force.y, f64::from(body.user_torque())].map(|force| scale * force),
         damping: [linear, linear, angular],
     }
 }
@@ -116,7 +129,12 @@ pub(super) fn law_of(
         return Ok(ContactLaw::default());
     };
     for (handle, collider) in [(one, first), (other, second)] {
-        if !(collider.friction().is_finite() && collider.restitution().is_finite()) {
+        let numbers = [
+            collider.friction(),
+            collider.restitution(),
+            collider.contact_skin(),
+        ];
+        if !numbers.iter().all(|number| number.is_finite()) {
             return Err(GatherError::Coefficient(handle));
         }
     }
@@ -135,6 +153,8 @@ pub(super) fn law_of(
     Ok(ContactLaw {
         friction: f64::from(friction).max(0.0),
         restitution: f64::from(restitution).max(0.0),
+        skin: f64::from(first.contact_skin()) + f64::from(second.contact_skin()),
+        direction: None,
     })
 }
 

@@ -61,18 +61,33 @@ impl<'a> RapierSets<'a> {
 
     /// Rapier's own step.
     pub fn step(&mut self) {
-        let parameters = *self.integration_parameters;
-        self.step_with(&parameters);
+        self.step_through(self.hooks, self.events);
     }
 
     /// Applies the user's changes and updates the contact graph, moving nothing.
     pub fn detect(&mut self) {
-        let mut parameters = *self.integration_parameters;
-        parameters.dt = 0.0;
-        self.step_with(&parameters);
+        self.detect_through(self.hooks, self.events);
     }
 
-    fn step_with(&mut self, parameters: &IntegrationParameters) {
+    /// Rapier's own step with other hooks and another handler than the user's.
+    pub(crate) fn step_through(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
+        let parameters = *self.integration_parameters;
+        self.step_with(&parameters, hooks, events);
+    }
+
+    /// [`RapierSets::detect`] with other hooks and another handler than the user's.
+    pub(crate) fn detect_through(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
+        let mut parameters = *self.integration_parameters;
+        parameters.dt = 0.0;
+        self.step_with(&parameters, hooks, events);
+    }
+
+    fn step_with(
+        &mut self,
+        parameters: &IntegrationParameters,
+        hooks: &dyn PhysicsHooks,
+        events: &dyn EventHandler,
+    ) {
         self.physics_pipeline.step(
             self.gravity,
             parameters,
@@ -85,8 +100,8 @@ impl<'a> RapierSets<'a> {
             self.multibody_joints,
             self.soft_bodies,
             self.ccd_solver,
-            self.hooks,
-            self.events,
+            hooks,
+            events,
         );
     }
 }

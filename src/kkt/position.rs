@@ -387,7 +387,15 @@ impl ActiveContact {
             kinematics,
             measured: kinematics,
             applied: kinematics,
-            multiplier: [remembered.normal, remembered.tangent],
+            // Without friction there is no row that would take back what friction was.
+            multiplier: [
+                remembered.normal,
+                if friction > 0.0 {
+                    remembered.tangent
+                } else {
+                    0.0
+                },
+            ],
             impulse: [0.0; 2],
             parting: [0.0; 2],
             status: [normal, tangential],

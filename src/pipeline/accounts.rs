@@ -4,7 +4,7 @@ use super::flex_pipeline::FlexPipeline;
 use super::report::{ContactReport, Participant};
 use crate::body::FlexBodySet;
 use crate::constraint::contact::{Owner, Remembered};
-use crate::coupling::{Landing, RapierSets, keep_awake, wake_moving};
+use crate::coupling::{Landing, PressedPoint, RapierSets, keep_awake, wake_moving};
 use crate::kkt::{ActiveContact, IslandSummary};
 use crate::linalg::complementarity::Status;
 use crate::math::{Vec2, cross, from_rapier};
@@ -44,6 +44,7 @@ impl FlexPipeline {
                 self.report_residuals(slot);
                 self.report.contacts.extend(report);
             }
+            self.note_pressed(slot, step, sets, flex_bodies);
         }
         self.note_joints(step, flex_bodies);
         let report = &mut self.report;
@@ -112,6 +113,44 @@ impl FlexPipeline {
             .max(contact.kinematics.gap.abs());
         let excess = (tangent.abs() - law.friction * normal).max(0.0) / normal;
         report.cone_residual = report.cone_residual.max(excess);
+    }
+
+    /// Notes the force of a contact for events.
+    fn note_pressed(
+        &mut self,
+        slot: usize,
+        step: Step,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) {
+        let contact = &self.island.contacts[slot];
+        let force = contact.force(step.dt);
+        if !contact.is_closed() && force == [0.0; 2] {
+            return;
+        }
+        let key = self.island.candidates[contact.candidate].key;
+        let collider = |owner| match owner {
+            Owner::Flex(index) => flex_bodies
+                .at_index(index)
+                .map(|(_, body)| body.collider_handle()),
+            Owner::Collider(index) => sets
+                .colliders
+                .get_unknown_gen(index)
+                .map(|(_, handle)| handle),
+        };
+        if let (Some(contactor), Some(target)) = (collider(key.contactor), collider(key.target)) {
+            let point = PressedPoint {
+                contactor,
+                target,
+                position: contact.kinematics.position,
+                normal: contact.kinematics.normal,
+                gap: contact.gap(),
+                force,
+                is_closed: contact.is_closed(),
+                was_above: false,
+            };
+            self.events.note(point, sets);
+        }
     }
 
     fn contact_report(

@@ -119,6 +119,7 @@ impl FlexPipeline {
         self.reserves.clear();
         self.joint_impulses.clear();
         self.memory.discard_notes();
+        self.events.discard_notes();
         self.report.clear();
         self.report.energy.dissipated = dissipated;
         for (_, body) in flex_bodies.iter_mut() {

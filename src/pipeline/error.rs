@@ -83,9 +83,14 @@ pub enum StepError {
     ExplicitAttachment(AttachmentHandle),
     /// A collider that touches a flexible body has a coefficient that is not finite.
     #[error(
-        "{0:?} touches a flexible body, and its friction or restitution is not finite: set both to finite numbers"
+        "{0:?} touches a flexible body, and its friction, restitution or contact skin is not finite: set all to finite numbers"
     )]
     Coefficient(ColliderHandle),
+    /// `modify_solver_contacts` left numbers that are not finite.
+    #[error(
+        "the hook `modify_solver_contacts` left a normal, distance or coefficient that is not finite, or a normal of no length, between {0:?} and {1:?}: leave finite numbers, or clear the solver contacts"
+    )]
+    Hook(ColliderHandle, ColliderHandle),
 }
 
 impl From<GatherError> for StepError {
@@ -95,6 +100,7 @@ impl From<GatherError> for StepError {
             GatherError::RigidBody(handle) => Self::RigidBody(handle),
             GatherError::Joint(handle) => Self::Joint(handle),
             GatherError::Coefficient(handle) => Self::Coefficient(handle),
+            GatherError::Hook([one, other]) => Self::Hook(one, other),
         }
     }
 }

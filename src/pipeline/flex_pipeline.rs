@@ -6,8 +6,9 @@ use super::report::StepReport;
 use crate::body::FlexBodySet;
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
-    Claims, GatherSettings, Gatherer, JointImpulse, Landing, Masters, RapierSets, hand_back,
-    is_all_asleep, land, stop_if_asleep, wake_disturbed, write_impulses, write_surface,
+    Claims, EventBook, GatherSettings, Gatherer, HookGate, JointImpulse, Landing, Masters,
+    RapierSets, hand_back, is_all_asleep, land, stop_if_asleep, sync_settings, wake_disturbed,
+    write_impulses, write_surface,
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ContactMethod, ImpactTreatment, Island, SolveSettings};
@@ -41,11 +42,11 @@ use crate::system::Step;
 /// ```
 #[derive(Debug)]
 pub struct FlexPipeline {
-    integrator: Beta2,
-    impact: ImpactTreatment,
-    contact: ContactMethod,
-    solver: Method,
-    restitution_threshold: f64,
+    pub(super) integrator: Beta2,
+    pub(super) impact: ImpactTreatment,
+    pub(super) contact: ContactMethod,
+    pub(super) solver: Method,
+    pub(super) restitution_threshold: f64,
     max_newton: usize,
     pub(super) insists: bool,
     pub(super) claims: Claims,
@@ -57,6 +58,7 @@ pub struct FlexPipeline {
     pub(super) reserves: Vec<(u32, f64)>,
     pub(super) joint_impulses: Vec<JointImpulse>,
     components: Vec<usize>,
+    pub(super) events: EventBook,
     pub(super) report: StepReport,
 }
 
@@ -86,59 +88,9 @@ impl FlexPipeline {
             reserves: Vec::new(),
             joint_impulses: Vec::new(),
             components: Vec::new(),
+            events: EventBook::default(),
             report: StepReport::default(),
         }
-    }
-
-    /// Chooses the member of the Beta-2 family.
-    ///
-    /// An explicit one (`β0 = 0`, [`Beta2::central_difference`]) needs a lumped mass; contact forces then are multipliers at
-    /// the forward increment, and the [treatment of impacts](Self::with_impact) does not matter. Steps longer than the
-    /// critical one of a body are refused, see [`Self::insisting`].
-    pub fn with_integrator(mut self, integrator: Beta2) -> Self {
-        self.integrator = integrator;
-        self
-    }
-
-    /// Chooses what is done on impact.
-    pub fn with_impact(mut self, impact: ImpactTreatment) -> Self {
-        self.impact = impact;
-        self
-    }
-
-    /// Chooses how the laws of contact are enforced: by Lagrange multipliers, or for comparison by the constraint functions of
-    /// ADINA. Steps in which the latter fail are counted, see [`StepReport::n_failed`].
-    pub fn with_contact_method(mut self, method: ContactMethod) -> Self {
-        self.contact = method;
-        self
-    }
-
-    /// Chooses the solver of the contact problems: the active set, a direct method, by default;
-    /// [`Method::GaussSeidel`] for the modified Gauss–Seidel method of Carpenter, Taylor and Katona.
-    pub fn with_contact_solver(mut self, method: Method) -> Self {
-        self.solver = method;
-        self
-    }
-
-    /// Takes steps longer than the critical one of a conditionally stable integrator instead of refusing them.
-    ///
-    /// The critical step of a body is that of a safe bound, so a step a little longer may be stable; one much longer makes the highest
-    /// frequencies grow until numbers are no longer finite. The same goes for rigid bodies that are light on the surface of an
-    /// explicit body.
-    pub fn insisting(mut self) -> Self {
-        self.insists = true;
-        self
-    }
-
-    /// Approach velocity (m/s) below which restitution is ignored, so that resting contacts do not bounce.
-    pub fn with_restitution_threshold(mut self, threshold: f64) -> Self {
-        self.restitution_threshold = threshold;
-        self
-    }
-
-    /// The integrator.
-    pub fn integrator(&self) -> Beta2 {
-        self.integrator
     }
 
     /// The report of the last step.
@@ -159,6 +111,14 @@ impl FlexPipeline {
     }
 
     /// [`FlexPipeline::step`] with the user's hooks and event handler.
+    ///
+    /// Of flexible bodies, and of rigid ones solved with them, the handler hears after the step: a collision starts in the
+    /// step in which it presses, or when rapier sees it coming, and forces are those that acted (normal ones in
+    /// [`ContactForceEvent::total_force`](crate::rapier::geometry::ContactForceEvent), as in rapier).
+    ///
+    /// `modify_solver_contacts` is shown every such contact as a manifold of one point. It may change friction, restitution, normal and
+    /// distance, or clear the contact; `tangent_velocity` is not looked at. Pairs of two rigid bodies it sees in rapier's manifolds
+    /// as well, and the carrier of a flexible body is a rigid body with all axes locked.
     ///
     /// # Errors
     /// As [`FlexPipeline::step`].
@@ -225,17 +185,26 @@ impl FlexPipeline {
         flex_bodies: &mut FlexBodySet,
     ) -> Result<&StepReport, StepError> {
         self.report.clear();
+        let (user, hooks) = (sets.events, sets.hooks);
         if flex_bodies.is_empty() {
-            sets.step();
+            if self.events.is_empty() {
+                sets.step();
+            } else {
+                sets.step_through(hooks, &self.events.gate(user, None));
+                self.events.tell(&sets);
+            }
             return Ok(&self.report);
         }
         let mut clock = Clock::start();
         let dissipated = self.report.energy.dissipated;
         let step = self.check(&sets, flex_bodies)?;
         drop_orphans(&sets, flex_bodies);
+        sync_settings(flex_bodies, sets.colliders);
         let has_changed = self.claims.has_world_changed(&sets);
         if step.dt > 0.0 && !has_changed && is_all_asleep(&sets, flex_bodies) {
-            sets.step();
+            let gate = self.hook_gate(hooks, true);
+            sets.step_through(&gate, &self.events.gate(user, Some(&self.claims)));
+            self.events.tell(&sets);
             self.report.note_quarantine(&sets);
             self.report.n_asleep = flex_bodies.len();
             self.report.keep_contacts(|_| true);
@@ -255,12 +224,13 @@ impl FlexPipeline {
             || self.claims.has_attached_bodies(&sets);
         clock.lap(&mut self.report.times.claim);
         if is_detected {
-            sets.detect();
+            self.detect(&mut sets);
             self.report.note_quarantine(&sets);
             clock.lap(&mut self.report.times.rapier);
             if step.dt == 0.0 {
                 // The tree may be out to be optimized: a detection step without changes puts it back for queries.
-                sets.detect();
+                self.detect(&mut sets);
+                self.events.tell_detected(&sets);
                 return Ok(&self.report);
             }
             self.claims.sweep(&sets);
@@ -272,14 +242,15 @@ impl FlexPipeline {
             self.undo(flex_bodies, dissipated);
             if is_detected {
                 // As above.
-                sets.detect();
+                self.detect(&mut sets);
             }
             return Err(error);
         }
         self.keep_awake(&mut sets, flex_bodies);
         hand_back(&mut self.landings, &mut sets);
         clock.lap(&mut self.report.times.hand_back);
-        sets.step();
+        let gate = self.hook_gate(hooks, true);
+        sets.step_through(&gate, &self.events.gate(user, Some(&self.claims)));
         self.report.note_quarantine(&sets);
         clock.lap(&mut self.report.times.rapier);
         self.wake_moving(&mut sets, flex_bodies);
@@ -287,8 +258,24 @@ impl FlexPipeline {
         write_impulses(&self.joint_impulses, &mut sets);
         self.commit_attachments(flex_bodies);
         self.commit(&mut sets, flex_bodies);
+        self.events.tell(&sets);
         clock.lap(&mut self.report.times.hand_back);
         Ok(&self.report)
+    }
+
+    /// Rapier's step without length: what it stops is not told before the full step confirms it.
+    fn detect(&self, sets: &mut RapierSets<'_>) {
+        let gate = self.hook_gate(sets.hooks, false);
+        sets.detect_through(&gate, &self.events.gate(sets.events, None));
+    }
+
+    fn hook_gate<'a>(&'a self, user: &'a dyn PhysicsHooks, is_full: bool) -> HookGate<'a> {
+        HookGate {
+            user,
+            book: &self.gatherer.hooks,
+            claims: &self.claims,
+            is_full,
+        }
     }
 
     /// Solves every component; commits nothing.
@@ -303,6 +290,7 @@ impl FlexPipeline {
         self.reserves.clear();
         self.joint_impulses.clear();
         self.memory.discard_notes();
+        self.events.discard_notes();
         self.gatherer.turn_over(false);
         self.components.clear();
         for flex in 0..self.claims.flex.len() {

@@ -6,6 +6,7 @@ mod error;
 mod flex_pipeline;
 mod joint_accounts;
 mod report;
+mod settings;
 
 pub use error::StepError;
 pub use flex_pipeline::FlexPipeline;

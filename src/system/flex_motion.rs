@@ -163,12 +163,12 @@ impl FlexBlock {
                 let (applied, contact) = (&self.force[..n], &self.contact_force[..n]);
                 let mut twice = [0.0; 2];
                 for (node, mass) in mass[..n / 2].iter().enumerate() {
-                    for axis in 0..2 {
+                    for (axis, twice) in twice.iter_mut().enumerate() {
                         let dof = 2 * node + axis;
                         let acceleration =
                             start[dof] + increment[dof] + rayleigh.mass * velocity[dof];
                         let inner = applied[dof] + contact[dof] - mass * acceleration;
-                        twice[axis] += u[dof] * inner;
+                        *twice += u[dof] * inner;
                     }
                 }
                 0.5 * (twice[0] + twice[1])

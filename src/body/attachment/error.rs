@@ -6,7 +6,7 @@ use crate::rapier::prelude::RigidBodyHandle;
 use thiserror::Error;
 
 /// Why an attachment cannot be made or found. Nothing was changed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum AttachmentError {
     /// A flexible body is not in the set.
     #[error(transparent)]

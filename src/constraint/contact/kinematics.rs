@@ -4,6 +4,7 @@
 //! closest point the change of the normal does not move the gap to first order: `∂g = n·(∂x_point - Σ N_i ∂x_i)`.
 
 use super::candidate::{Candidate, Pair};
+use super::law::Direction;
 use super::memory::Remembered;
 use super::rigid_pair::{crossing, point_on_face, vertex_on_part};
 use super::surface::{SurfacePoint, closest_surface_point, faced_at_start, faces, facing_point};
@@ -145,8 +146,20 @@ pub struct Scene<'a> {
 }
 
 impl Candidate {
-    /// Gap and rows in the current configuration; `None` when the target is out of reach.
+    /// Gap and rows in the current configuration, as the law counts them; `None` when the target is out of reach.
     pub fn evaluate(&self, scene: &Scene<'_>, remembered: &Remembered) -> Option<Kinematics> {
+        let mut found = self.measure(scene, remembered)?;
+        found.gap -= self.law.skin;
+        if let Some(Direction { normal, gap }) = self.law.direction {
+            // Geometry knows no gap along a direction of the user's: it changes as the points move.
+            let moved = found.relative(scene.blocks, |block, grip| block.displacement(grip));
+            found.normal = normal;
+            found.gap = gap.map_or(found.gap, |gap| gap + normal.dot(&moved));
+        }
+        Some(found)
+    }
+
+    fn measure(&self, scene: &Scene<'_>, remembered: &Remembered) -> Option<Kinematics> {
         match self.pair {
             Pair::NodeOnPart { node, rigid, part } => {
                 node_on_part(scene, node, rigid, &scene.parts[part], remembered.feature)

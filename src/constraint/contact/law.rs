@@ -1,5 +1,7 @@
 //! The contact law: Signorini's condition, Coulomb's cone and Newton's restitution; it knows no shape function.
 
+use crate::math::Vec2;
+
 /// Coefficients of one contact, already combined from both colliders by rapier's rules.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactLaw {
@@ -7,6 +9,19 @@ pub struct ContactLaw {
     pub friction: f64,
     /// Newton's coefficient of restitution e (-), used where an impact is shorter than the step.
     pub restitution: f64,
+    /// Distance at which the contact closes (m).
+    pub skin: f64,
+    /// Direction of the normal force, if the user chose it.
+    pub direction: Option<Direction>,
+}
+
+/// A direction for the normal force that geometry did not give.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Direction {
+    /// Unit normal, from the target to the point, kept for the step.
+    pub normal: Vec2,
+    /// Gap along it at the beginning of the step (m); that of the geometry if it is not known.
+    pub gap: Option<f64>,
 }
 
 impl ContactLaw {
@@ -30,6 +45,7 @@ mod tests {
         let law = ContactLaw {
             friction: 0.0,
             restitution: 0.5,
+            ..ContactLaw::default()
         };
         assert_eq!(law.rebound(-2.0, 0.1), 1.0);
         assert_eq!(law.rebound(-0.05, 0.1), 0.0);

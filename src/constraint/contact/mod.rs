@@ -9,6 +9,6 @@ mod surface;
 
 pub use candidate::{Candidate, ContactKey, Owner, Pair};
 pub use kinematics::{Attachment, Kinematics, PlacedPart, Scene};
-pub use law::ContactLaw;
+pub use law::{ContactLaw, Direction};
 pub use memory::{ContactMemory, Remembered};
 pub use surface::{SurfacePoint, closest_surface_point};

@@ -1,0 +1,112 @@
+//! Picking: which part of which body a query has hit.
+
+use super::flex_body::FlexBody;
+use super::handle::FlexBodyHandle;
+use super::set::FlexBodySet;
+use crate::math::{Vec2, node_vec};
+use crate::rapier::prelude::ColliderHandle;
+
+/// A point on the surface of a body, as its mesh knows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfacePick {
+    /// Boundary segment, an index into [`Boundary::segments`](crate::fe::mesh::Boundary::segments) and into rapier's polyline.
+    pub segment: usize,
+    /// The segment's nodes.
+    pub nodes: [usize; 2],
+    /// Barycentric coordinates on it: the shares of both nodes, which add up to one (-).
+    pub weights: [f64; 2],
+    /// The nearer of both nodes.
+    pub node: usize,
+    /// The point of the deformed surface (m).
+    pub position: [f64; 2],
+    /// How far the point asked for is from it (m).
+    pub distance: f64,
+}
+
+impl FlexBody {
+    /// The point of the surface nearest to a point of the world (m), such as the one that a ray has hit.
+    ///
+    /// ```
+    /// use foil2d::prelude::*;
+    /// use foil2d::rapier::prelude::*;
+    /// let (mut world, mut flex_bodies) = (PhysicsWorld::new(), FlexBodySet::new());
+    /// let rubber = LinearElastic::plane_stress(1e6, 0.3).density(1000.0);
+    /// let block = FlexBodyBuilder::rectangle([1.0, 1.0], [2, 2]).material(rubber);
+    /// let block = flex_bodies.insert(block, &mut world)?;
+    /// FlexPipeline::new().step(&mut world, &mut flex_bodies)?;
+    /// let ray = Ray::new(Vector::new(0.9, 5.0), Vector::new(0.0, -1.0));
+    /// if let Some((collider, distance)) = world.cast_ray(&ray, 10.0, true, QueryFilter::default()) {
+    ///     let at = ray.point_at(distance);
+    ///     let hit = flex_bodies.pick(collider, [f64::from(at.x), f64::from(at.y)]);
+    ///     let (body, pick) = hit.expect("the ray hits the block");
+    ///     flex_bodies[body].set_nodal_force(pick.node, [0.0, 10.0])?;
+    ///     assert_eq!((body, pick.node), (block, 8));
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn pick(&self, point: [f64; 2]) -> SurfacePick {
+        let point = Vec2::from(point);
+        let segments = self.mesh().boundary().segments();
+        let mut nearest = self.pick_on(0, segments[0], point);
+        for (segment, &nodes) in segments.iter().enumerate().skip(1) {
+            let found = self.pick_on(segment, nodes, point);
+            if found.distance < nearest.distance {
+                nearest = found;
+            }
+        }
+        nearest
+    }
+
+    fn pick_on(&self, segment: usize, nodes: [usize; 2], point: Vec2) -> SurfacePick {
+        let [a, b] = nodes.map(|node| node_vec(self.positions(), node));
+        let along = b - a;
+        let share = (point - a).dot(&along) / along.norm_squared();
+        let share = share.clamp(0.0, 1.0);
+        let position = a + share * along;
+        SurfacePick {
+            segment,
+            nodes,
+            weights: [1.0 - share, share],
+            node: if share <= 0.5 { nodes[0] } else { nodes[1] },
+            position: position.into(),
+            distance: (point - position).norm(),
+        }
+    }
+
+    /// Whether a point of the world lies inside the deformed body; on the surface, either.
+    ///
+    /// Rapier knows the surface only: its point queries do not tell.
+    pub fn contains(&self, point: [f64; 2]) -> bool {
+        let point = Vec2::from(point);
+        let segments = self.mesh().boundary().segments();
+        let crossed = segments.iter().filter(|nodes| {
+            let [a, b] = nodes.map(|node| node_vec(self.positions(), node));
+            let spans = (a.y > point.y) != (b.y > point.y);
+            spans && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
+        });
+        crossed.count() % 2 == 1
+    }
+}
+
+impl FlexBodySet {
+    /// The body whose surface a collider is.
+    pub fn of_collider(&self, collider: ColliderHandle) -> Option<FlexBodyHandle> {
+        self.iter()
+            .find(|(_, body)| body.collider_handle() == collider)
+            .map(|(handle, _)| handle)
+    }
+
+    /// What a query of rapier's has hit: the body of the collider, if it is one, and the place on its surface nearest to
+    /// the point of the hit (m).
+    ///
+    /// The point decides and not the feature that rapier tells: a feature of a polyline may name the segment, the same
+    /// segment seen from behind, or a vertex.
+    pub fn pick(
+        &self,
+        collider: ColliderHandle,
+        point: [f64; 2],
+    ) -> Option<(FlexBodyHandle, SurfacePick)> {
+        let handle = self.of_collider(collider)?;
+        Some((handle, self.get(handle)?.pick(point)))
+    }
+}

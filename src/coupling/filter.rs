@@ -1,0 +1,88 @@
+//! Filters: which bodies the flexible stage can solve for, and which colliders may push each other.
+
+use super::events::{PairName, pair_name};
+use super::sets::RapierSets;
+use crate::rapier::prelude::*;
+use std::collections::HashMap;
+
+/// The dynamic rigid body of a collider, if the flexible stage can solve for it.
+///
+/// One that dominates flexible bodies, whose dominance is zero, does not feel them: rapier moves it, and it is met with the
+/// motion its velocity prescribes.
+pub(crate) fn claimable_parent(
+    sets: &RapierSets<'_>,
+    collider: &Collider,
+) -> Option<RigidBodyHandle> {
+    let parent = collider.parent()?;
+    claimable_body(sets, parent).then_some(parent)
+}
+
+/// Whether the flexible stage can solve for a rigid body.
+pub(super) fn claimable_body(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bool {
+    let Some(body) = sets.bodies.get(handle) else {
+        return false;
+    };
+    let is_free = body.is_dynamic()
+        && body.is_enabled()
+        && !body.is_soft_frame()
+        && body.dominance_group() <= 0;
+    is_free && sets.multibody_joints.rigid_body_link(handle).is_none()
+}
+
+/// Whether two colliders may push each other: what rapier's narrow phase asks of a pair, the user's hook included.
+pub(super) fn may_touch(
+    sets: &RapierSets<'_>,
+    one: ColliderHandle,
+    other: ColliderHandle,
+    answers: &mut HashMap<PairName, Option<SolverFlags>>,
+) -> bool {
+    let name = pair_name(one, other);
+    let pair = sets.narrow_phase.contact_pair(one, other);
+    let [collider1, collider2] = pair.map_or(name, |pair| [pair.collider1, pair.collider2]);
+    let (Some(first), Some(second)) =
+        (sets.colliders.get(collider1), sets.colliders.get(collider2))
+    else {
+        return false;
+    };
+    let is_solid = |collider: &Collider| collider.is_enabled() && !collider.is_sensor();
+    let type_of = |collider: &Collider| {
+        let body = collider.parent().and_then(|parent| sets.bodies.get(parent));
+        body.map_or(RigidBodyType::Fixed, RigidBody::body_type)
+    };
+    let types = (type_of(first), type_of(second));
+    let passes = is_solid(first)
+        && is_solid(second)
+        && first.collision_groups().test(second.collision_groups())
+        && [first, second]
+            .iter()
+            .any(|collider| collider.active_collision_types().test(types.0, types.1));
+    if !passes || joint_forbids(sets, first, second) {
+        return false;
+    }
+    let hooks = first.active_hooks() | second.active_hooks();
+    if !hooks.contains(ActiveHooks::FILTER_CONTACT_PAIRS) {
+        return true;
+    }
+    let context = PairFilterContext {
+        bodies: sets.bodies,
+        colliders: sets.colliders,
+        collider1,
+        collider2,
+        rigid_body1: first.parent(),
+        rigid_body2: second.parent(),
+    };
+    // From both sides, a pair is asked about once.
+    let flags = *answers
+        .entry(name)
+        .or_insert_with(|| sets.hooks.filter_contact_pair(&context));
+    flags.is_some_and(|flags| flags.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
+}
+
+/// Whether a joint between the bodies of two colliders keeps them from touching.
+fn joint_forbids(sets: &RapierSets<'_>, one: &Collider, other: &Collider) -> bool {
+    let (Some(one), Some(other)) = (one.parent(), other.parent()) else {
+        return false;
+    };
+    let mut joints = sets.impulse_joints.joints_between(one, other);
+    joints.any(|(_, joint)| !joint.data.contacts_enabled())
+}

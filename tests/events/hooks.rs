@@ -1,0 +1,319 @@
+//! The user's hooks: what they say of flexible and claimed pairs counts, and what they see is the user's world.
+
+use crate::support::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const MODIFY: ActiveHooks = ActiveHooks::MODIFY_SOLVER_CONTACTS;
+
+/// Friction and restitution for all contacts.
+struct Material(Real, Real);
+
+impl PhysicsHooks for Material {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        if let Some(rigid) = context.rigid_mut() {
+            *rigid.friction = self.0;
+            *rigid.restitution = self.1;
+        }
+    }
+}
+
+/// Speed left of 2 m/s after half a second on the ground, for a flexible block and a rigid box on a flexible one.
+fn slide(friction: f64) -> [f64; 2] {
+    let mut scene = Scene::new(DT);
+    scene.ground(0.5);
+    let moving = scene.flexible(block().active_hooks(MODIFY).linvel([2.0, 0.0]));
+    let slab = FlexBodyBuilder::rectangle([6.0, 0.3], [24, 2])
+        .material(
+            LinearElastic::plane_stress(1e9, 0.3)
+                .density(1000.0)
+                .rayleigh(1e-3),
+        )
+        .pin_where(|[_, y]| y == 0.0, Pin::both());
+    scene.flexible(slab.translation([10.0, 0.0]));
+    let at = RigidBodyBuilder::dynamic()
+        .translation(vec2(11.0, 0.4))
+        .linvel(vec2(2.0, 0.0));
+    let shape = ColliderBuilder::cuboid(0.2, 0.1).active_hooks(MODIFY);
+    let (sliding, _) = scene.rigid(at, shape);
+    let (hooks, listener) = (Material(real(friction), 0.0), Listener::default());
+    for _ in 0..30 {
+        scene.hear_with(&hooks, &listener);
+    }
+    let rigid = f64::from(scene.world.bodies[sliding].linvel().x);
+    [scene.body(moving).linvel()[0], rigid]
+}
+
+#[test]
+fn friction_set_by_the_hook_brakes_by_coulombs_law() {
+    for friction in [0.0, 0.1, 0.3] {
+        let expected = 2.0 - friction * G * 0.5;
+        for speed in slide(friction) {
+            // The blocks settle while they slide; the law holds for the sum of the forces, to the ringing of the step's end.
+            assert!(
+                (speed - expected).abs() < 0.02,
+                "{speed} m/s for {friction}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn restitution_set_by_the_hook_makes_a_claimed_box_bounce() {
+    let rebound = |restitution: f64| {
+        let mut scene = Scene::new(DT);
+        scene.flexible(
+            block()
+                .pin_where(|_| true, Pin::both())
+                .translation([0.0, -1.0]),
+        );
+        let at = RigidBodyBuilder::dynamic().translation(vec2(0.5, 1.0));
+        let (ball, _) = scene.rigid(at, ColliderBuilder::ball(0.2).active_hooks(MODIFY));
+        let (hooks, listener) = (Material(0.5, real(restitution)), Listener::default());
+        let mut highest = f64::NEG_INFINITY;
+        for _ in 0..120 {
+            scene.hear_with(&hooks, &listener);
+            highest = highest.max(f64::from(scene.world.bodies[ball].linvel().y));
+        }
+        highest
+    };
+    let impact = (2.0 * G * 0.8).sqrt();
+    for restitution in [0.0, 0.5, 0.8] {
+        let speed = rebound(restitution);
+        // To first order in the step: g dt of 0.16 m/s.
+        assert!(
+            (speed - restitution * impact).abs() < 0.17,
+            "{speed} m/s for {restitution}"
+        );
+    }
+}
+
+/// Lets nothing touch the collider it names.
+struct Ghost(ColliderHandle);
+
+impl PhysicsHooks for Ghost {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        let is_ghost = [context.collider1, context.collider2].contains(&self.0);
+        if let (true, Some(rigid)) = (is_ghost, context.rigid_mut()) {
+            rigid.solver_contacts.clear();
+        }
+    }
+}
+
+#[test]
+fn contacts_that_the_hook_removes_are_neither_solved_nor_heard() {
+    let mut scene = Scene::new(DT);
+    let floor = ColliderBuilder::cuboid(50.0, 0.5).translation(vec2(0.0, -0.5));
+    let floor = scene.fixed(floor.active_hooks(MODIFY));
+    let falling = scene.flexible(block().translation([0.0, 0.3]));
+    let listener = Listener::default();
+    for _ in 0..60 {
+        let heard = scene.hear_with(&Ghost(floor), &listener);
+        assert!(heard.collisions.is_empty() && heard.forces.is_empty());
+    }
+    let fell = 0.8 - scene.body(falling).centre_of_mass()[1];
+    assert!((fell - 0.5 * G).abs() < 1e-5, "{fell} m");
+}
+
+/// Turns every normal by an angle.
+struct Tilt(Real);
+
+impl PhysicsHooks for Tilt {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        if let Some(rigid) = context.rigid_mut() {
+            *rigid.normal = Rotation::new(self.0) * *rigid.normal;
+        }
+    }
+}
+
+#[test]
+fn a_normal_turned_by_the_hook_pushes_aside() {
+    // Flat ground that acts as an incline of 0.2 rad: without friction the block slides down it.
+    let angle = 0.2;
+    let mut scene = Scene::new(DT);
+    let floor = ColliderBuilder::cuboid(50.0, 0.5).translation(vec2(0.0, -0.5));
+    scene.fixed(floor.friction(0.0).active_hooks(MODIFY));
+    let body = scene.flexible(block().friction(0.0));
+    let listener = Listener::default();
+    for _ in 0..60 {
+        scene.hear_with(&Tilt(real(angle)), &listener);
+    }
+    let [vx, vy] = scene.body(body).linvel();
+    let speed = G * angle.sin();
+    // It settles into its sag meanwhile: a millimetre in its period of some steps.
+    let along = -vx * angle.cos() - vy * angle.sin();
+    assert!(
+        (along / speed - 1.0).abs() < 0.02,
+        "{along} m/s, not {speed}"
+    );
+}
+
+/// A platform that holds what comes from above.
+struct OneWay(ColliderHandle);
+
+impl PhysicsHooks for OneWay {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        let up = if context.collider1 == self.0 {
+            vec2(0.0, 1.0)
+        } else if context.collider2 == self.0 {
+            vec2(0.0, -1.0)
+        } else {
+            return;
+        };
+        context.update_as_oneway_platform(up, 0.4);
+    }
+}
+
+#[test]
+fn one_way_platforms_let_bodies_up_and_hold_them_when_they_come_down() {
+    let mut scene = Scene::new(DT);
+    let platform = ColliderBuilder::cuboid(20.0, 0.05).active_hooks(MODIFY);
+    let platform = scene.fixed(platform.translation(vec2(0.0, 2.0)));
+    // A flexible block thrown up through it; one dropped on it; one that is too slow to pass and falls back.
+    let thrown = scene.flexible(block().translation([0.0, 0.5]).linvel([0.0, 9.0]));
+    let dropped = scene.flexible(block().translation([3.0, 2.5]));
+    let slow = scene.flexible(block().translation([6.0, 0.5]).linvel([0.0, 3.0]));
+    let (hooks, listener) = (OneWay(platform), Listener::default());
+    let mut highest = f64::NEG_INFINITY;
+    for _ in 0..240 {
+        scene.hear_with(&hooks, &listener);
+        highest = highest.max(scene.body(thrown).centre_of_mass()[1]);
+    }
+    let y = |handle| scene.body(handle).centre_of_mass()[1];
+    // v²/2g above where it was thrown, as if nothing were there.
+    assert!(
+        (highest - 1.0 - 81.0 / (2.0 * G)).abs() < 0.02,
+        "{highest} m"
+    );
+    assert!((y(thrown) - 2.55).abs() < 0.02, "{} m", y(thrown));
+    assert!((y(dropped) - 2.55).abs() < 0.02, "{} m", y(dropped));
+    assert!(y(slow) < -10.0, "{} m", y(slow));
+}
+
+#[test]
+fn one_way_platforms_hold_claimed_boxes_too() {
+    let mut scene = Scene::new(DT);
+    // The platform is a rigid body that lies on two flexible blocks.
+    scene.ground(0.5);
+    for x in [-2.0, 1.0] {
+        scene.flexible(block().translation([x, 0.0]));
+    }
+    let at = RigidBodyBuilder::dynamic().translation(vec2(0.0, 1.1));
+    let shape = ColliderBuilder::cuboid(2.5, 0.05)
+        .density(500.0)
+        .active_hooks(MODIFY);
+    let (_, platform) = scene.rigid(at, shape);
+    let at = RigidBodyBuilder::dynamic()
+        .translation(vec2(0.0, 0.3))
+        .linvel(vec2(0.0, 7.0));
+    let (ball, _) = scene.rigid(at, ColliderBuilder::ball(0.2).density(50.0));
+    // Blocks below the platform must carry it: they come from below, so only the ball goes by the rule.
+    let ball_shape = scene.world.bodies[ball].colliders()[0];
+    struct Only(OneWay, ColliderHandle);
+    impl PhysicsHooks for Only {
+        fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+            if [context.collider1, context.collider2].contains(&self.1) {
+                self.0.modify_solver_contacts(context);
+            }
+        }
+    }
+    let hooks = Only(OneWay(platform), ball_shape);
+    let listener = Listener::default();
+    let mut highest = f64::NEG_INFINITY;
+    for _ in 0..240 {
+        scene.hear_with(&hooks, &listener);
+        highest = highest.max(f64::from(scene.world.bodies[ball].translation().y));
+    }
+    let y = f64::from(scene.world.bodies[ball].translation().y);
+    assert!(highest > 2.0, "it passes: {highest} m");
+    assert!((y - 1.3).abs() < 0.02, "it rests on the platform: {y} m");
+}
+
+/// Counts what it is shown that is not the user's.
+#[derive(Default)]
+struct Witness {
+    n_filtered: AtomicUsize,
+    n_modified: AtomicUsize,
+    n_locked: AtomicUsize,
+}
+
+impl Witness {
+    fn look(
+        &self,
+        bodies: &RigidBodySet,
+        handles: [Option<RigidBodyHandle>; 2],
+        claimed: RigidBodyHandle,
+    ) {
+        for handle in handles.into_iter().flatten() {
+            let is_locked = !bodies[handle].locked_axes().is_empty();
+            if handle == claimed && is_locked {
+                self.n_locked.fetch_add(1, Ordering::Relaxed);
+            }
+        }
+    }
+}
+
+struct Watching<'a>(&'a Witness, RigidBodyHandle);
+
+impl PhysicsHooks for Watching<'_> {
+    fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
+        self.0.n_filtered.fetch_add(1, Ordering::Relaxed);
+        self.0.look(
+            context.bodies,
+            [context.rigid_body1, context.rigid_body2],
+            self.1,
+        );
+        Some(SolverFlags::default())
+    }
+
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        self.0.n_modified.fetch_add(1, Ordering::Relaxed);
+        self.0.look(
+            context.bodies,
+            [context.rigid_body1, context.rigid_body2],
+            self.1,
+        );
+    }
+}
+
+#[test]
+fn hooks_never_see_claimed_bodies_locked() {
+    let mut scene = Scene::new(DT);
+    scene.ground(0.5);
+    scene.flexible(block());
+    let at = |x: f64, y: f64| RigidBodyBuilder::dynamic().translation(vec2(x, y));
+    let shape = || {
+        ColliderBuilder::cuboid(0.2, 0.2)
+            .density(100.0)
+            .active_hooks(ActiveHooks::all())
+    };
+    let (lower, _) = scene.rigid(at(0.5, 1.2), shape());
+    scene.rigid(at(0.5, 1.6), shape());
+    let (witness, listener) = (Witness::default(), Listener::default());
+    for _ in 0..60 {
+        scene.hear_with(&Watching(&witness, lower), &listener);
+    }
+    assert_eq!(scene.report().n_claimed(), 2);
+    let [filtered, modified, locked] =
+        [&witness.n_filtered, &witness.n_modified, &witness.n_locked]
+            .map(|n| n.load(Ordering::Relaxed));
+    assert!(filtered > 60 && modified > 60, "{filtered} and {modified}");
+    assert_eq!(locked, 0);
+}
+
+#[test]
+fn numbers_that_are_no_numbers_left_by_a_hook_are_refused() {
+    let mut scene = Scene::new(DT);
+    scene.ground(0.5);
+    scene.flexible(block().active_hooks(MODIFY));
+    scene.steps(5);
+    let hooks = Material(Real::NAN, 0.0);
+    let refused = scene
+        .flex
+        .step_with_events(&mut scene.world, &mut scene.bodies, &hooks, &());
+    let said = refused
+        .map(|_| ())
+        .expect_err("a friction that is no number")
+        .to_string();
+    assert!(said.contains("modify_solver_contacts"), "{said}");
+    scene.steps(5);
+}

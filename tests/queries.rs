@@ -1,0 +1,156 @@
+//! Queries see the deformed surface right after a step, and a hit can be told in terms of the mesh.
+
+mod common;
+
+use common::*;
+
+/// A beam held at its ends that sags under its weight by centimetres.
+fn sagging() -> (Scene, FlexBodyHandle) {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let beam = FlexBodyBuilder::rectangle([4.0, 0.2], [32, 2])
+        .material(
+            LinearElastic::plane_stress(1e8, 0.3)
+                .density(1000.0)
+                .rayleigh(1e-2),
+        )
+        .pin_where(|[x, _]| x == 0.0 || x == 4.0, Pin::both())
+        .translation([-2.0, 1.0]);
+    let beam = scene.flexible(beam);
+    (scene, beam)
+}
+
+/// The top of the beam at some place: between the nodes of its upper row.
+fn top(body: &FlexBody, x: f64) -> f64 {
+    let row = 2 * 33..3 * 33;
+    let nodes: Vec<[f64; 2]> = row.map(|node| body.position(node)).collect();
+    let pair = nodes
+        .windows(2)
+        .find(|pair| pair[0][0] <= x && x <= pair[1][0]);
+    let [[x0, y0], [x1, y1]] = pair.map(|pair| [pair[0], pair[1]]).expect("over the beam");
+    y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+}
+
+#[test]
+fn all_queries_see_the_deformed_surface_right_after_the_step() {
+    let (mut scene, beam) = sagging();
+    let tolerance = by_precision(2e-5, 1e-9);
+    let filter = QueryFilter::default;
+    for step in 0..40 {
+        scene.step();
+        let body = scene.body(beam);
+        let surface = body.collider_handle();
+        for x in [-1.3, -0.1, 0.77] {
+            let y = top(body, x);
+            let ray = Ray::new(vec2(x, 6.0), vec2(0.0, -1.0));
+            let (hit, far) = scene
+                .world
+                .cast_ray(&ray, 10.0, true, filter())
+                .expect("a hit");
+            assert_eq!(hit, surface, "step {step}");
+            assert!(
+                (6.0 - f64::from(far) - y).abs() < tolerance,
+                "step {step}: ray"
+            );
+            // A small ball falls on it, a little above the centre line's slope.
+            let ball = foil2d::rapier::parry::shape::Ball::new(real(0.001));
+            let from = Pose::from_translation(vec2(x, 6.0));
+            let options =
+                foil2d::rapier::parry::query::ShapeCastOptions::with_max_time_of_impact(10.0);
+            let cast = scene
+                .world
+                .cast_shape(&from, vec2(0.0, -1.0), &ball, options, filter());
+            let (hit, cast) = cast.expect("a hit");
+            assert_eq!(hit, surface);
+            let landed = 6.0 - f64::from(cast.time_of_impact) - 0.001;
+            assert!(
+                (landed - y).abs() < 1e-4,
+                "step {step}: cast {landed} on {y}"
+            );
+            let near = vec2(x, y + 0.05);
+            let (hit, projected) = scene
+                .world
+                .project_point(near, 1.0, true, filter())
+                .expect("a hit");
+            assert_eq!(hit, surface);
+            let distance = f64::from((projected.point - near).length());
+            assert!(
+                distance < 0.05 + tolerance && distance > 0.049,
+                "step {step}: {distance}"
+            );
+            let touches = |dy: f64| {
+                let shape = foil2d::rapier::parry::shape::Ball::new(real(0.01));
+                let at = Pose::from_translation(vec2(x, y + dy));
+                let mut found = scene.world.intersect_shape(at, &shape, filter());
+                found.any(|(handle, ..)| handle == surface)
+            };
+            assert!(
+                touches(0.009) && !touches(0.011),
+                "step {step}: intersection"
+            );
+        }
+    }
+    assert!(top(scene.body(beam), 0.0) < 1.19, "it sags");
+}
+
+#[test]
+fn a_hit_is_told_by_body_segment_weights_and_node() {
+    let (mut scene, beam) = sagging();
+    let other = scene.flexible(
+        FlexBodyBuilder::disc(0.4, 0.1)
+            .material(LinearElastic::plane_stress(1e6, 0.3).density(100.0))
+            .translation([5.0, 1.0]),
+    );
+    scene.steps(20);
+    let body = scene.body(beam);
+    for share in [0.1, 0.25, 0.6, 0.9] {
+        // Between two nodes of the upper row.
+        let [a, b] = [body.position(80), body.position(81)];
+        let at: [f64; 2] = std::array::from_fn(|axis| a[axis] + share * (b[axis] - a[axis]));
+        let ray = Ray::new(vec2(at[0], 6.0), vec2(0.0, -1.0));
+        let hit = scene
+            .world
+            .cast_ray(&ray, 10.0, true, QueryFilter::default());
+        let (collider, far) = hit.expect("a hit");
+        let point = ray.point_at(far);
+        let point = [f64::from(point.x), f64::from(point.y)];
+        let (handle, pick) = scene.bodies.pick(collider, point).expect("a flexible body");
+        assert_eq!(handle, beam);
+        let mut nodes = pick.nodes;
+        nodes.sort_unstable();
+        assert_eq!(nodes, [80, 81]);
+        assert_eq!(body.mesh().boundary().segments()[pick.segment], pick.nodes);
+        assert_eq!(pick.node, if share < 0.5 { 80 } else { 81 });
+        let of_second = pick.weights[pick
+            .nodes
+            .iter()
+            .position(|&node| node == 81)
+            .expect("one of both")];
+        let tolerance = by_precision(1e-4, 1e-9);
+        assert!(
+            (of_second - share).abs() < tolerance,
+            "{of_second} not {share}"
+        );
+        assert!((pick.weights[0] + pick.weights[1] - 1.0).abs() < 1e-15);
+        assert!(pick.distance < tolerance);
+        let error = (pick.position[0] - at[0]).hypot(pick.position[1] - at[1]);
+        assert!(error < tolerance, "{error} m");
+    }
+    assert_eq!(
+        scene
+            .bodies
+            .of_collider(scene.body(other).collider_handle()),
+        Some(other)
+    );
+    let floor = scene.ground(0.5);
+    assert!(scene.bodies.pick(floor, [0.0, 0.0]).is_none());
+    let [x, y] = scene.body(other).centre_of_mass();
+    assert!(
+        scene.body(other).contains([x + 0.39, y]) && !scene.body(other).contains([x + 0.41, y])
+    );
+    let outside = scene.body(other).pick([x + 1.0, y]);
+    assert!(
+        (outside.distance - 0.6).abs() < 0.02,
+        "{}",
+        outside.distance
+    );
+}
