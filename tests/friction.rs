@@ -214,7 +214,7 @@ fn a_disc_rolls_down_a_flexible_slab() {
 /// Drops a spinning block of 0.2 m from 0.4 m; returns its largest energy over the one it began with, and how far the impulses of
 /// the contact forces are from its momentum and weight, over `m g t`.
 fn drop_spinning(young: f64, spin: f64, rate: f64) -> [f64; 2] {
-    let (mu, seconds) = (0.5, 1.5);
+    let (mu, seconds) = (0.5, 3.0);
     let mut scene = Scene::new(1.0 / rate);
     scene.ground(mu);
     let material = LinearElastic::plane_stress(young, 0.3)

@@ -111,7 +111,7 @@ pub(crate) fn is_carried(body: &FlexBody, bodies: &RigidBodySet, colliders: &Col
 
 /// How far the surface in rapier may lag behind the body, over the size of the coordinates: every write wakes what touches it, and
 /// a body at rest still moves by rounding.
-const LAG: f64 = if size_of::<Real>() == 4 { 1e-7 } else { 1e-9 };
+const LAG: f64 = if size_of::<Real>() == 4 { 1e-7 } else { 1e-12 };
 
 /// Whether these vertices are where the nodes are.
 fn is_placed(body: &FlexBody, vertices: &[Vector]) -> bool {
@@ -136,6 +136,7 @@ pub(crate) fn sync_settings(flex_bodies: &mut FlexBodySet, colliders: &mut Colli
         if settings.is_none() && !has_groups {
             continue;
         }
+        body.wake_up();
         let Some(collider) = colliders.get_mut(handle) else {
             continue;
         };

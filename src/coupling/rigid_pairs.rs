@@ -19,6 +19,10 @@ const FAR: f64 = 0.05;
 /// other end twice as fast.
 const THROW: f64 = 3.0;
 
+/// Turn within the step (rad), and slope of one face to the other, up to which faces meet flat: their own two points then say all,
+/// and the corners of equal boxes need not be told apart.
+const FLAT: f64 = 1e-3;
+
 /// Stands for the face in the key of a vertex that may meet any.
 const ANY_FACE: u32 = 0x7fff << 15;
 
@@ -92,9 +96,8 @@ impl RigidPair<'_> {
         };
         let [part_a, part_b] = pair.map(|part| &island.parts[part]);
         let size = part_a.part.size().min(part_b.part.size());
-        let moved = self.agitation.shift
-            + relative_motion([block_a, block_b])
-            + size * (self.agitation.turn + (turn_of(block_a) - turn_of(block_b)).abs());
+        let turn = self.agitation.turn + (turn_of(block_a) - turn_of(block_b)).abs();
+        let moved = self.agitation.shift + relative_motion([block_a, block_b]) + size * turn;
         let reach = approach(block_a) + approach(block_b) + self.prediction + THROW * moved;
         let near = part_bounds(block_a, part_a).loosened(self.prediction + THROW * moved);
         if !near.intersects(&part_bounds(block_b, part_b)) {
@@ -116,7 +119,8 @@ impl RigidPair<'_> {
             references.recall(names),
         );
         references.remember(names, found.reference);
-        if moved > FAR * size {
+        let meets_flat = turn <= FLAT && is_flat(&found, FLAT * size);
+        if moved > FAR * size && !meets_flat {
             self.add_vertices(island, pair, part_names, &found, poses);
         } else {
             self.add_manifold(island, pair, part_names, &found);
@@ -216,6 +220,15 @@ impl RigidPair<'_> {
                 island.candidates.push(Candidate { key, pair, law });
             }
         }
+    }
+}
+
+/// Whether two points face the other part at one distance, but for `slope` (m).
+fn is_flat(found: &PairContacts, slope: f64) -> bool {
+    let mut distances = found.iter().map(|contact| contact.distance);
+    match (distances.next(), distances.next()) {
+        (Some(one), Some(other)) => (one - other).abs() <= slope,
+        _ => false,
     }
 }
 
