@@ -105,19 +105,19 @@ pub(crate) fn is_carried(body: &FlexBody, bodies: &RigidBodySet, colliders: &Col
         && collider.parent() == Some(body.rigid_body_handle())
         && surface.is_some_and(|polyline| {
             let vertices = polyline.vertices();
-            vertices.len() == body.mesh().boundary().nodes().len() && is_placed(body, vertices)
+            vertices.len() == body.mesh().boundary().nodes().len() && is_placed(body, vertices, LAG)
         })
 }
 
-/// How far the surface in rapier may lag behind the body, over the size of the coordinates: every write wakes what touches it, and
-/// a body at rest still moves by rounding.
-const LAG: f64 = if size_of::<Real>() == 4 { 1e-7 } else { 1e-12 };
+/// How far the surface in rapier may lag behind a body at rest, over the size of the coordinates: every write wakes what touches it,
+/// and a body at rest still moves by rounding.
+const LAG: f64 = if size_of::<Real>() == 4 { 1e-7 } else { 1e-9 };
 
-/// Whether these vertices are where the nodes are.
-fn is_placed(body: &FlexBody, vertices: &[Vector]) -> bool {
+/// Whether these vertices are where the nodes are, but for a `share` of their coordinates.
+fn is_placed(body: &FlexBody, vertices: &[Vector], share: f64) -> bool {
     let nodes = body.mesh().boundary().nodes();
     let reach = |reach: Real, vertex: &Vector| reach.max(vertex.x.abs()).max(vertex.y.abs());
-    let lag = (LAG * f64::from(vertices.iter().fold(0.0, reach))) as Real;
+    let lag = (share * f64::from(vertices.iter().fold(0.0, reach))) as Real;
     let mut pairs = nodes.iter().zip(vertices);
     pairs.all(|(&node, old)| {
         let off = to_rapier(node_vec(body.positions(), node)) - *old;
@@ -225,16 +225,18 @@ fn surface(body: &FlexBody) -> Polyline {
 /// at once.
 pub(crate) fn write_surface(
     body: &FlexBody,
+    rests: bool,
     colliders: &mut ColliderSet,
     broad_phase: &mut BroadPhaseBvh,
     parameters: &IntegrationParameters,
 ) {
     let handle = body.collider_handle();
     let nodes = body.mesh().boundary().nodes();
+    let share = if rests { LAG } else { 0.0 };
     let current = colliders
         .get(handle)
         .and_then(|collider| collider.shape().as_polyline());
-    if current.is_none_or(|polyline| is_placed(body, polyline.vertices())) {
+    if current.is_none_or(|polyline| is_placed(body, polyline.vertices(), share)) {
         return;
     }
     let Some(collider) = colliders.get_mut(handle) else {

@@ -37,5 +37,5 @@ pub(crate) use masters::Masters;
 pub(crate) use reading::{GatherError, is_held_motion};
 pub use sets::RapierSets;
 pub(crate) use sleep::{
-    is_all_asleep, is_asleep, keep_awake, stop_if_asleep, wake_disturbed, wake_moving,
+    is_all_asleep, is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving,
 };

@@ -209,6 +209,15 @@ pub(crate) fn wake_moving(
     }
 }
 
+/// Whether a body has come to rest, to some eight digits.
+pub(crate) fn rests(body: &FlexBody, sets: &RapierSets<'_>) -> bool {
+    let carrier = sets.bodies.get(body.rigid_body_handle());
+    carrier.is_some_and(|carrier| {
+        let patience = carrier.activation().time_until_sleep;
+        !moves(body, body.velocities(), patience, sets)
+    })
+}
+
 /// Whether a node moves farther than at rest.
 fn moves(body: &FlexBody, velocities: &[f64], patience: Real, sets: &RapierSets<'_>) -> bool {
     let fastest = velocities

@@ -7,8 +7,8 @@ use crate::body::FlexBodySet;
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
     Claims, EventBook, GatherSettings, Gatherer, HookGate, JointImpulse, Landing, Masters,
-    RapierSets, hand_back, is_all_asleep, land, stop_if_asleep, sync_settings, wake_disturbed,
-    write_impulses, write_surface,
+    RapierSets, hand_back, is_all_asleep, land, rests, stop_if_asleep, sync_settings,
+    wake_disturbed, write_impulses, write_surface,
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ContactMethod, ImpactTreatment, Island, SolveSettings};
@@ -388,8 +388,10 @@ impl FlexPipeline {
                 block.write_contact_force(body.contact_force_mut());
                 block.write_reactions(body.reaction_mut());
             }
+            let is_still = rests(body, sets);
             write_surface(
                 body,
+                is_still,
                 sets.colliders,
                 sets.broad_phase,
                 sets.integration_parameters,

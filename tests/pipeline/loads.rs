@@ -189,6 +189,7 @@ fn a_prescribed_displacement_stretches_a_bar_by_hookes_law() -> Outcome {
                     .density(1000.0)
                     .rayleigh(2e-2),
             )
+            .can_sleep(false)
             .thickness(0.1)
             .pin_where(|[x, _]| x == 0.0, Pin::both())
             .pin_where(|[x, _]| x == 2.0, Pin::x()),
