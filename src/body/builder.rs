@@ -302,7 +302,8 @@ impl FlexBodyBuilder {
     /// Whether the body may fall asleep when it, and all that it touches, has come to rest: yes by default.
     ///
     /// It rests when no node moves by a hundred-millionth of the body's size in the time until sleep of its rapier body, half a second
-    /// by default: a vibration that dies out falls asleep late, and one that does not never does.
+    /// by default: a vibration that dies out falls asleep late, and one that does not never does. What rests is in equilibrium to some eight
+    /// digits; for more, or for queries that see the surface to the last digit, choose `false`.
     pub fn can_sleep(mut self, can_sleep: bool) -> Self {
         self.can_sleep = can_sleep;
         self

@@ -209,12 +209,13 @@ pub(crate) fn wake_moving(
     }
 }
 
-/// Whether a body has come to rest, to some eight digits.
+/// Whether a body that may sleep has come to rest, to some eight digits.
 pub(crate) fn rests(body: &FlexBody, sets: &RapierSets<'_>) -> bool {
     let carrier = sets.bodies.get(body.rigid_body_handle());
     carrier.is_some_and(|carrier| {
-        let patience = carrier.activation().time_until_sleep;
-        !moves(body, body.velocities(), patience, sets)
+        let activation = carrier.activation();
+        activation.normalized_linear_threshold >= 0.0
+            && !moves(body, body.velocities(), activation.time_until_sleep, sets)
     })
 }
 
