@@ -31,12 +31,12 @@ pub(crate) struct Plan {
 /// let mut flex_bodies = FlexBodySet::new();
 /// let beam = flex_bodies.insert(
 ///     FlexBodyBuilder::rectangle([2.0, 0.2], [20, 2])
-///         .material(LinearElastic::plane_stress(1e7, 0.3).density(1000.0).rayleigh(1e-3)),
+///         .material(LinearElastic::plane_stress(1e8, 0.3).density(1000.0).rayleigh(1e-2)),
 ///     &mut world,
 /// )?;
 /// let wall = world.insert_body(RigidBodyBuilder::fixed());
 /// // The left end cannot move or turn.
-/// let weld = AttachmentBuilder::weld(beam).where_(|[x, _]| x < -0.999).to_rigid_body(wall);
+/// let weld = AttachmentBuilder::weld(beam).where_(|[x, _]| x < 1e-9).to_rigid_body(wall);
 /// let weld = flex_bodies.attach(weld, &world.bodies)?;
 /// let mut flex = FlexPipeline::new();
 /// for _ in 0..600 {
