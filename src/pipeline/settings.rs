@@ -23,7 +23,7 @@ impl FlexPipeline {
     }
 
     /// Chooses how the laws of contact are enforced: by Lagrange multipliers, or for comparison by the constraint functions of
-    /// ADINA. Steps in which the latter fail are counted, see [`StepReport::n_failed`].
+    /// ADINA. Steps in which the latter fail are counted, see [`StepReport::n_failed`](super::StepReport::n_failed).
     pub fn with_contact_method(mut self, method: ContactMethod) -> Self {
         self.contact = method;
         self
