@@ -110,7 +110,9 @@ fn builder(scene: &Scene, kind: CellKind) -> Outcome<FlexBodyBuilder> {
         .rayleigh(damping);
     let builder = FlexBodyBuilder::mesh(scene.mesh(kind)?)
         .material(material)
-        .translation(scene.origin());
+        .translation(scene.origin())
+        // Asleep it would cost next to nothing; rapier's soft bodies are timed awake.
+        .can_sleep(false);
     Ok(if is_clamped {
         builder.pin_where(|[x, _]| x == 0.0, Pin::both())
     } else {
