@@ -228,8 +228,7 @@ fn drop_spinning(young: f64, spin: f64, rate: f64) -> [f64; 2] {
             .angvel(spin),
     );
     let n = (seconds * rate) as usize;
-    let start = scene.report().energy().total();
-    let (mut highest, mut first) = (0.0f64, start);
+    let (mut highest, mut first) = (0.0f64, 0.0);
     let mut impulse = [0.0; 2];
     for step in 0..n {
         let total = scene.step().energy().total();

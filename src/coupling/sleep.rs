@@ -77,10 +77,15 @@ pub(crate) fn wake_disturbed(
 
 impl Claims {
     /// Whether colliders have come or gone since the last call, fixed ones have been moved, or gravity is another: what rested may
-    /// fall.
-    pub fn has_world_changed(&mut self, sets: &RapierSets<'_>) -> bool {
+    /// fall. Where nothing sleeps, nobody asks.
+    pub fn has_world_changed(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
         let now = (sets.colliders.len(), sets.gravity);
-        std::mem::replace(&mut self.world, now) != now
+        let has_another = std::mem::replace(&mut self.world, now) != now;
+        let mut all = flex_bodies.iter();
+        if !all.any(|(_, body)| is_asleep(body, sets.bodies)) {
+            return false;
+        }
+        has_another
             || sets.colliders.iter().any(|(_, collider)| {
                 let parent = collider.parent().and_then(|parent| sets.bodies.get(parent));
                 parent.is_some_and(RigidBody::is_fixed) && !is_fixed_and_settled(sets, collider)
@@ -97,37 +102,47 @@ impl Claims {
         sleepers.any(|sleeper| sleeper.collider == collider)
     }
 
-    /// Wakes sleepers that something awake may meet in the step; returns whether there were any, with which the look-ahead has
-    /// to begin anew.
+    /// Wakes sleepers that something awake may meet in the step; returns whether one woke, so that the look-ahead has to begin
+    /// anew.
     pub fn wake_met(&mut self, sets: &mut RapierSets<'_>) -> bool {
         self.woken.clear();
-        for sleeper in &self.asleep {
-            if self.is_met(sets, sleeper) {
-                self.woken.push(sleeper.carrier);
-            }
+        if self.asleep.is_empty() {
+            return false;
         }
-        for &carrier in &self.woken {
-            sets.islands.wake_up(sets.bodies, carrier, true);
-        }
-        !self.woken.is_empty()
-    }
-
-    fn is_met(&self, sets: &RapierSets<'_>, sleeper: &Sleeper) -> bool {
         let dt = sets.integration_parameters.dt;
         let fall = sets.gravity.length() * dt * dt;
         let margin = sets.integration_parameters.prediction_distance() + fall;
-        let near = |other: &Aabb| {
-            let other = loosened(*other, margin);
-            other.intersects(&sleeper.surface) && reaches(sets, sleeper.collider, &other)
-        };
-        if self.flex.iter().any(|flex| near(&flex.swept)) {
-            return true;
+        for slot in 0..self.flex.len() {
+            self.list_met(sets, &loosened(self.flex[slot].swept, margin));
         }
-        sets.colliders.iter().any(|(handle, collider)| {
-            !self.is_surface(handle)
-                && is_awake(sets, collider)
-                && near(&swept_box(sets.bodies, collider, dt))
-        })
+        for (handle, collider) in sets.colliders.iter() {
+            if is_awake(sets, collider) && !self.flex_of_collider.contains_key(&handle) {
+                let swept = swept_box(sets.bodies, collider, dt);
+                self.list_met(sets, &loosened(swept, margin));
+            }
+        }
+        let mut has_woken = false;
+        for &carrier in &self.woken {
+            sets.islands.wake_up(sets.bodies, carrier, true);
+            // Rapier wakes no body that the user has made a fixed one.
+            has_woken |= sets
+                .bodies
+                .get(carrier)
+                .is_some_and(|body| !body.is_sleeping());
+        }
+        has_woken
+    }
+
+    /// Lists the sleepers whose surface a box reaches.
+    fn list_met(&mut self, sets: &RapierSets<'_>, near: &Aabb) {
+        for sleeper in &self.asleep {
+            if near.intersects(&sleeper.surface)
+                && !self.woken.contains(&sleeper.carrier)
+                && reaches(sets, sleeper.collider, near)
+            {
+                self.woken.push(sleeper.carrier);
+            }
+        }
     }
 
     /// How many flexible bodies sleep.
@@ -164,7 +179,8 @@ fn is_awake(sets: &RapierSets<'_>, collider: &Collider) -> bool {
         && parent.is_some_and(|body| !body.is_fixed() && !body.is_sleeping())
 }
 
-/// Keeps the carrier of a body awake while a node moves, or while it is attached to something, of which rapier knows nothing, before rapier's step counts the time that it has been still.
+/// Keeps the carrier of a body awake while a node moves, or while it is attached to something, of which rapier knows nothing. To be
+/// called before rapier's step counts the time that it has been still.
 pub(crate) fn keep_awake(
     body: &FlexBody,
     velocities: &[f64],

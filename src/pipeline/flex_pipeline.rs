@@ -200,7 +200,7 @@ impl FlexPipeline {
         let step = self.check(&sets, flex_bodies)?;
         drop_orphans(&sets, flex_bodies);
         sync_settings(flex_bodies, sets.colliders);
-        let has_changed = self.claims.has_world_changed(&sets);
+        let has_changed = self.claims.has_world_changed(&sets, flex_bodies);
         if step.dt > 0.0 && !has_changed && is_all_asleep(&sets, flex_bodies) {
             let gate = self.hook_gate(hooks, true);
             sets.step_through(&gate, &self.events.gate(user, Some(&self.claims)));
