@@ -64,22 +64,23 @@ impl Side for FlexSide {
         for _ in 0..n_steps {
             self.step()?;
         }
-        self.carrier.replay(&[self.surface()]);
+        self.carrier.replay(&[(false, self.surface())]);
         Ok(())
     }
 
     fn burst(&mut self, n_steps: usize, clock: &Clock) -> Outcome<Option<Burst>> {
         let mut steps = Vec::with_capacity(n_steps);
-        let mut surfaces = Vec::with_capacity(n_steps);
+        let mut moves = Vec::with_capacity(n_steps);
         for _ in 0..n_steps {
             let (time, outcome) = clock.time(|| self.step());
             outcome?;
             let report = self.pipeline.report();
             let counts = self.scene.phase != Phase::Landed || !report.contacts().is_empty();
             steps.push((counts, time, 1e6 * report.times().rapier));
-            surfaces.push(self.surface());
+            let is_detected = self.pipeline.report().is_detected();
+            moves.push((is_detected, self.surface()));
         }
-        let replayed = self.carrier.replay(&surfaces);
+        let replayed = self.carrier.replay(&moves);
         let (mut whole, mut rapier) = (Vec::new(), Vec::new());
         for ((_, time, reported), replayed) in
             steps.iter().zip(&replayed).filter(|(step, _)| step.0)
@@ -135,14 +136,16 @@ impl CarrierAlone {
         Ok(Self { world, surface })
     }
 
-    /// Takes rapier's two steps for every surface, and returns their times (µs).
-    fn replay(&mut self, surfaces: &[Vec<Vector>]) -> Vec<f64> {
+    /// Takes rapier's step for every surface, after one without length where there was one, and returns the times (µs).
+    fn replay(&mut self, moves: &[(bool, Vec<Vector>)]) -> Vec<f64> {
         let clock = Clock::plain();
-        let mut times = Vec::with_capacity(surfaces.len());
-        for vertices in surfaces {
+        let mut times = Vec::with_capacity(moves.len());
+        for (is_detected, vertices) in moves {
             let (time, ()) = clock.time(|| {
                 let mut sets = RapierSets::of_world(&mut self.world, &(), &());
-                sets.detect();
+                if *is_detected {
+                    sets.detect();
+                }
                 sets.step();
             });
             times.push(time);

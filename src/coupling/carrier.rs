@@ -115,12 +115,17 @@ const LAG: f64 = if size_of::<Real>() == 4 { 1e-7 } else { 1e-9 };
 
 /// Whether these vertices are where the nodes are, but for a `share` of their coordinates.
 fn is_placed(body: &FlexBody, vertices: &[Vector], share: f64) -> bool {
-    let nodes = body.mesh().boundary().nodes();
+    let (nodes, positions) = (body.mesh().boundary().nodes(), body.positions());
+    let mut pairs = nodes.iter().zip(vertices);
+    // What was written last is what is asked for most.
+    let is_same = pairs.all(|(&node, old)| to_rapier(node_vec(positions, node)) == *old);
+    if is_same || share == 0.0 {
+        return is_same;
+    }
     let reach = |reach: Real, vertex: &Vector| reach.max(vertex.x.abs()).max(vertex.y.abs());
     let lag = (share * f64::from(vertices.iter().fold(0.0, reach))) as Real;
-    let mut pairs = nodes.iter().zip(vertices);
-    pairs.all(|(&node, old)| {
-        let off = to_rapier(node_vec(body.positions(), node)) - *old;
+    nodes.iter().zip(vertices).all(|(&node, old)| {
+        let off = to_rapier(node_vec(positions, node)) - *old;
         off.x.abs() <= lag && off.y.abs() <= lag
     })
 }

@@ -6,11 +6,11 @@
 use super::claim_attachments::ClaimedAttachment;
 use super::events::PairName;
 use super::filter::{claimable_parent, may_touch};
-use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box};
+use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box, swept_surface};
 use super::sets::RapierSets;
 use super::sleep::Sleeper;
 use crate::body::FlexBodySet;
-use crate::math::{from_rapier, node_vec, rotation, to_rapier};
+use crate::math::from_rapier;
 use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
@@ -113,27 +113,8 @@ impl Claims {
                 self.asleep.push(sleeper);
                 continue;
             }
-            let nodes = body.mesh().boundary().nodes();
-            let mut swept = Aabb::new_invalid();
-            let (mut length, mut travel) = (0.0, 0.0f64);
-            let state = body.state();
-            let turn = rotation(state.frame.angle);
-            let mut last = node_vec(body.positions(), nodes[nodes.len() - 1]);
-            for &node in nodes {
-                let position = node_vec(body.positions(), node);
-                let shift = dt * node_vec(body.velocities(), node);
-                swept.take_point(to_rapier(position));
-                // Vibrations that the step does not resolve move a node by its acceleration.
-                let own = turn * node_vec(&state.acceleration, node);
-                let bend = 0.5 * dt * dt * (state.frame.acceleration + own);
-                swept.take_point(to_rapier(position + shift));
-                swept.take_point(to_rapier(position + shift + bend));
-                let ways = [shift.norm_squared(), (shift + bend).norm_squared()];
-                travel = travel.max(ways[0]).max(ways[1]);
-                length += (position - last).norm();
-                last = position;
-            }
-            let edge = length / nodes.len() as f64;
+            let edge = body.mesh().boundary().mean_segment_length();
+            let (swept, travel) = swept_surface(body, dt);
             let fall = from_rapier(sets.gravity).norm() * body.gravity_scale().abs() * dt * dt;
             let skin = body.contact_settings().contact_skin;
             let swept = loosened(swept, (0.5 * edge + fall + skin) as Real);
@@ -142,7 +123,7 @@ impl Claims {
                 index,
                 collider: body.collider_handle(),
                 swept,
-                travel: travel.sqrt() as Real,
+                travel,
                 edge,
                 solver_groups: body.contact_settings().solver_groups,
             });

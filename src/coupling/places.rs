@@ -1,6 +1,8 @@
 //! Where colliders are: boxes swept over the step, and an order by place that no insertion changes.
 
 use super::sets::RapierSets;
+use crate::body::FlexBody;
+use crate::math::{node_vec, rotation, to_rapier};
 use crate::rapier::math::{Real, Vector};
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
@@ -82,4 +84,40 @@ pub(super) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) ->
     let shift: Vector = body.linvel() * dt;
     let moved = Aabb::new(aabb.mins + shift, aabb.maxs + shift);
     loosened(aabb.merged(&moved), turn + 0.01 * extents.length())
+}
+
+/// Box of a flexible body's surface from where it is to where its velocities and accelerations take it, and how far its
+/// fastest node goes (m).
+pub(super) fn swept_surface(body: &FlexBody, dt: f64) -> (Aabb, Real) {
+    let (positions, velocities) = (body.positions(), body.velocities());
+    let state = body.state();
+    let turn = rotation(state.frame.angle);
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let mut travel = 0.0f64;
+    for &node in body.mesh().boundary().nodes() {
+        let position = node_vec(positions, node);
+        let shift = dt * node_vec(velocities, node);
+        // Vibrations that the step does not resolve move a node by its acceleration.
+        let own = turn * node_vec(&state.acceleration, node);
+        let bent = shift + 0.5 * dt * dt * (state.frame.acceleration + own);
+        travel = larger(larger(travel, shift.norm_squared()), bent.norm_squared());
+        for axis in 0..2 {
+            let least = smaller(0.0, smaller(shift[axis], bent[axis]));
+            let most = larger(0.0, larger(shift[axis], bent[axis]));
+            low[axis] = smaller(low[axis], position[axis] + least);
+            high[axis] = larger(high[axis], position[axis] + most);
+        }
+    }
+    let swept = Aabb::new(to_rapier(low.into()), to_rapier(high.into()));
+    (swept, travel.sqrt() as Real)
+}
+
+/// The smaller of two finite numbers: one instruction, where `f64::min` looks for NaN.
+fn smaller(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
+}
+
+/// The larger of two finite numbers.
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
 }

@@ -1,7 +1,7 @@
 //! The mass matrix of a body, the same in x and y: nodal masses, or `m_ab I` blocks.
 
 use crate::linalg::block_matrix::BlockMatrix;
-use crate::math::{Vec2, cross, node_vec};
+use crate::math::{Vec2, cross, node_vec, sum_over_dofs};
 
 /// How the mass of a body is represented.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,12 +65,7 @@ impl MassMatrix {
     /// `x·M y` over all dofs.
     pub fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
         match self {
-            Self::Lumped(mass) => x
-                .chunks_exact(2)
-                .zip(y.chunks_exact(2))
-                .zip(mass)
-                .map(|((x, y), mass)| mass * (x[0] * y[0] + x[1] * y[1]))
-                .sum(),
+            Self::Lumped(mass) => sum_over_dofs(mass, [x, y], |mass, [x, y]| mass * x * y),
             Self::Consistent(matrix) => (0..matrix.n_nodes())
                 .map(|node| {
                     let [a, b] = matrix.multiply_node(node, y);

@@ -52,31 +52,69 @@ pub(super) fn redistribute(
     Ok(())
 }
 
-/// Nearest massive nodes of every massless one, ring by ring over the mesh.
-pub(super) fn massive_support(
-    massless: &[bool],
-    pattern: &BlockMatrix,
-) -> Vec<(usize, Vec<usize>)> {
-    let mut support = Vec::new();
-    for node in (0..massless.len()).filter(|&node| massless[node]) {
-        let mut ring = vec![node];
-        let mut seen = ring.clone();
-        loop {
-            let mut next: Vec<usize> = ring
-                .iter()
-                .flat_map(|&node| pattern.neighbours(node).iter().map(|&n| n as usize))
-                .filter(|node| !seen.contains(node))
-                .collect();
-            next.sort_unstable();
-            next.dedup();
-            let massive: Vec<usize> = next.iter().copied().filter(|&n| !massless[n]).collect();
-            if !massive.is_empty() || next.is_empty() {
-                support.push((node, massive));
-                break;
-            }
-            seen.extend_from_slice(&next);
-            ring = next;
+/// The nearest massive nodes of every massless one, ring by ring over the mesh.
+#[derive(Clone, Debug, Default)]
+pub(super) struct MassiveSupport {
+    massless: Vec<usize>,
+    /// Of the massless nodes in turn, all in one.
+    massive: Vec<usize>,
+    /// Where the massive nodes of each begin, and the end.
+    starts: Vec<usize>,
+    /// Which of the massless a node is, `u32::MAX` for a node with mass.
+    slot: Vec<u32>,
+}
+
+impl MassiveSupport {
+    pub fn new(massless: &[bool], pattern: &BlockMatrix) -> Self {
+        let mut support = Self {
+            starts: vec![0],
+            slot: vec![u32::MAX; massless.len()],
+            ..Self::default()
+        };
+        for node in (0..massless.len()).filter(|&node| massless[node]) {
+            support.slot[node] = support.massless.len() as u32;
+            support.massless.push(node);
+            support
+                .massive
+                .extend(nearest_massive(node, massless, pattern));
+            support.starts.push(support.massive.len());
+        }
+        support
+    }
+
+    /// The massless nodes, ascending, each with its support.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, &[usize])> {
+        let ranges = self.starts.windows(2);
+        let supports = ranges.map(|ends| &self.massive[ends[0]..ends[1]]);
+        self.massless.iter().copied().zip(supports)
+    }
+
+    /// The support of a node; none for a node with mass.
+    pub fn of(&self, node: usize) -> &[usize] {
+        let slot = self.slot[node] as usize;
+        match self.starts.get(slot..slot.saturating_add(2)) {
+            Some(ends) => &self.massive[ends[0]..ends[1]],
+            None => &[],
         }
     }
-    support
+}
+
+fn nearest_massive(node: usize, massless: &[bool], pattern: &BlockMatrix) -> Vec<usize> {
+    let mut ring = vec![node];
+    let mut seen = ring.clone();
+    loop {
+        let mut next: Vec<usize> = ring
+            .iter()
+            .flat_map(|&node| pattern.neighbours(node).iter().map(|&n| n as usize))
+            .filter(|node| !seen.contains(node))
+            .collect();
+        next.sort_unstable();
+        next.dedup();
+        let massive: Vec<usize> = next.iter().copied().filter(|&n| !massless[n]).collect();
+        if !massive.is_empty() || next.is_empty() {
+            return massive;
+        }
+        seen.extend_from_slice(&next);
+        ring = next;
+    }
 }

@@ -6,7 +6,7 @@ use super::element::{Element, ElementError, MAX_NODES, default_element};
 use super::frequency::frequency_bound;
 use super::mass::MassError;
 pub use super::mass_matrix::{MassKind, MassMatrix};
-use super::massless::{massive_support, redistribute};
+use super::massless::{MassiveSupport, redistribute};
 use super::material::{Material, Rayleigh};
 use super::mesh::{Cell, Mesh};
 use super::recovery::{CellStress, Stress, smooth_to_nodes};
@@ -69,9 +69,7 @@ pub struct Model {
     stiffness: BlockMatrix,
     mass: MassMatrix,
     /// For every massless node the massive nodes that stand for its velocity.
-    support: Vec<(usize, Vec<usize>)>,
-    /// Place of a massless node in `support`, `u32::MAX` for the others.
-    support_index: Vec<u32>,
+    support: MassiveSupport,
     /// Computed when asked for: implicit integration never does.
     largest_frequency: OnceLock<f64>,
 }
@@ -117,17 +115,12 @@ impl Model {
         if description.massless.is_empty() {
             description.massless = vec![false; n_nodes];
         }
-        let support = massive_support(&description.massless, &stiffness);
-        let mut support_index = vec![u32::MAX; n_nodes];
-        for (index, (node, _)) in support.iter().enumerate() {
-            support_index[*node] = index as u32;
-        }
+        let support = MassiveSupport::new(&description.massless, &stiffness);
         Ok(Self {
             description,
             stiffness,
             mass,
             support,
-            support_index,
             largest_frequency: OnceLock::new(),
         })
     }
@@ -168,14 +161,13 @@ impl Model {
     }
 
     /// Massless nodes with the massive nodes around them.
-    pub fn massless_support(&self) -> &[(usize, Vec<usize>)] {
-        &self.support
+    pub fn massless_support(&self) -> impl Iterator<Item = (usize, &[usize])> {
+        self.support.iter()
     }
 
     /// The nodes that carry the mass of a massless node; none for a node with mass.
     pub fn support_of(&self, node: usize) -> &[usize] {
-        let index = self.support_index[node] as usize;
-        self.support.get(index).map_or(&[], |(_, support)| support)
+        self.support.of(node)
     }
 
     /// Damping coefficients of the material.
@@ -199,7 +191,7 @@ impl Model {
     /// massless nodes, and the frequency itself.
     pub fn largest_frequency(&self) -> f64 {
         *self.largest_frequency.get_or_init(|| {
-            if self.support.is_empty() {
+            if !self.description.massless.contains(&true) {
                 frequency_bound(self, &[]).unwrap_or(f64::INFINITY)
             } else {
                 f64::INFINITY

@@ -57,5 +57,7 @@ pub fn add_node_vec(dofs: &mut [f64], node: usize, value: Vec2) {
 }
 
 mod real;
+mod sum;
 
-pub use real::{from_rapier, is_held, to_rapier};
+pub use real::{are_held, from_rapier, is_held, to_rapier};
+pub use sum::{sum_over, sum_over_dofs};

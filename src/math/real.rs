@@ -21,3 +21,9 @@ pub fn to_rapier(v: Vec2) -> Vector {
 pub fn is_held(value: f64) -> bool {
     value.abs() <= 1e18
 }
+
+/// Whether all numbers are held; looks at every one of them, which is faster than to stop at the first that is not.
+#[inline]
+pub fn are_held(values: &[f64]) -> bool {
+    values.iter().fold(true, |all, &value| all & is_held(value))
+}

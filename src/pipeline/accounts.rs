@@ -185,7 +185,6 @@ impl FlexPipeline {
 
     /// Adds the island's momentum and potential energy.
     fn report_momentum(&mut self, gravity: Vec2, flex_bodies: &FlexBodySet) {
-        let origin = Vec2::zeros();
         for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
             let report = &mut self.report;
             match (block, index) {
@@ -193,11 +192,11 @@ impl FlexPipeline {
                     let scale = flex_bodies
                         .at_index(*index)
                         .map_or(1.0, |(_, body)| body.gravity_scale());
-                    let (momentum, first_moment) = block.momentum();
-                    report.momentum[0] += momentum.x;
-                    report.momentum[1] += momentum.y;
-                    report.angular_momentum += block.angular_momentum(origin);
-                    report.energy.potential -= scale * gravity.dot(&first_moment);
+                    let momentum = block.momentum();
+                    report.momentum[0] += momentum.linear.x;
+                    report.momentum[1] += momentum.linear.y;
+                    report.angular_momentum += momentum.angular;
+                    report.energy.potential -= scale * gravity.dot(&momentum.first_moment);
                 }
                 (Block::Rigid(block), _) if !block.is_prescribed() => {
                     let [mass, mass_y, inertia] = block.mass();

@@ -7,7 +7,7 @@ use crate::coupling::{RapierSets, is_asleep, is_carried, is_held_motion};
 use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
 use crate::kkt::KktError;
-use crate::math::{from_rapier, is_held};
+use crate::math::{are_held, from_rapier, is_held};
 use crate::system::{Block, Step};
 
 /// Shortest step (s). Contact forces change velocities within a step, so accelerations grow as its inverse and the
@@ -78,8 +78,7 @@ impl FlexPipeline {
     pub(super) fn check_finite(&self, flex_bodies: &FlexBodySet) -> Result<(), StepError> {
         for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
             if let (Block::Flex(block), Some(index)) = (block, index) {
-                let holds = |dofs: &[f64]| dofs.iter().all(|&value| is_held(value));
-                let is_finite = holds(block.positions()) && holds(block.velocities());
+                let is_finite = are_held(block.positions()) && are_held(block.velocities());
                 if let (false, Some((handle, _))) = (is_finite, flex_bodies.at_index(*index)) {
                     return Err(StepError::NotFinite(handle));
                 }

@@ -223,6 +223,7 @@ impl FlexPipeline {
             || self.claims.needs_detection(&sets)
             || self.claims.has_attached_bodies(&sets);
         clock.lap(&mut self.report.times.claim);
+        self.report.is_detected = is_detected;
         if is_detected {
             self.detect(&mut sets);
             self.report.note_quarantine(&sets);

@@ -86,7 +86,7 @@ impl EnergyReport {
 /// Wall-clock time of the stages (s); zero without the feature `timing`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StageTimes {
-    /// Rapier's two steps.
+    /// Rapier's step, and the one without length before it where there was one.
     pub rapier: f64,
     /// Look-ahead and claim.
     pub claim: f64,
@@ -123,6 +123,7 @@ pub struct StepReport {
     pub(super) n_islands: usize,
     pub(super) n_claimed: usize,
     pub(super) n_asleep: usize,
+    pub(super) is_detected: bool,
     pub(super) n_newton: usize,
     pub(super) n_failed: usize,
     pub(super) n_substituted: usize,
@@ -189,6 +190,11 @@ impl StepReport {
     /// Islands solved.
     pub fn n_islands(&self) -> usize {
         self.n_islands
+    }
+
+    /// Whether rapier took a step without length first, to find what may touch; a flexible body far from all others asks for none.
+    pub fn is_detected(&self) -> bool {
+        self.is_detected
     }
 
     /// Rigid bodies claimed.

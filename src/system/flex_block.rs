@@ -246,8 +246,10 @@ impl FlexBlock {
         self.start_frame = state.frame;
         self.start_torque = state.torque;
         self.start_energy = [state.kinetic_energy, state.elastic_energy];
-        self.prescribed.copy_from_slice(load.prescribed);
-        self.start_reaction.copy_from_slice(load.reaction);
+        for &dof in &self.fixed_dofs {
+            self.prescribed[dof] = load.prescribed[dof];
+            self.start_reaction[dof] = load.reaction[dof];
+        }
         for (node, mass) in self.arms.node_mass.iter().enumerate() {
             for axis in 0..2 {
                 let dof = 2 * node + axis;

@@ -3,7 +3,7 @@
 use super::flex_block::FlexBlock;
 use crate::body::{FlexState, Frame};
 use crate::fe::model::{MassMatrix, Model};
-use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
+use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec, sum_over};
 
 /// Energy of one motion of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,6 +12,17 @@ pub struct Balance {
     pub kinetic: f64,
     /// Elastic energy (J).
     pub elastic: f64,
+}
+
+/// Momentum of one motion of a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Momentum {
+    /// Linear momentum (N s).
+    pub linear: Vec2,
+    /// Angular momentum about the origin (N m s).
+    pub angular: f64,
+    /// First moment of mass, `Σ m x` (kg m).
+    pub first_moment: Vec2,
 }
 
 impl FlexBlock {
@@ -233,14 +244,20 @@ impl FlexBlock {
         self.arms.centre(Frame::Free, &self.position, centre) - centre
     }
 
-    /// Linear momentum (N s) and first moment of mass `Σ m x` (kg m).
-    pub fn momentum(&self) -> (Vec2, Vec2) {
-        let (mut momentum, mut moment) = (Vec2::zeros(), Vec2::zeros());
+    /// Momentum of the current iterate, that of rotation about the origin.
+    pub fn momentum(&self) -> Momentum {
+        let mut sums = Momentum::default();
         for (node, mass) in self.arms.node_mass.iter().enumerate() {
-            momentum += *mass * node_vec(&self.velocity, node);
-            moment += *mass * node_vec(&self.position, node);
+            let position = node_vec(&self.position, node);
+            let momentum = *mass * node_vec(&self.velocity, node);
+            sums.linear += momentum;
+            sums.first_moment += *mass * position;
+            sums.angular += cross(position, momentum);
         }
-        (momentum, moment)
+        if let MassMatrix::Consistent(_) = self.model.mass() {
+            sums.angular = self.angular_momentum(Vec2::zeros());
+        }
+        sums
     }
 
     /// Angular momentum about a point (N m s).
@@ -252,19 +269,19 @@ impl FlexBlock {
 
     /// Writes the support forces of all pinned nodes, interleaved (N).
     pub fn write_reactions(&self, reactions: &mut [f64]) {
-        for &dof in &self.fixed_dofs {
-            set_node_vec(reactions, dof / 2, self.reaction(dof / 2));
+        let mut last = None;
+        for node in self.fixed_dofs.iter().map(|dof| dof / 2) {
+            // Both dofs of a node follow each other.
+            if last.replace(node) != Some(node) {
+                set_node_vec(reactions, node, self.reaction(node));
+            }
         }
     }
 
     /// Work of the applied forces over the step, `Σ f·(x' - x)`, and of the pins that move, by the mean of their reactions (J).
     pub fn applied_work(&self) -> f64 {
-        let moved = self.position.iter().zip(&self.start_position);
-        let applied: f64 = moved
-            .zip(&self.force)
-            .map(|((end, start), force)| force * (end - start))
-            .sum();
-        applied + self.pin_work()
+        let arrays = [&self.force[..], &self.position, &self.start_position];
+        sum_over(arrays, |[force, end, start]| force * (end - start)) + self.pin_work()
     }
 
     fn pin_work(&self) -> f64 {
@@ -323,9 +340,9 @@ impl FlexBlock {
             return;
         }
         for (node, _) in self.model.massless_support() {
-            if node_vec(&self.contact_force, *node) != Vec2::zeros() {
-                let moved = node_vec(&self.position, *node) - node_vec(&self.start_position, *node);
-                set_node_vec(&mut state.velocity, *node, moved / self.step.dt);
+            if node_vec(&self.contact_force, node) != Vec2::zeros() {
+                let moved = node_vec(&self.position, node) - node_vec(&self.start_position, node);
+                set_node_vec(&mut state.velocity, node, moved / self.step.dt);
             }
         }
     }
@@ -378,7 +395,7 @@ fn spread_accelerations(model: &Model, is_fixed: &[bool], acceleration: &mut [f6
             .map(|&massive| node_vec(acceleration, massive))
             .sum();
         let mean = sum / support.len() as f64;
-        let old = node_vec(acceleration, *node);
+        let old = node_vec(acceleration, node);
         let kept = |axis: usize| {
             if is_fixed[2 * node + axis] {
                 old[axis]
@@ -386,6 +403,6 @@ fn spread_accelerations(model: &Model, is_fixed: &[bool], acceleration: &mut [f6
                 mean[axis]
             }
         };
-        set_node_vec(acceleration, *node, Vec2::new(kept(0), kept(1)));
+        set_node_vec(acceleration, node, Vec2::new(kept(0), kept(1)));
     }
 }

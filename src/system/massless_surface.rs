@@ -25,11 +25,7 @@ pub(super) struct MasslessSurface {
 impl MasslessSurface {
     /// Finds the massless nodes and copies `K_ss`, in which pinned dofs are taken out.
     pub fn new(model: &Model, is_fixed: &[bool]) -> (Self, BlockMatrix) {
-        let nodes: Vec<usize> = model
-            .massless_support()
-            .iter()
-            .map(|(node, _)| *node)
-            .collect();
+        let nodes: Vec<usize> = model.massless_support().map(|(node, _)| node).collect();
         let mut slot = vec![u32::MAX; model.n_nodes()];
         for (index, &node) in nodes.iter().enumerate() {
             slot[node] = index as u32;

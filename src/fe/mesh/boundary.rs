@@ -33,7 +33,7 @@ impl BoundaryLoop {
 /// and sorted by the lowest corner index.
 ///
 /// The boundary passes every node at most once, so segment `s` starts at `nodes()[s]`.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Boundary {
     loops: Vec<BoundaryLoop>,
     segments: Vec<[usize; 2]>,
@@ -41,6 +41,7 @@ pub struct Boundary {
     next: Vec<usize>,
     previous: Vec<usize>,
     is_boundary: Vec<bool>,
+    mean_length: f64,
 }
 
 /// Side of a cell in mesh node numbers, the cell on its left; `midside` is `NONE` if it has none.
@@ -69,6 +70,11 @@ impl Boundary {
     /// the material on the left. An edge with a midside node gives two.
     pub fn segments(&self) -> &[[usize; 2]] {
         &self.segments
+    }
+
+    /// Mean length of a segment (m).
+    pub fn mean_segment_length(&self) -> f64 {
+        self.mean_length
     }
 
     /// Distinct boundary nodes in loop order.
@@ -107,7 +113,17 @@ impl Boundary {
         if let Some(outer) = outer {
             rings[..=outer].rotate_right(1);
         }
-        Ok(Self::from_rings(rings, nodes.len()))
+        let mut boundary = Self::from_rings(rings, nodes.len());
+        boundary.mean_length = boundary.mean_length(nodes);
+        Ok(boundary)
+    }
+
+    fn mean_length(&self, nodes: &[[f64; 2]]) -> f64 {
+        let length = |&[a, b]: &[usize; 2]| {
+            let ([a_x, a_y], [b_x, b_y]) = (nodes[a], nodes[b]);
+            (b_x - a_x).hypot(b_y - a_y)
+        };
+        self.segments.iter().map(length).sum::<f64>() / self.segments.len() as f64
     }
 
     fn from_rings(rings: Vec<Vec<usize>>, n_nodes: usize) -> Self {
@@ -118,6 +134,7 @@ impl Boundary {
             next: Vec::new(),
             previous: Vec::new(),
             is_boundary: vec![false; n_nodes],
+            mean_length: 0.0,
         };
         for ring in rings {
             let (n, first_segment) = (ring.len(), boundary.segments.len());
