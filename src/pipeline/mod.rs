@@ -2,12 +2,16 @@
 
 mod accounts;
 mod checks;
+#[cfg(feature = "debug-render")]
+mod debug_render;
 mod error;
 mod flex_pipeline;
 mod joint_accounts;
 mod report;
 mod settings;
 
+#[cfg(feature = "debug-render")]
+pub use debug_render::FlexDebugRender;
 pub use error::StepError;
 pub use flex_pipeline::FlexPipeline;
 pub use report::{

@@ -167,6 +167,26 @@ impl Mesh {
         &self.boundary
     }
 
+    /// All edges of cells, each once; one with a midside node in two pieces.
+    pub fn edges(&self) -> Vec<[usize; 2]> {
+        let mut pieces: Vec<[usize; 2]> = Vec::new();
+        for cell in (0..self.n_cells()).map(|cell| self.cell(cell)) {
+            for edge in cell.kind.edges() {
+                let [from, to] = [edge.from, edge.to].map(|corner| cell.nodes[corner]);
+                match edge.midside.map(|midside| cell.nodes[midside]) {
+                    Some(midside) => pieces.extend([[from, midside], [midside, to]]),
+                    None => pieces.push([from, to]),
+                }
+            }
+        }
+        for [a, b] in &mut pieces {
+            (*a, *b) = (*a.min(b), *a.max(b));
+        }
+        pieces.sort_unstable();
+        pieces.dedup();
+        pieces
+    }
+
     /// Area (m^2), with curved sides of [`CellKind::Tri6`] integrated exactly.
     pub fn area(&self) -> f64 {
         self.cells().map(|cell| cell.moments(&self.nodes).0).sum()
