@@ -702,6 +702,14 @@ fn step_lengths_that_are_negative_or_not_finite_are_refused() {
 }
 
 #[test]
+fn the_shortest_step_that_the_message_names_is_taken() {
+    // Single precision holds 1e-8 as 9.99999994e-9.
+    let mut scene = Scene::new();
+    scene.world.integration_parameters.dt = 1e-8;
+    scene.step().expect("the shortest step");
+}
+
+#[test]
 fn step_lengths_beyond_reason_never_panic_and_never_leave_numbers_that_are_not_finite() {
     for dt in [
         1e-30, 1e-12, 1e-9, 1.1e-8, 1e-7, 1e-3, 10.0, 1e3, 1e6, 1e18, 1e30, 1e38,
@@ -1025,7 +1033,11 @@ fn loads_beyond_all_measure_are_refused_and_leave_no_trace() {
         body.set_nodal_force(5, [f64::MAX, f64::MAX])
             .expect("a finite force");
         let error = scene.step().expect_err("the result overflows");
-        println!("{error}");
+        let block = scene.block;
+        assert!(
+            matches!(error, StepError::NotFinite(body) if body == block),
+            "{error}"
+        );
         assert_eq!(state, scene.state(), "after {warm_up} steps");
         let body = &mut scene.flex_bodies[scene.block];
         body.set_nodal_force(5, [0.0; 2]).expect("a finite force");

@@ -1,7 +1,9 @@
 //! Candidates of an island: every point that may touch a target during the step, found by swept boxes.
 
 use super::shapes::ShapePart;
-use crate::constraint::contact::{Candidate, ContactKey, ContactLaw, Owner, Pair, PlacedPart};
+use crate::constraint::contact::{
+    Candidate, Cone, ContactKey, ContactLaw, Owner, Pair, PlacedPart,
+};
 use crate::constraint::geometry::Pose2;
 use crate::kkt::Island;
 use crate::math::Vec2;
@@ -168,6 +170,7 @@ pub(super) fn flex_rigid(
             }
         }
         let (part_data, pose, radius) = (placed.part.clone(), placed.pose, placed.part.radius());
+        let normals = part_data.normals();
         for (vertex, &at) in part_data.vertices().iter().enumerate() {
             let key = ContactKey {
                 contactor: names.other,
@@ -181,10 +184,16 @@ pub(super) fn flex_rigid(
             if !path.loosened(radius + edge).intersects(&surface) {
                 continue;
             }
+            // Faces are numbered as the vertices they start at; a core of two vertices has no corners.
+            let cone = (radius == 0.0 && normals.len() > 2).then(|| {
+                let before = (vertex + normals.len() - 1) % normals.len();
+                Cone([normals[vertex], normals[before]].map(|normal| pose.rotate(normal)))
+            });
             let pair = |segments| Pair::VertexOnSurface {
                 rigid,
                 arm,
                 radius,
+                cone,
                 flex,
                 segments,
             };
@@ -275,8 +284,9 @@ fn one_sided(
                 target: names.other,
                 part: 0,
             };
+            // Segment `index` starts at boundary node `index`.
             let pair = Pair::NodeOnSurface {
-                node: (contactor, node),
+                node: (contactor, node, index),
                 flex: target,
                 segments,
             };

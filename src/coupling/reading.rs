@@ -129,12 +129,8 @@ pub(super) fn law_of(
         return Ok(ContactLaw::default());
     };
     for (handle, collider) in [(one, first), (other, second)] {
-        let numbers = [
-            collider.friction(),
-            collider.restitution(),
-            collider.contact_skin(),
-        ];
-        if !numbers.iter().all(|number| number.is_finite()) {
+        let is_finite = collider.friction().is_finite() && collider.restitution().is_finite();
+        if !(is_finite && is_held(f64::from(collider.contact_skin()))) {
             return Err(GatherError::Coefficient(handle));
         }
     }

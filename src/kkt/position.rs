@@ -6,7 +6,7 @@
 
 use super::constraint_function::{ContactMethod, Trial};
 use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
-use crate::constraint::contact::{ContactMemory, Kinematics, Remembered};
+use crate::constraint::contact::{Candidate, ContactMemory, Kinematics, Remembered, Scene};
 use crate::linalg::complementarity::Status;
 use crate::math::Vec2;
 use crate::system::Block;
@@ -170,8 +170,7 @@ impl Island {
                 let blocks = &self.blocks;
                 let mut contact =
                     ActiveContact::new(index, kinematics, remembered, friction, blocks);
-                let began = candidate.start_gap(&scene);
-                let is_overlap = contact.allow_overlap(kept, slop, began, blocks);
+                let is_overlap = contact.allow_overlap(kept, slop, candidate, &scene);
                 if is_overlap && self.ignores_overlaps {
                     continue;
                 }
@@ -288,8 +287,8 @@ impl Island {
             let friction = candidate.law.friction;
             let mut contact =
                 ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
-            let (slop, began) = (OVERLAPPED * tolerance, candidate.start_gap(&scene));
-            let is_overlap = contact.allow_overlap(kept, slop, began, &self.blocks);
+            let slop = OVERLAPPED * tolerance;
+            let is_overlap = contact.allow_overlap(kept, slop, candidate, &scene);
             let is_met = !(is_overlap && self.ignores_overlaps);
             if is_met && contact.kinematics.gap < -tolerance {
                 self.is_working[index] = true;
@@ -317,19 +316,23 @@ fn moved(kinematics: &Kinematics, blocks: &[Block]) -> Vec2 {
 }
 
 impl ActiveContact {
-    /// Where the step began with an overlap beyond `slop`, leaves the share `kept` of it for now; `began` is the gap it began
-    /// with (m), if that is known.
+    /// Where the step began with an overlap beyond `slop`, leaves the share `kept` of it for now.
     ///
     /// Returns whether it did.
     fn allow_overlap(
         &mut self,
         kept: f64,
         slop: f64,
-        began: Option<f64>,
-        blocks: &[Block],
+        candidate: &Candidate,
+        scene: &Scene<'_>,
     ) -> bool {
-        let (began, is_clear) =
-            began.map_or_else(|| self.estimated_start(slop, blocks), |began| (began, true));
+        if candidate.began_outside(scene, &self.kinematics, slop) {
+            return false;
+        }
+        let (began, is_clear) = match candidate.start_gap(scene) {
+            Some(began) => (began, true),
+            None => self.estimated_start(slop, scene.blocks),
+        };
         // What mostly came within the step is an impact, where a turn blurs its beginning.
         let is_overlap = began < -slop && (is_clear || began < 0.5 * self.kinematics.gap);
         if is_overlap {

@@ -10,9 +10,9 @@ use crate::kkt::KktError;
 use crate::math::{are_held, from_rapier, is_held};
 use crate::system::{Block, Step};
 
-/// Shortest step (s). Contact forces change velocities within a step, so accelerations grow as its inverse and the
+/// Shortest step (s), but for what single precision makes of 1e-8. Contact forces change velocities within a step, so accelerations grow as its inverse and the
 /// weights as its square: below this, sums of both keep no digits.
-const SHORTEST: f64 = 1e-8;
+const SHORTEST: f64 = 1e-8 * (1.0 - 1e-7);
 
 /// Longest step (s): nothing a step resolves takes longer, and predictors grow as its square.
 const LONGEST: f64 = 1e4;
@@ -95,21 +95,30 @@ impl FlexPipeline {
         Ok(())
     }
 
-    /// The error with the handles of the bodies whose blocks it names.
-    pub(super) fn name_bodies(&self, error: KktError) -> StepError {
+    /// The error with the handles of the bodies whose blocks it names, or whose loads it comes from.
+    pub(super) fn name_bodies(&self, error: KktError, flex_bodies: &FlexBodySet) -> StepError {
         let KktError::LightPartner {
             block,
             dt,
             critical,
         } = error
         else {
-            return error.into();
+            return self.overloaded(flex_bodies).unwrap_or(error.into());
         };
         let found = self.gatherer.bodies.iter().find(|found| found.0 == block);
         match found {
             Some(&(_, body)) => StepError::LightPartner { body, dt, critical },
             None => error.into(),
         }
+    }
+
+    /// The flexible body whose loads are beyond all measure.
+    fn overloaded(&self, flex_bodies: &FlexBodySet) -> Option<StepError> {
+        let mut members = self.island.blocks.iter().zip(&self.island.flex_index);
+        let (_, index) = members
+            .find(|(block, _)| matches!(block, Block::Flex(block) if block.is_overloaded()))?;
+        let (handle, _) = flex_bodies.at_index((*index)?)?;
+        Some(StepError::NotFinite(handle))
     }
 
     /// Leaves no trace of a step that failed, before which energy of `dissipated` was lost (J).

@@ -50,7 +50,7 @@ pub enum StepError {
     Kkt(#[from] KktError),
     /// The step length is negative, not finite or out of range.
     #[error(
-        "the step length is {0} s: set `integration_parameters.dt` to zero or a positive number from 1e-8 s to 1e4 s"
+        "the step length is {0:e} s: set `integration_parameters.dt` to zero or a positive number from 1e-8 s to 1e4 s"
     )]
     StepLength(f64),
     /// Gravity is not finite or too large for rapier's precision.
@@ -83,7 +83,7 @@ pub enum StepError {
     ExplicitAttachment(AttachmentHandle),
     /// A collider that touches a flexible body has a coefficient that is not finite.
     #[error(
-        "{0:?} touches a flexible body, and its friction, restitution or contact skin is not finite: set all to finite numbers"
+        "{0:?} touches a flexible body, and its friction, restitution or contact skin is not finite or its skin too large: set all to finite numbers"
     )]
     Coefficient(ColliderHandle),
     /// `modify_solver_contacts` left numbers that are not finite.

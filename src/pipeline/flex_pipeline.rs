@@ -356,7 +356,7 @@ impl FlexPipeline {
         let summary = self
             .island
             .solve(&settings, &self.memory, &mut reserve)
-            .map_err(|error| self.name_bodies(error))?;
+            .map_err(|error| self.name_bodies(error, flex_bodies))?;
         self.check_finite(flex_bodies)?;
         self.note(step, &summary, reserve, sets, flex_bodies);
         clock.lap(&mut self.report.times.solve);

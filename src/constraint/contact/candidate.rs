@@ -1,6 +1,7 @@
 //! Candidates: pairs of a point and a target that may touch during the step.
 
 use super::law::ContactLaw;
+use super::surface::Cone;
 use crate::math::Vec2;
 
 /// What a point or a target belongs to, stable from step to step.
@@ -45,6 +46,8 @@ pub enum Pair {
         arm: Vec2,
         /// Radius around the vertex (m).
         radius: f64,
+        /// Where the vertex points, in body axes; `None` for parts without faces, and for round vertices, which point anywhere.
+        cone: Option<Cone>,
         /// Flexible block.
         flex: usize,
         /// Range of the island's list of near segments; of one segment if the vertex is round, which may touch several.
@@ -52,8 +55,8 @@ pub enum Pair {
     },
     /// A node of a flexible block against the surface of another.
     NodeOnSurface {
-        /// Contactor block and its node.
-        node: (usize, usize),
+        /// Contactor block, its node and the boundary segment that starts there.
+        node: (usize, usize, usize),
         /// Target block.
         flex: usize,
         /// Range of the island's list of near segments.

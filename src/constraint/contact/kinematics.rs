@@ -7,8 +7,10 @@ use super::candidate::{Candidate, Pair};
 use super::law::Direction;
 use super::memory::Remembered;
 use super::rigid_pair::{crossing, point_on_face, vertex_on_part};
-use super::surface::{SurfacePoint, closest_surface_point, faced_at_start, faces, facing_point};
-use crate::constraint::geometry::{ConvexPart, Feature, Pose2, separation};
+use super::surface::{
+    Cone, SurfacePoint, closest_surface_point, faced_at_start, faces, facing_point,
+};
+use crate::constraint::geometry::{ConvexPart, Feature, Pose2, faced_separation, separation};
 use crate::math::{Vec2, perp, rotation};
 use crate::system::{Block, FlexBlock, Grip, Point, RigidBlock};
 use std::sync::Arc;
@@ -159,6 +161,34 @@ impl Candidate {
         Some(found)
     }
 
+    /// Whether the point of a pair with a flexible body was outside the surface that it is `found` at, by no less than `-slop`, when
+    /// the step began. Unlike the motion since then it does not depend on the iterate.
+    pub fn began_outside(&self, scene: &Scene<'_>, found: &Kinematics, slop: f64) -> bool {
+        let start = |block: usize, point| scene.blocks[block].start_position(point);
+        let (point, radius) = match self.pair {
+            Pair::NodeOnPart { node, rigid, part } => {
+                let (placed, Some(motion)) = (&scene.parts[part], rigid_of(scene, rigid)) else {
+                    return false;
+                };
+                let arm = motion.start().arm(start(node.0, Point::Node(node.1)));
+                let local = placed.pose.inverse_transform(arm);
+                let before = separation(&placed.part, local, None, None);
+                return before.distance - self.law.skin >= -slop;
+            }
+            Pair::VertexOnSurface {
+                rigid, arm, radius, ..
+            } => (start(rigid, Point::Arm(arm)), radius),
+            Pair::NodeOnSurface { node, .. } => (start(node.0, Point::Node(node.1)), 0.0),
+            _ => return false,
+        };
+        let [_, a, b] = found.attachments() else {
+            return false;
+        };
+        let (from, to) = (start(a.block, a.grip.point), start(b.block, b.grip.point));
+        let outward = -perp(to - from).normalize();
+        outward.dot(&(point - from)) - radius - self.law.skin >= -slop
+    }
+
     fn measure(&self, scene: &Scene<'_>, remembered: &Remembered) -> Option<Kinematics> {
         match self.pair {
             Pair::NodeOnPart { node, rigid, part } => {
@@ -168,6 +198,7 @@ impl Candidate {
                 rigid,
                 arm,
                 radius,
+                cone,
                 flex,
                 segments,
             } => {
@@ -181,7 +212,9 @@ impl Candidate {
                         start,
                     )
                 } else {
-                    surface_of(scene, flex, segments, (point, start))
+                    let turn = rotation(rigid_of(scene, rigid)?.current().angle);
+                    let cone = cone.map(|Cone(normals)| Cone(normals.map(|normal| turn * normal)));
+                    surface_of(scene, flex, segments, [point, start], cone)
                 }?;
                 let position = point - hit.distance * hit.normal;
                 // The arm of the force ends where the force acts, on the flexible surface.
@@ -196,13 +229,14 @@ impl Candidate {
                 ))
             }
             Pair::NodeOnSurface {
-                node: (block, node),
+                node: (block, node, segment),
                 flex,
                 segments,
             } => {
                 let point = scene.blocks[block].position(Point::Node(node));
                 let start = scene.blocks[block].start_position(Point::Node(node));
-                let hit = surface_of(scene, flex, segments, (point, start))?;
+                let cone = Cone::of_node(flex_of(scene, block)?, segment);
+                let hit = surface_of(scene, flex, segments, [point, start], Some(cone))?;
                 Some(on_surface(
                     scene,
                     (block, Point::Node(node)),
@@ -253,13 +287,16 @@ fn node_on_part(
     let local_start = placed.pose.inverse_transform(motion.start().arm(start));
     let body = flex_of(scene, block)?;
     let reference = reference.or_else(|| buried_face(placed, motion, body, local_start));
-    let found = separation(&placed.part, local, reference, Some(local_start));
-    let normal = rotation(motion.current().angle) * placed.pose.rotate(found.normal);
+    let in_world = |normal: Vec2| rotation(motion.current().angle) * placed.pose.rotate(normal);
+    let mut found = separation(&placed.part, local, reference, Some(local_start));
     let is_sharp_vertex =
         matches!(found.feature, Feature::Vertex(_)) && placed.part.radius() == 0.0;
-    if !faces(body, segment, normal, is_sharp_vertex) {
-        return None;
+    if !faces(body, segment, in_world(found.normal), is_sharp_vertex) {
+        found = faced_separation(&placed.part, local, local_start, |normal| {
+            faces(body, segment, in_world(normal), false)
+        })?;
     }
+    let normal = in_world(found.normal);
     if found.distance < 0.0 {
         // What comes through the body from behind has been met on its other side.
         let before = separation(&placed.part, local_start, reference, None);
@@ -306,13 +343,14 @@ fn surface_of(
     scene: &Scene<'_>,
     flex: usize,
     segments: (usize, usize),
-    (point, start): (Vec2, Vec2),
+    path: [Vec2; 2],
+    cone: Option<Cone>,
 ) -> Option<SurfacePoint> {
     closest_surface_point(
         flex_of(scene, flex)?,
         &scene.segments[segments.0..segments.1],
-        point,
-        start,
+        path,
+        cone,
     )
 }
 

@@ -11,4 +11,4 @@ pub use candidate::{Candidate, ContactKey, Owner, Pair};
 pub use kinematics::{Attachment, Kinematics, PlacedPart, Scene};
 pub use law::{ContactLaw, Direction};
 pub use memory::{ContactMemory, Remembered};
-pub use surface::{SurfacePoint, closest_surface_point};
+pub use surface::{Cone, SurfacePoint, closest_surface_point};

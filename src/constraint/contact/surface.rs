@@ -20,22 +20,53 @@ pub struct SurfacePoint {
 ///
 /// A point that came in through a segment during the step is measured behind that segment, however thin the body and
 /// wherever the nearest one is now; any other point to the nearest segment or node.
+///
+/// Only a segment that faces the `cone` of the point pushes it: a corner that lies on the edge of the surface is as near to the
+/// surface's other face, which its own body extends past.
 pub fn closest_surface_point(
     block: &FlexBlock,
     segments: &[u32],
-    point: Vec2,
-    start: Vec2,
+    [point, start]: [Vec2; 2],
+    cone: Option<Cone>,
 ) -> Option<SurfacePoint> {
-    entered_segment(block, segments, point, start)
-        .or_else(|| nearest_segment(block, segments, point))
+    entered_segment(block, segments, [point, start], cone)
+        .or_else(|| nearest_segment(block, segments, point, cone))
 }
+
+/// The directions in which a corner points: between the outward unit normals of the faces that meet there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone(pub [Vec2; 2]);
+
+impl Cone {
+    /// That of a boundary node, at whose place `segment` starts.
+    pub(super) fn of_node(block: &FlexBlock, segment: usize) -> Self {
+        let boundary = block.model().mesh().boundary();
+        Self(
+            [segment, boundary.previous_segment(segment)].map(|segment| {
+                let [a, b] = boundary.segments()[segment];
+                -perp(block.position(b) - block.position(a)).normalize()
+            }),
+        )
+    }
+
+    /// Whether the corner can be pushed by a surface of this outward normal.
+    fn faces(&self, normal: Vec2) -> bool {
+        let Self([one, other]) = self;
+        let mean = one + other;
+        let is_within = -normal.dot(&mean) >= (1.0 + one.dot(other)) && mean.norm() > 1e-9;
+        is_within || one.dot(&normal).min(other.dot(&normal)) < -POINTING
+    }
+}
+
+/// Least cosine between a surface and a direction of a corner that push each other: faces bulge by some degrees.
+const POINTING: f64 = 0.25;
 
 /// The segment that a point crossed inwards during the step, the shallowest if there are several.
 fn entered_segment(
     block: &FlexBlock,
     segments: &[u32],
-    point: Vec2,
-    start: Vec2,
+    [point, start]: [Vec2; 2],
+    cone: Option<Cone>,
 ) -> Option<SurfacePoint> {
     let boundary = block.model().mesh().boundary();
     let mut entered: Option<SurfacePoint> = None;
@@ -47,6 +78,9 @@ fn entered_segment(
         let distance = normal.dot(&(point - from));
         let xi = (point - from).dot(&along) / along.norm_squared();
         if distance >= 0.0 || !(-ENTRY_SLOP..=1.0 + ENTRY_SLOP).contains(&xi) {
+            continue;
+        }
+        if cone.is_some_and(|cone| !cone.faces(normal)) {
             continue;
         }
         let (from, to) = (block.start_position(a), block.start_position(b));
@@ -68,8 +102,13 @@ fn entered_segment(
 /// Part of a segment's length by which a point may miss it and still count as having come in through it.
 const ENTRY_SLOP: f64 = 1e-9;
 
-/// The closest of the listed boundary segments or of their nodes.
-fn nearest_segment(block: &FlexBlock, segments: &[u32], point: Vec2) -> Option<SurfacePoint> {
+/// The closest of the listed boundary segments or of their nodes, but for those that the point is behind and does not face.
+fn nearest_segment(
+    block: &FlexBlock,
+    segments: &[u32],
+    point: Vec2,
+    cone: Option<Cone>,
+) -> Option<SurfacePoint> {
     let boundary = block.model().mesh().boundary();
     let ends = |segment: usize| {
         let [a, b] = boundary.segments()[segment];
@@ -79,6 +118,11 @@ fn nearest_segment(block: &FlexBlock, segments: &[u32], point: Vec2) -> Option<S
     for &segment in segments {
         let (a, b) = ends(segment as usize);
         let along = b - a;
+        let normal = -perp(along).normalize();
+        let is_behind = normal.dot(&(point - a)) < 0.0;
+        if is_behind && cone.is_some_and(|cone| !cone.faces(normal)) {
+            continue;
+        }
         let xi = ((point - a).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
         let foot = a + xi * along;
         let squared = (point - foot).norm_squared();
@@ -126,7 +170,11 @@ fn nearest_segment(block: &FlexBlock, segments: &[u32], point: Vec2) -> Option<S
     } else {
         mean
     };
-    let normal = nearest_in_cone(direction, [own, outward(other)], mean);
+    let mut normal = nearest_in_cone(direction, [own, outward(other)], mean);
+    let is_met = |normal: &Vec2| cone.is_none_or(|cone| cone.faces(*normal));
+    if normal.dot(&offset) < 0.0 && !is_met(&normal) {
+        normal = [own, outward(other)].into_iter().find(is_met)?;
+    }
     Some(SurfacePoint {
         segment,
         xi,
@@ -201,7 +249,7 @@ pub(super) fn facing_point(
     point: Vec2,
     start: Vec2,
 ) -> Option<SurfacePoint> {
-    if let Some(entered) = entered_segment(block, segments, point, start) {
+    if let Some(entered) = entered_segment(block, segments, [point, start], None) {
         // A point above a node belongs to the segment that starts there.
         return (entered.xi < 1.0).then_some(entered);
     }

@@ -8,7 +8,7 @@ use crate::math::{Vec2, cross};
 /// How deep a point may lie at the beginning of a step and still count as outside, relative to the least thickness of
 /// a polygon. It covers the penetration that a resting contact keeps through rounding; larger values let points that
 /// come in close to a corner be taken for points that came through the other face.
-const ENTRY_SLOP: f64 = 1e-3;
+pub(super) const ENTRY_SLOP: f64 = 1e-3;
 
 /// The same for two-vertex cores, relative to the part's size, as they have no thickness.
 const ENTRY_SLOP_THIN: f64 = 1e-4;

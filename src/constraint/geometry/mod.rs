@@ -26,4 +26,4 @@ pub use entered::{crossing_overlap, entered_separation, start_separation};
 pub use polygon_pair::{FaceOrVertex, PairContact, PairContacts, PairReference, polygon_pair};
 pub use pose::Pose2;
 pub use segment_query::{SegmentQuery, SegmentRegion, segment_query};
-pub use separation::{Separation, separation};
+pub use separation::{Separation, faced_separation, separation};

@@ -4,7 +4,7 @@
 //! What the instantaneous distance cannot tell, the point's position at the beginning of the step does: through which
 //! face it came in, on which side of a thin part it belongs, and whether it passed right through.
 
-use super::entry::{Axis, crossed_face, inside, thin_entry_face};
+use super::entry::{Axis, ENTRY_SLOP, crossed_face, inside, thin_entry_face};
 use super::segment_query::direction_or;
 use super::{ConvexPart, Feature};
 use crate::math::{Vec2, cross, perp};
@@ -58,6 +58,28 @@ fn exists(part: &ConvexPart, feature: Feature) -> bool {
         Feature::Face(face) => (face as usize) < part.normals().len(),
         Feature::Vertex(vertex) => (vertex as usize) < part.vertices().len(),
     }
+}
+
+/// The shallowest face of a polygon that a `point` inside it lies behind, that it came from and that `faces` it; for a point whose
+/// nearest face cannot push it, as beside the corner that it belongs above.
+pub fn faced_separation(
+    part: &ConvexPart,
+    point: Vec2,
+    start: Vec2,
+    faces: impl Fn(Vec2) -> bool,
+) -> Option<Separation> {
+    let slop = ENTRY_SLOP * part.width();
+    let n_faces = if part.width() > 0.0 && !part.is_half_space() {
+        part.normals().len()
+    } else {
+        0
+    };
+    let is_inside = (0..n_faces).all(|face| part.face_distance(face, point) <= 0.0);
+    (0..n_faces)
+        .filter(|&face| is_inside && part.face_distance(face, start) >= -slop)
+        .map(|face| from_face(part, face, point))
+        .filter(|found| faces(found.normal))
+        .max_by(|one, other| one.distance.total_cmp(&other.distance))
 }
 
 /// The separation as measured to the line of one face.
