@@ -199,3 +199,47 @@ fn whatever_is_changed_wakes() {
     scene.step();
     assert!(!sleeps(&scene, body), "rapier's own call does not wake it");
 }
+
+#[test]
+fn a_pile_wakes_with_the_forces_it_fell_asleep_with_while_others_were_solved() {
+    let (mut scene, flexible, rigid) = piles(1);
+    // Somebody is awake, so that steps are solved while the pile sleeps.
+    scene.flexible(block(1e7).translation([20.0, 0.0]).can_sleep(false));
+    let falls_asleep = (0..600).any(|_| {
+        scene.step();
+        flexible.iter().all(|&body| sleeps(&scene, body))
+    });
+    assert!(falls_asleep, "the pile rests");
+    let forces = |scene: &Scene| -> Vec<f64> {
+        let on = flexible.iter().map(|&body| scene.force_on_flexible(body));
+        let colliders = rigid
+            .iter()
+            .map(|&body| scene.world.bodies[body].colliders()[0]);
+        let on_rigid = colliders.map(|collider| scene.force_on_collider(collider));
+        on.chain(on_rigid).flatten().collect()
+    };
+    let points = |scene: &Scene| -> Vec<[f64; 2]> {
+        let all = scene.report().contacts().iter();
+        all.map(|contact| [contact.normal_force, contact.tangential_force])
+            .collect()
+    };
+    let (asleep, each) = (forces(&scene), points(&scene));
+    scene.steps(60);
+    assert_eq!(forces(&scene), asleep, "the report keeps them");
+    scene.bodies[flexible[0]].wake_up();
+    scene.step();
+    assert!(!sleeps(&scene, flexible[1]), "the whole pile was woken");
+    let largest = asleep.iter().fold(0.0f64, |most, f| most.max(f.abs()));
+    let off = |one: &[f64], other: &[f64]| {
+        let pairs = one.iter().zip(other);
+        pairs.fold(0.0f64, |off, (a, b)| off.max((a - b).abs())) / largest
+    };
+    let sums = off(&forces(&scene), &asleep);
+    let now = points(&scene);
+    assert_eq!(now.len(), each.len(), "the same points touch");
+    let single = off(now.as_flattened(), each.as_flattened());
+    // Of redundant contacts, shares are what is remembered: forgotten, they differ by 5e-5 of the largest force. The rest is the motion
+    // that is left when a body falls asleep, 1e-8 of its size in the time until then.
+    assert!(sums < 1e-7, "sums differ by {sums:e}");
+    assert!(single < 1e-7, "single forces differ by {single:e}");
+}

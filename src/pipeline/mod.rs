@@ -6,6 +6,7 @@ mod error;
 mod flex_pipeline;
 mod joint_accounts;
 mod report;
+mod rest;
 mod settings;
 
 pub use error::StepError;
