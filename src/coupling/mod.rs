@@ -23,6 +23,7 @@ mod places;
 mod reading;
 mod references;
 mod rigid_pairs;
+mod sensor_events;
 mod sets;
 mod shapes;
 mod sleep;
