@@ -243,3 +243,32 @@ fn a_pile_wakes_with_the_forces_it_fell_asleep_with_while_others_were_solved() {
     assert!(sums < 1e-7, "sums differ by {sums:e}");
     assert!(single < 1e-7, "single forces differ by {single:e}");
 }
+
+#[test]
+fn only_what_comes_or_goes_nearby_wakes() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let ground = scene.ground(0.5);
+    let body = scene.flexible(block(1e7));
+    let post = |x: f64| ColliderBuilder::cuboid(real(0.1), real(0.2)).translation(vec2(x, 0.2));
+    settle(&mut scene, 5.0).expect("it rests");
+    let far = scene.fixed(post(30.0));
+    scene.step();
+    assert!(sleeps(&scene, body), "woken by what came far away");
+    scene.world.remove_collider(far);
+    scene.step();
+    assert!(sleeps(&scene, body), "woken by what went far away");
+    let near = scene.fixed(post(0.6));
+    scene.step();
+    assert!(!sleeps(&scene, body), "not woken by what came beside it");
+    settle(&mut scene, 5.0).expect("it rests again");
+    // One goes and another comes: there are as many as before.
+    scene.world.remove_collider(ground);
+    scene.world.remove_collider(near);
+    for x in [30.0, 40.0] {
+        scene.fixed(post(x));
+    }
+    let before = scene.body(body).centre_of_mass()[1];
+    scene.step();
+    let fallen = before - scene.body(body).centre_of_mass()[1];
+    assert!(fallen > 1e-4, "it falls in the same step: {fallen} m");
+}
