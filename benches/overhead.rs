@@ -42,6 +42,7 @@ fn measure(can_sleep: bool, n: usize) -> Result<[f64; 2], Box<dyn Error>> {
                 .density(1000.0)
                 .rayleigh(1e-2),
         )
+        .can_sleep(false)
         .translation([200.0, 0.01]);
     flex_bodies.insert(block, &mut beside)?;
     let mut flex = FlexPipeline::new();

@@ -17,5 +17,8 @@ mod attachments;
 #[path = "joints/forces.rs"]
 mod forces;
 
+#[path = "joints/multibody.rs"]
+mod multibody;
+
 #[path = "joints/coming_and_going.rs"]
 mod coming_and_going;

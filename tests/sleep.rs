@@ -199,3 +199,76 @@ fn whatever_is_changed_wakes() {
     scene.step();
     assert!(!sleeps(&scene, body), "rapier's own call does not wake it");
 }
+
+#[test]
+fn a_pile_wakes_with_the_forces_it_fell_asleep_with_while_others_were_solved() {
+    let (mut scene, flexible, rigid) = piles(1);
+    // Somebody is awake, so that steps are solved while the pile sleeps.
+    scene.flexible(block(1e7).translation([20.0, 0.0]).can_sleep(false));
+    let falls_asleep = (0..600).any(|_| {
+        scene.step();
+        flexible.iter().all(|&body| sleeps(&scene, body))
+    });
+    assert!(falls_asleep, "the pile rests");
+    let forces = |scene: &Scene| -> Vec<f64> {
+        let on = flexible.iter().map(|&body| scene.force_on_flexible(body));
+        let colliders = rigid
+            .iter()
+            .map(|&body| scene.world.bodies[body].colliders()[0]);
+        let on_rigid = colliders.map(|collider| scene.force_on_collider(collider));
+        on.chain(on_rigid).flatten().collect()
+    };
+    let points = |scene: &Scene| -> Vec<[f64; 2]> {
+        let all = scene.report().contacts().iter();
+        all.map(|contact| [contact.normal_force, contact.tangential_force])
+            .collect()
+    };
+    let (asleep, each) = (forces(&scene), points(&scene));
+    scene.steps(60);
+    assert_eq!(forces(&scene), asleep, "the report keeps them");
+    scene.bodies[flexible[0]].wake_up();
+    scene.step();
+    assert!(!sleeps(&scene, flexible[1]), "the whole pile was woken");
+    let largest = asleep.iter().fold(0.0f64, |most, f| most.max(f.abs()));
+    let off = |one: &[f64], other: &[f64]| {
+        let pairs = one.iter().zip(other);
+        pairs.fold(0.0f64, |off, (a, b)| off.max((a - b).abs())) / largest
+    };
+    let sums = off(&forces(&scene), &asleep);
+    let now = points(&scene);
+    assert_eq!(now.len(), each.len(), "the same points touch");
+    let single = off(now.as_flattened(), each.as_flattened());
+    // Of redundant contacts, shares are what is remembered: forgotten, they differ by 5e-5 of the largest force. The rest is the motion
+    // that is left when a body falls asleep, 1e-8 of its size in the time until then.
+    assert!(sums < 1e-7, "sums differ by {sums:e}");
+    assert!(single < 1e-7, "single forces differ by {single:e}");
+}
+
+#[test]
+fn only_what_comes_or_goes_nearby_wakes() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let ground = scene.ground(0.5);
+    let body = scene.flexible(block(1e7));
+    let post = |x: f64| ColliderBuilder::cuboid(real(0.1), real(0.2)).translation(vec2(x, 0.2));
+    settle(&mut scene, 5.0).expect("it rests");
+    let far = scene.fixed(post(30.0));
+    scene.step();
+    assert!(sleeps(&scene, body), "woken by what came far away");
+    scene.world.remove_collider(far);
+    scene.step();
+    assert!(sleeps(&scene, body), "woken by what went far away");
+    let near = scene.fixed(post(0.6));
+    scene.step();
+    assert!(!sleeps(&scene, body), "not woken by what came beside it");
+    settle(&mut scene, 5.0).expect("it rests again");
+    // One goes and another comes: there are as many as before.
+    scene.world.remove_collider(ground);
+    scene.world.remove_collider(near);
+    for x in [30.0, 40.0] {
+        scene.fixed(post(x));
+    }
+    let before = scene.body(body).centre_of_mass()[1];
+    scene.step();
+    let fallen = before - scene.body(body).centre_of_mass()[1];
+    assert!(fallen > 1e-4, "it falls in the same step: {fallen} m");
+}

@@ -74,38 +74,44 @@ impl FlexBody {
         if settings.contact_force_event_threshold.is_nan() {
             return Err(FlexBodyError::NotFinite("the contact settings"));
         }
-        self.contact = settings;
+        self.change_contact(|contact| *contact = settings);
         Ok(())
     }
 
     /// Sets which colliders the body meets, from the next step on.
     pub fn set_collision_groups(&mut self, groups: InteractionGroups) {
-        self.contact.collision_groups = groups;
+        self.change_contact(|contact| contact.collision_groups = groups);
     }
 
     /// Sets which of the colliders it meets the body pushes, from the next step on.
     pub fn set_solver_groups(&mut self, groups: InteractionGroups) {
-        self.contact.solver_groups = groups;
+        self.change_contact(|contact| contact.solver_groups = groups);
     }
 
     /// Sets which types of rigid bodies the body meets, from the next step on.
     pub fn set_active_collision_types(&mut self, types: ActiveCollisionTypes) {
-        self.contact.active_collision_types = types;
+        self.change_contact(|contact| contact.active_collision_types = types);
     }
 
     /// Sets which of the user's hooks are asked about the body, from the next step on.
     pub fn set_active_hooks(&mut self, hooks: ActiveHooks) {
-        self.contact.active_hooks = hooks;
+        self.change_contact(|contact| contact.active_hooks = hooks);
     }
 
     /// Sets which events are reported, from the next step on.
     pub fn set_active_events(&mut self, events: ActiveEvents) {
-        self.contact.active_events = events;
+        self.change_contact(|contact| contact.active_events = events);
     }
 
     /// Makes the body a sensor, which touches nothing, or a solid one again, from the next step on.
     pub fn set_sensor(&mut self, is_sensor: bool) {
-        self.contact.is_sensor = is_sensor;
+        self.change_contact(|contact| contact.is_sensor = is_sensor);
+    }
+
+    /// Changes settings; what rapier's collider must be told wakes the body.
+    fn change_contact(&mut self, change: impl FnOnce(&mut ContactSettings)) {
+        change(&mut self.contact);
+        self.is_disturbed |= self.contact != self.carrier_contact;
     }
 
     /// The settings that rapier's collider was given last and those it should have, if they differ.

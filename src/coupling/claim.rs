@@ -3,6 +3,7 @@
 //! From every flexible body the contact graph is walked through dynamic rigid bodies; all that are reached belong to the
 //! flexible stage for this step. Fixed and kinematic bodies are met but not passed through.
 
+use super::changes::Changes;
 use super::claim_attachments::ClaimedAttachment;
 use super::events::PairName;
 use super::filter::{claimable_parent, may_touch};
@@ -72,8 +73,7 @@ pub(crate) struct Claims {
     /// Flexible bodies that sleep, and take no part.
     pub(super) asleep: Vec<Sleeper>,
     pub(super) woken: Vec<RigidBodyHandle>,
-    /// Number of colliders and gravity in the last step.
-    pub(super) world: (usize, Vector),
+    pub(super) changes: Changes,
     /// What the user's filter said of pairs that it was asked about.
     answers: HashMap<PairName, Option<SolverFlags>>,
 }
@@ -142,14 +142,7 @@ impl Claims {
     pub fn sweep(&mut self, sets: &RapierSets<'_>) {
         self.swept_hits.clear();
         let dt = sets.integration_parameters.dt;
-        let rigid = sets
-            .bodies
-            .iter()
-            .filter(|(_, body)| !body.is_fixed() && !body.is_sleeping())
-            .map(|(_, body)| body.linvel().length() * dt);
-        let farthest = rigid
-            .chain(self.flex.iter().map(|flex| flex.travel))
-            .fold(0.0, Real::max);
+        let farthest = self.farthest_travel(sets);
         self.farthest = farthest;
         let dispatcher = sets.narrow_phase.query_dispatcher();
         let query = sets.broad_phase.as_query_pipeline(

@@ -56,7 +56,7 @@ impl PressedPoint {
 /// What the handler was told about pairs of carriers and claimed bodies.
 #[derive(Debug, Default)]
 pub(crate) struct EventBook {
-    heard: Mutex<Heard>,
+    pub(super) heard: Mutex<Heard>,
     /// Pairs that pressed in the last step: whether above their threshold.
     pressed: HashMap<PairName, bool>,
     /// Those of the step before.
@@ -67,31 +67,36 @@ pub(crate) struct EventBook {
 
 /// What came from rapier, and what of it was passed on.
 #[derive(Debug, Default)]
-struct Heard {
+pub(super) struct Heard {
     /// Pairs that the user knows to touch and rapier has not announced.
     ahead: HashSet<PairName>,
     /// Events not passed on yet, in rapier's order.
     held: Vec<CollisionEvent>,
+    /// Events of sensors that were left in the step without length, from there on.
+    pub(super) left: Vec<CollisionEvent>,
     pairs: ForcePairs,
 }
 
-fn lock(heard: &Mutex<Heard>) -> MutexGuard<'_, Heard> {
+pub(super) fn lock(heard: &Mutex<Heard>) -> MutexGuard<'_, Heard> {
     heard.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The handler that rapier is given in place of the user's.
 pub(crate) struct EventGate<'a> {
-    user: &'a dyn EventHandler,
-    book: &'a EventBook,
+    pub(super) user: &'a dyn EventHandler,
+    pub(super) book: &'a EventBook,
     /// The claim of this step; `None` in the detection step.
-    claims: Option<&'a Claims>,
+    pub(super) claims: Option<&'a Claims>,
 }
 
 impl EventBook {
     /// Whether there is nothing the user still has to hear of.
     pub fn is_empty(&self) -> bool {
         let heard = lock(&self.heard);
-        heard.ahead.is_empty() && heard.held.is_empty() && self.pressed.is_empty()
+        heard.ahead.is_empty()
+            && heard.held.is_empty()
+            && heard.left.is_empty()
+            && self.pressed.is_empty()
     }
 
     /// The gate for rapier's detection step, or with a claim for its full step.
@@ -125,6 +130,7 @@ impl EventBook {
     /// Tells the user what a step without length changed.
     pub fn tell_detected(&mut self, sets: &RapierSets<'_>) {
         self.points.clear();
+        self.tell_left(sets);
         self.tell_held(sets);
     }
 
@@ -134,6 +140,7 @@ impl EventBook {
             let [one, other] = point.name();
             (one.into_raw_parts(), other.into_raw_parts())
         });
+        self.tell_left(sets);
         self.tell_held(sets);
         self.tell_ahead(sets);
         self.tell_forces(sets);
@@ -268,7 +275,7 @@ fn is_before(one: PairName, other: PairName) -> bool {
     one.map(ColliderHandle::into_raw_parts) < other.map(ColliderHandle::into_raw_parts)
 }
 
-fn name_of(event: &CollisionEvent) -> PairName {
+pub(super) fn name_of(event: &CollisionEvent) -> PairName {
     pair_name(event.collider1(), event.collider2())
 }
 
@@ -353,8 +360,12 @@ impl EventHandler for EventGate<'_> {
         let name = name_of(&event);
         if event.sensor() {
             self.end_contact(name, bodies, colliders);
+            if self.holds_back(name, &event) {
+                return;
+            }
             return forward();
         }
+        self.end_intersection(name, bodies, colliders);
         let mut heard = lock(&self.book.heard);
         if event.removed() {
             heard.ahead.remove(&name);

@@ -4,7 +4,7 @@ use super::candidates::{self, Names};
 use super::claim::{ClaimedPair, Claims};
 use super::filter::claimable_parent;
 use super::hooks::{HookBook, HookedPair};
-use super::masters::Masters;
+use super::masters::{Masters, cap_speed};
 use super::reading::{
     GatherError, at_rest, is_held_load, is_held_motion, law_of, load_of, offset_of, owner_of,
     prescribed_block,
@@ -241,8 +241,9 @@ impl Gatherer {
         let Some(body) = sets.bodies.get(handle) else {
             return Ok(());
         };
-        let (motion, acceleration) = masters.motion(handle, body);
         let load = load_of(body, from_rapier(sets.gravity));
+        let (mut motion, acceleration) = masters.motion(handle, body, load.drive());
+        cap_speed(&mut motion, body, sets.integration_parameters);
         if !is_held_motion(&motion) || !is_held_load(&load) {
             return Err(GatherError::RigidBody(handle));
         }

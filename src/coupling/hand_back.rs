@@ -3,11 +3,12 @@
 //! All axes are locked for that step, so neither contacts nor gravity act, and the velocity is the one that lands the
 //! body on our result; then axes and true end velocities return.
 
-use super::masters::Masters;
+use super::masters::{Masters, cap_speed};
 use super::sets::RapierSets;
 use crate::math::{Vec2, from_rapier, to_rapier};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
+use crate::system::RigidBlock;
 use crate::system::RigidMotion;
 
 /// A claimed body on its way through rapier's step.
@@ -19,16 +20,19 @@ pub(crate) struct Landing {
     pub motion: RigidMotion,
     /// Its smooth acceleration.
     pub acceleration: [f64; 3],
+    /// What of it the user's forces and gravity give to the body alone.
+    pub drive: [f64; 3],
     axes: LockedAxes,
 }
 
 impl Landing {
     /// Notes the end of a claimed body's step.
-    pub fn new(handle: RigidBodyHandle, motion: RigidMotion, acceleration: [f64; 3]) -> Self {
+    pub fn new(handle: RigidBodyHandle, block: &RigidBlock) -> Self {
         Self {
             handle,
-            motion,
-            acceleration,
+            motion: *block.current(),
+            acceleration: block.smooth_end,
+            drive: block.drive(),
             axes: LockedAxes::empty(),
         }
     }
@@ -74,12 +78,13 @@ pub(crate) fn land(landings: &[Landing], sets: &mut RapierSets<'_>, masters: &mu
         if body.is_sleeping() {
             (motion.velocity, motion.spin) = (Vec2::zeros(), 0.0);
         }
+        cap_speed(&mut motion, body, sets.integration_parameters);
         body.set_locked_axes(landing.axes, false);
         body.set_linvel(to_rapier(motion.velocity), false);
         body.set_angvel(motion.spin as Real, false);
         let missed = from_rapier(body.center_of_mass()) - motion.centre;
         if missed.norm() <= LANDING_TOLERANCE * (1.0 + motion.centre.norm()) {
-            masters.keep(landing.handle, motion, landing.acceleration, body);
+            masters.keep(landing, motion, body);
         }
     }
     masters.turn_over(sets.bodies);

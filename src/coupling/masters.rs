@@ -1,5 +1,6 @@
 //! The `f64` motion of claimed rigid bodies, kept from step to step while rapier's copy is the one we wrote.
 
+use super::hand_back::Landing;
 use super::shapes::pose_of;
 use crate::math::{Vec2, from_rapier};
 use crate::rapier::math::{Pose, Real, Vector};
@@ -12,6 +13,7 @@ use std::collections::HashMap;
 struct Master {
     motion: RigidMotion,
     acceleration: [f64; 3],
+    drive: [f64; 3],
     pose: Pose,
     linvel: Vector,
     angvel: Real,
@@ -25,17 +27,24 @@ pub(crate) struct Masters {
 }
 
 impl Masters {
-    /// The motion of a body, and its smooth acceleration if it was claimed in the last step and not touched since.
+    /// The motion of a body, and its smooth acceleration if it was claimed in the last step and not moved since: `drive` is what the
+    /// applied forces give to it alone, now.
+    ///
+    /// A force that was changed since then acts from the beginning of the step: otherwise it would start or end by a part of the step
+    /// too late.
     pub fn motion(
         &self,
         handle: RigidBodyHandle,
         body: &RigidBody,
+        drive: [f64; 3],
     ) -> (RigidMotion, Option<[f64; 3]>) {
         if let Some(master) = self.last.get(&handle) {
+            let acceleration =
+                std::array::from_fn(|i| master.acceleration[i] + (drive[i] - master.drive[i]));
             let same_pose = master.pose == *body.position();
             let same_velocity = master.linvel == body.linvel() && master.angvel == body.angvel();
             if same_pose && same_velocity {
-                return (master.motion, Some(master.acceleration));
+                return (master.motion, Some(acceleration));
             }
             if same_pose {
                 let read = read_motion(body);
@@ -44,28 +53,23 @@ impl Masters {
                     spin: read.spin,
                     ..master.motion
                 };
-                return (motion, Some(master.acceleration));
+                return (motion, Some(acceleration));
             }
         }
         (read_motion(body), None)
     }
 
     /// Keeps a body's motion after the hand-back.
-    pub fn keep(
-        &mut self,
-        handle: RigidBodyHandle,
-        motion: RigidMotion,
-        acceleration: [f64; 3],
-        body: &RigidBody,
-    ) {
+    pub fn keep(&mut self, landing: &Landing, motion: RigidMotion, body: &RigidBody) {
         let master = Master {
             motion,
-            acceleration,
+            acceleration: landing.acceleration,
+            drive: landing.drive,
             pose: *body.position(),
             linvel: body.linvel(),
             angvel: body.angvel(),
         };
-        self.next.insert(handle, master);
+        self.next.insert(landing.handle, master);
     }
 
     /// Makes the motions kept since the last call those of the last step. Those of bodies that sleep stay.
@@ -77,6 +81,26 @@ impl Masters {
         }
         std::mem::swap(&mut self.last, &mut self.next);
         self.next.clear();
+    }
+}
+
+/// Largest turn of a body in a step (rad), unless it may turn faster: rapier's.
+const LARGEST_TURN: f64 = std::f64::consts::FRAC_PI_4;
+
+/// Keeps a motion within rapier's caps of speed, which it imposes on its own results.
+pub(super) fn cap_speed(
+    motion: &mut RigidMotion,
+    body: &RigidBody,
+    parameters: &IntegrationParameters,
+) {
+    let fastest = f64::from(parameters.max_linear_velocity());
+    let speed = motion.velocity.norm();
+    if speed > fastest {
+        motion.velocity *= fastest / speed;
+    }
+    if !body.is_fast_rotation_allowed() {
+        let fastest = LARGEST_TURN / f64::from(parameters.dt);
+        motion.spin = motion.spin.clamp(-fastest, fastest);
     }
 }
 

@@ -5,6 +5,7 @@
 mod attach;
 mod candidates;
 mod carrier;
+mod changes;
 mod claim;
 mod claim_attachments;
 mod claim_joints;
@@ -22,11 +23,13 @@ mod places;
 mod reading;
 mod references;
 mod rigid_pairs;
+mod sensor_events;
 mod sets;
 mod shapes;
 mod sleep;
 
 pub(crate) use carrier::{is_carried, sync_settings, write_surface};
+pub(crate) use changes::WorldChange;
 pub(crate) use claim::Claims;
 pub(crate) use events::{EventBook, PressedPoint};
 pub(crate) use gather::{GatherSettings, Gatherer};
@@ -36,6 +39,4 @@ pub(crate) use joints::{JointImpulse, write_impulses};
 pub(crate) use masters::Masters;
 pub(crate) use reading::{GatherError, is_held_motion};
 pub use sets::RapierSets;
-pub(crate) use sleep::{
-    is_all_asleep, is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving,
-};
+pub(crate) use sleep::{is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving};

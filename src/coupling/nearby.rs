@@ -4,47 +4,94 @@
 //! a step without length none does, so bodies that collide far away would do so a little differently. Where flexible
 //! bodies meet each other and fixed colliders only, all that a claim needs is known without it.
 
-use super::claim::Claims;
+use super::claim::{ClaimedFlex, Claims};
 use super::places::{loosened, placed_on, swept_box};
 use super::sets::RapierSets;
 use crate::rapier::parry::bounding_volume::BoundingVolume;
 use crate::rapier::prelude::*;
 
 impl Claims {
-    /// Meets all colliders with the swept boxes of the flexible bodies; returns whether anything was met of which only a
+    /// Meets the swept boxes of the flexible bodies with what is around them; returns whether anything was met of which only a
     /// detection step can tell more.
     ///
-    /// Rapier's tree does not know what the user has inserted or moved since the last step, so every collider is asked.
+    /// Rapier's tree does not know what the user has inserted or moved since the last step, and a body that is awake goes where the
+    /// tree does not have it: these are asked by themselves.
     pub fn needs_detection(&mut self, sets: &RapierSets<'_>) -> bool {
-        self.swept_hits.clear();
+        let mut hits = std::mem::take(&mut self.swept_hits);
+        hits.clear();
+        let needs = self.meets_unsettled(sets) || self.meets_settled(sets, &mut hits);
+        self.swept_hits = hits;
+        if !needs {
+            self.meet_each_other();
+            self.swept_hits.sort_unstable_by_key(|(index, _)| *index);
+        }
+        needs
+    }
+
+    /// Whether a flexible body meets something that moves or was changed.
+    fn meets_unsettled(&self, sets: &RapierSets<'_>) -> bool {
         let boxes = self.flex.iter().map(|flex| flex.swept);
         let Some(around) = boxes.reduce(|one, other| one.merged(&other)) else {
             return false;
         };
         let dt = sets.integration_parameters.dt;
-        for (handle, collider) in sets.colliders.iter() {
+        self.unsettled(sets).any(|(handle, collider)| {
             if self.is_surface(handle) {
-                continue;
+                return false;
             }
             let swept = swept_box(sets.bodies, collider, dt);
             // A box that is no number may be anywhere, and rapier must take it out first.
-            if !(swept.mins.is_finite() && swept.maxs.is_finite()) {
+            let is_somewhere = swept.mins.is_finite() && swept.maxs.is_finite();
+            let meets = |flex: &ClaimedFlex| swept.intersects(&flex.swept);
+            !is_somewhere
+                || (swept.intersects(&around)
+                    && !is_fixed_and_settled(sets, collider)
+                    && self.flex.iter().any(meets))
+        })
+    }
+
+    /// Lists what rapier's tree has near the flexible bodies; returns whether that is more than fixed colliders.
+    fn meets_settled(
+        &self,
+        sets: &RapierSets<'_>,
+        hits: &mut Vec<(usize, ColliderHandle)>,
+    ) -> bool {
+        let dt = sets.integration_parameters.dt;
+        let query = sets.broad_phase.as_query_pipeline(
+            sets.narrow_phase.query_dispatcher(),
+            sets.bodies,
+            sets.colliders,
+            QueryFilter::new(),
+        );
+        for (index, flex) in self.flex.iter().enumerate() {
+            let (mut meets_itself, mut needs) = (false, false);
+            let mut visit = |handle: ColliderHandle, collider: &Collider| {
+                if !self.is_surface(handle)
+                    && swept_box(sets.bodies, collider, dt).intersects(&flex.swept)
+                {
+                    needs |= !is_fixed_and_settled(sets, collider);
+                    hits.push((index, handle));
+                }
+            };
+            for (handle, collider) in query.intersect_aabb_conservative(flex.swept) {
+                meets_itself |= handle == flex.collider;
+                visit(handle, collider);
+            }
+            // The tree may be out, and does not know what was changed.
+            if meets_itself {
+                let changed = self.changes.colliders.iter();
+                changed
+                    .filter_map(|&handle| Some((handle, sets.colliders.get(handle)?)))
+                    .for_each(|(handle, collider)| visit(handle, collider));
+            } else {
+                sets.colliders
+                    .iter()
+                    .for_each(|(handle, collider)| visit(handle, collider));
+            }
+            if needs {
                 return true;
             }
-            if !swept.intersects(&around) {
-                continue;
-            }
-            for (index, flex) in self.flex.iter().enumerate() {
-                if swept.intersects(&flex.swept) {
-                    if !is_fixed_and_settled(sets, collider) {
-                        return true;
-                    }
-                    self.swept_hits.push((index, handle));
-                }
-            }
         }
-        self.meet_each_other();
-        self.swept_hits.sort_unstable_by_key(|(index, _)| *index);
         false
     }
 

@@ -4,7 +4,6 @@
 //! rapier wakes is awake here too. What is awake and comes near a sleeper wakes it before they touch.
 
 use super::claim::Claims;
-use super::nearby::is_fixed_and_settled;
 use super::places::{loosened, swept_box};
 use super::sets::RapierSets;
 use crate::body::{FlexBody, FlexBodySet};
@@ -52,22 +51,10 @@ pub(crate) fn is_asleep(body: &FlexBody, bodies: &RigidBodySet) -> bool {
     carrier.is_some_and(RigidBody::is_sleeping)
 }
 
-/// Whether all that could move sleeps, so that there is nothing to do.
-pub(crate) fn is_all_asleep(sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
-    let is_quiet = |body: &FlexBody| !body.is_disturbed() && is_asleep(body, sets.bodies);
-    let rests = |body: &RigidBody| body.is_fixed() || body.is_sleeping() || !body.is_enabled();
-    flex_bodies.iter().all(|(_, body)| is_quiet(body))
-        && sets.bodies.iter().all(|(_, body)| rests(body))
-}
-
-/// Wakes the bodies that the user changed; all of them if the world around them `has_changed`.
-pub(crate) fn wake_disturbed(
-    sets: &mut RapierSets<'_>,
-    flex_bodies: &mut FlexBodySet,
-    has_changed: bool,
-) {
+/// Wakes the bodies that the user changed; all of them if `all`.
+pub(crate) fn wake_disturbed(sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet, all: bool) {
     for (_, body) in flex_bodies.iter_mut() {
-        if body.is_disturbed() || has_changed {
+        if body.is_disturbed() || all {
             body.clear_disturbance();
             sets.islands
                 .wake_up(sets.bodies, body.rigid_body_handle(), true);
@@ -76,20 +63,10 @@ pub(crate) fn wake_disturbed(
 }
 
 impl Claims {
-    /// Whether colliders have come or gone since the last call, fixed ones have been moved, or gravity is another: what rested may
-    /// fall. Where nothing sleeps, nobody asks.
-    pub fn has_world_changed(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
-        let now = (sets.colliders.len(), sets.gravity);
-        let has_another = std::mem::replace(&mut self.world, now) != now;
-        let mut all = flex_bodies.iter();
-        if !all.any(|(_, body)| is_asleep(body, sets.bodies)) {
-            return false;
-        }
-        has_another
-            || sets.colliders.iter().any(|(_, collider)| {
-                let parent = collider.parent().and_then(|parent| sets.bodies.get(parent));
-                parent.is_some_and(RigidBody::is_fixed) && !is_fixed_and_settled(sets, collider)
-            })
+    /// Whether all that could move sleeps, so that there is nothing to do.
+    pub fn is_all_asleep(&self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
+        let is_quiet = |body: &FlexBody| !body.is_disturbed() && is_asleep(body, sets.bodies);
+        self.rests_all_rigid(sets) && flex_bodies.iter().all(|(_, body)| is_quiet(body))
     }
 
     /// Whether a collider is the surface of a flexible body, awake or not.
@@ -112,15 +89,17 @@ impl Claims {
         let dt = sets.integration_parameters.dt;
         let fall = sets.gravity.length() * dt * dt;
         let margin = sets.integration_parameters.prediction_distance() + fall;
-        for slot in 0..self.flex.len() {
-            self.list_met(sets, &loosened(self.flex[slot].swept, margin));
+        let mut woken = std::mem::take(&mut self.woken);
+        for flex in &self.flex {
+            self.list_met(sets, &loosened(flex.swept, margin), &mut woken);
         }
-        for (handle, collider) in sets.colliders.iter() {
+        for (handle, collider) in self.unsettled(sets) {
             if is_awake(sets, collider) && !self.flex_of_collider.contains_key(&handle) {
                 let swept = swept_box(sets.bodies, collider, dt);
-                self.list_met(sets, &loosened(swept, margin));
+                self.list_met(sets, &loosened(swept, margin), &mut woken);
             }
         }
+        self.woken = woken;
         let mut has_woken = false;
         for &carrier in &self.woken {
             sets.islands.wake_up(sets.bodies, carrier, true);
@@ -134,13 +113,13 @@ impl Claims {
     }
 
     /// Lists the sleepers whose surface a box reaches.
-    fn list_met(&mut self, sets: &RapierSets<'_>, near: &Aabb) {
+    fn list_met(&self, sets: &RapierSets<'_>, near: &Aabb, woken: &mut Vec<RigidBodyHandle>) {
         for sleeper in &self.asleep {
             if near.intersects(&sleeper.surface)
-                && !self.woken.contains(&sleeper.carrier)
+                && !woken.contains(&sleeper.carrier)
                 && reaches(sets, sleeper.collider, near)
             {
-                self.woken.push(sleeper.carrier);
+                woken.push(sleeper.carrier);
             }
         }
     }
@@ -165,7 +144,7 @@ impl Claims {
 }
 
 /// Whether a box meets a segment of a surface.
-fn reaches(sets: &RapierSets<'_>, surface: ColliderHandle, other: &Aabb) -> bool {
+pub(super) fn reaches(sets: &RapierSets<'_>, surface: ColliderHandle, other: &Aabb) -> bool {
     let shape = sets.colliders.get(surface).map(Collider::shape);
     let polyline = shape.and_then(|shape| shape.as_polyline());
     polyline.is_none_or(|polyline| polyline.bvh().intersect_aabb(other).next().is_some())

@@ -22,8 +22,7 @@ impl FlexPipeline {
     ) {
         for &(block, handle) in &self.gatherer.bodies {
             if let Block::Rigid(block) = &self.island.blocks[block] {
-                self.landings
-                    .push(Landing::new(handle, *block.current(), block.smooth_end));
+                self.landings.push(Landing::new(handle, block));
             }
         }
         let n_flex = self.island.flex_index.iter().flatten().count().max(1);

@@ -18,12 +18,8 @@ const SHORTEST: f64 = 1e-8 * (1.0 - 1e-7);
 const LONGEST: f64 = 1e4;
 
 impl FlexPipeline {
-    /// Refuses what cannot be stepped, before anything is touched.
-    pub(super) fn check(
-        &self,
-        sets: &RapierSets<'_>,
-        flex_bodies: &FlexBodySet,
-    ) -> Result<Step, StepError> {
+    /// Refuses a step length or gravity that nothing can be stepped with, before anything is touched.
+    pub(super) fn check(&self, sets: &RapierSets<'_>) -> Result<Step, StepError> {
         let dt = f64::from(sets.integration_parameters.dt);
         if dt != 0.0 && !(SHORTEST..=LONGEST).contains(&dt) {
             return Err(StepError::StepLength(dt));
@@ -32,6 +28,19 @@ impl FlexPipeline {
         if !is_held(gravity.x) || !is_held(gravity.y) {
             return Err(StepError::Gravity(gravity.into()));
         }
+        Ok(Step {
+            dt,
+            weights: self.integrator().weights(dt),
+        })
+    }
+
+    /// Refuses bodies that are awake and cannot be stepped, before anything is touched.
+    pub(super) fn check_bodies(
+        &self,
+        dt: f64,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) -> Result<(), StepError> {
         for (handle, body) in flex_bodies.iter() {
             if is_asleep(body, sets.bodies) {
                 continue;
@@ -50,10 +59,7 @@ impl FlexPipeline {
         {
             return Err(StepError::ExplicitAttachment(handle));
         }
-        Ok(Step {
-            dt,
-            weights: self.integrator().weights(dt),
-        })
+        Ok(())
     }
 
     /// Refuses an integrator that a body's mass or mesh does not allow at this step length.

@@ -7,8 +7,8 @@ use crate::body::FlexBodySet;
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
     Claims, EventBook, GatherSettings, Gatherer, HookGate, JointImpulse, Landing, Masters,
-    RapierSets, hand_back, is_all_asleep, land, rests, stop_if_asleep, sync_settings,
-    wake_disturbed, write_impulses, write_surface,
+    RapierSets, WorldChange, hand_back, land, rests, stop_if_asleep, sync_settings, wake_disturbed,
+    write_impulses, write_surface,
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ContactMethod, ImpactTreatment, Island, SolveSettings};
@@ -197,20 +197,22 @@ impl FlexPipeline {
         }
         let mut clock = Clock::start();
         let dissipated = self.report.energy.dissipated;
-        let step = self.check(&sets, flex_bodies)?;
-        drop_orphans(&sets, flex_bodies);
-        sync_settings(flex_bodies, sets.colliders);
-        let has_changed = self.claims.has_world_changed(&sets, flex_bodies);
-        if step.dt > 0.0 && !has_changed && is_all_asleep(&sets, flex_bodies) {
-            let gate = self.hook_gate(hooks, true);
-            sets.step_through(&gate, &self.events.gate(user, Some(&self.claims)));
-            self.events.tell(&sets);
-            self.report.note_quarantine(&sets);
-            self.report.n_asleep = flex_bodies.len();
-            self.report.keep_contacts(|_| true);
+        let step = self.check(&sets)?;
+        let change = self.claims.look_for_changes(&sets, flex_bodies);
+        let is_quiet = step.dt > 0.0 && change == WorldChange::None;
+        if is_quiet && self.claims.is_all_asleep(&sets, flex_bodies) {
+            self.step_asleep(&mut sets, flex_bodies.len());
             return Ok(&self.report);
         }
-        wake_disturbed(&mut sets, flex_bodies, has_changed);
+        self.check_bodies(step.dt, &sets, flex_bodies)?;
+        self.claims.note_world(&sets);
+        drop_orphans(&sets, flex_bodies);
+        sync_settings(flex_bodies, sets.colliders);
+        wake_disturbed(&mut sets, flex_bodies, change == WorldChange::Everywhere);
+        let is_changed = change == WorldChange::Somewhere;
+        if is_changed {
+            self.wake_for_changes(&mut sets, flex_bodies);
+        }
         self.claims.look_ahead(&sets, flex_bodies);
         while self.claims.wake_met(&mut sets) {
             self.claims.look_ahead(&sets, flex_bodies);
@@ -220,13 +222,16 @@ impl FlexPipeline {
             return Err(StepError::CarrierJoint(joint));
         }
         let is_detected = step.dt == 0.0
+            || is_changed
             || self.claims.needs_detection(&sets)
             || self.claims.has_attached_bodies(&sets);
         clock.lap(&mut self.report.times.claim);
         self.report.is_detected = is_detected;
         if is_detected {
-            self.detect(&mut sets);
-            self.report.note_quarantine(&sets);
+            if !is_changed {
+                self.detect(&mut sets);
+                self.report.note_quarantine(&sets);
+            }
             clock.lap(&mut self.report.times.rapier);
             if step.dt == 0.0 {
                 // The tree may be out to be optimized: a detection step without changes puts it back for queries.
@@ -265,12 +270,16 @@ impl FlexPipeline {
     }
 
     /// Rapier's step without length: what it stops is not told before the full step confirms it.
-    fn detect(&self, sets: &mut RapierSets<'_>) {
+    pub(super) fn detect(&self, sets: &mut RapierSets<'_>) {
         let gate = self.hook_gate(sets.hooks, false);
         sets.detect_through(&gate, &self.events.gate(sets.events, None));
     }
 
-    fn hook_gate<'a>(&'a self, user: &'a dyn PhysicsHooks, is_full: bool) -> HookGate<'a> {
+    pub(super) fn hook_gate<'a>(
+        &'a self,
+        user: &'a dyn PhysicsHooks,
+        is_full: bool,
+    ) -> HookGate<'a> {
         HookGate {
             user,
             book: &self.gatherer.hooks,

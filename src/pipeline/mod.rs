@@ -8,6 +8,7 @@ mod error;
 mod flex_pipeline;
 mod joint_accounts;
 mod report;
+mod rest;
 mod settings;
 
 #[cfg(feature = "debug-render")]

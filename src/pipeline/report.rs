@@ -289,6 +289,11 @@ impl StepReport {
         self.contacts.extend(kept);
     }
 
+    /// The contacts of the step before, all of them, where nothing was solved.
+    pub(super) fn keep_all_contacts(&mut self) {
+        std::mem::swap(&mut self.contacts, &mut self.contacts_before);
+    }
+
     /// Adds what rapier's last step disabled.
     pub(super) fn note_quarantine(&mut self, sets: &RapierSets<'_>) {
         let quarantine = sets.physics_pipeline.quarantine();

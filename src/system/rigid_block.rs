@@ -68,6 +68,13 @@ pub struct RigidLoad {
     pub damping: [f64; 3],
 }
 
+impl RigidLoad {
+    /// Acceleration that the applied forces give to the body alone (m/s², rad/s²).
+    pub fn drive(&self) -> [f64; 3] {
+        std::array::from_fn(|i| self.inverse_mass[i] * self.force[i])
+    }
+}
+
 impl RigidBlock {
     /// A body whose motion over the step is given.
     pub fn prescribed(start: RigidMotion, end: RigidMotion) -> Self {
@@ -374,6 +381,11 @@ impl RigidBlock {
     pub fn respond(&self, lever: Vec2, wrench: [f64; 3]) -> Vec2 {
         let change: [f64; 3] = std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]);
         Vec2::new(change[0], change[1]) + change[2] * perp(lever)
+    }
+
+    /// Acceleration that the applied forces give to the body alone (m/s², rad/s²).
+    pub fn drive(&self) -> [f64; 3] {
+        std::array::from_fn(|i| self.inverse_mass[i] * self.force[i])
     }
 
     /// Work of the applied forces over the step (J).

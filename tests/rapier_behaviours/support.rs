@@ -1,0 +1,288 @@
+//! A world that is stepped by rapier alone, or with all its dynamic bodies claimed.
+
+use crate::common::*;
+use foil2d::coupling::RapierSets;
+use foil2d::rapier::math::Real;
+use std::sync::Mutex;
+
+/// A step of 1/60 s.
+pub const DT: f64 = 1.0 / 60.0;
+
+/// Behaviours that the flexible stage does not share, and why.
+pub const DIFFERENCES: [(&str, &str); 2] = [
+    (
+        "a_conveyor_set_by_the_hook_carries",
+        "contacts know no belts: `tangent_velocity` is not looked at",
+    ),
+    (
+        "a_box_slides_over_the_joints_of_a_polyline",
+        "pseudo-normals are not looked at: a face may catch at a joint, as on rapier's own plain polylines",
+    ),
+];
+
+/// Whether a behaviour holds, and what was measured.
+pub struct Verdict {
+    pub holds: bool,
+    pub measured: String,
+}
+
+pub fn verdict(holds: bool, measured: impl Into<String>) -> Verdict {
+    Verdict {
+        holds,
+        measured: measured.into(),
+    }
+}
+
+/// Whether `value` is `expected` to within `tolerance`.
+pub fn is_near(value: f64, expected: f64, tolerance: f64) -> Verdict {
+    verdict(
+        (value - expected).abs() <= tolerance,
+        format!("{value}, expected {expected} ± {tolerance}"),
+    )
+}
+
+/// All of these.
+pub fn all<const N: usize>(verdicts: [Verdict; N]) -> Verdict {
+    let measured: Vec<String> = verdicts
+        .iter()
+        .map(|one| format!("{}{}", if one.holds { "" } else { "NOT " }, one.measured))
+        .collect();
+    verdict(verdicts.iter().all(|one| one.holds), measured.join("; "))
+}
+
+/// What the handler was told.
+#[derive(Default)]
+pub struct Heard {
+    collisions: Mutex<Vec<CollisionEvent>>,
+    forces: Mutex<Vec<f64>>,
+}
+
+impl Heard {
+    /// Collisions that started and that stopped.
+    pub fn collisions(&self) -> (usize, usize) {
+        let all = self.collisions.lock().expect("no handler panicked");
+        let started = all.iter().filter(|event| event.started()).count();
+        (started, all.len() - started)
+    }
+
+    pub fn forces(&self) -> Vec<f64> {
+        self.forces.lock().expect("no handler panicked").clone()
+    }
+}
+
+impl EventHandler for Heard {
+    fn handle_collision_event(
+        &self,
+        _: &RigidBodySet,
+        _: &ColliderSet,
+        event: CollisionEvent,
+        _: Option<&ContactPair>,
+    ) {
+        self.collisions
+            .lock()
+            .expect("no handler panicked")
+            .push(event);
+    }
+
+    fn handle_contact_force_event(
+        &self,
+        _: Real,
+        _: &RigidBodySet,
+        _: &ColliderSet,
+        _: &ContactPair,
+        force: Real,
+    ) {
+        self.forces
+            .lock()
+            .expect("no handler panicked")
+            .push(f64::from(force));
+    }
+
+    fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
+}
+
+/// A world, stepped one way or the other.
+pub struct Stage {
+    pub world: PhysicsWorld,
+    pub heard: Heard,
+    flex_bodies: FlexBodySet,
+    flex: FlexPipeline,
+    anchor: Option<RigidBodyHandle>,
+    /// Most bodies that were claimed in a step, the anchor left out.
+    pub n_claimed: usize,
+}
+
+impl Stage {
+    /// With rapier alone.
+    pub fn alone() -> Self {
+        let mut world = PhysicsWorld::new();
+        world.integration_parameters.dt = real(DT);
+        world.gravity = vec2(0.0, -G);
+        Self {
+            world,
+            heard: Heard::default(),
+            flex_bodies: FlexBodySet::new(),
+            flex: FlexPipeline::new(),
+            anchor: None,
+            n_claimed: 0,
+        }
+    }
+
+    /// With a flexible block on a body that cannot move.
+    pub fn claimed() -> Self {
+        let mut stage = Self::alone();
+        let anchor = stage.world.insert_body(
+            RigidBodyBuilder::dynamic()
+                .translation(vec2(1000.0, 0.0))
+                .locked_axes(LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED),
+        );
+        let slab = ColliderBuilder::cuboid(real(1.0), real(0.5));
+        stage.world.insert_collider(slab, Some(anchor));
+        let material = LinearElastic::plane_stress(1e6, 0.3)
+            .density(100.0)
+            .rayleigh(1e-2);
+        let block = FlexBodyBuilder::rectangle([0.25, 0.25], [1, 1])
+            .material(material)
+            .translation([999.875, 0.5]);
+        stage
+            .flex_bodies
+            .insert(block, &mut stage.world)
+            .expect("the description is right");
+        stage.anchor = Some(anchor);
+        stage
+    }
+
+    /// A body with one collider; claimed if it can be.
+    pub fn add(&mut self, body: RigidBodyBuilder, shape: ColliderBuilder) -> RigidBodyHandle {
+        let (body, _) = self.world.insert(body, shape);
+        self.tie(body);
+        body
+    }
+
+    /// [`Stage::add`] of a dynamic body at a place.
+    pub fn dynamic(&mut self, x: f64, y: f64, shape: ColliderBuilder) -> RigidBodyHandle {
+        self.add(RigidBodyBuilder::dynamic().translation(vec2(x, y)), shape)
+    }
+
+    /// Has a body claimed, by a joint that locks nothing.
+    pub fn tie(&mut self, body: RigidBodyHandle) {
+        if let Some(anchor) = self.anchor {
+            let free = GenericJointBuilder::new(JointAxesMask::empty());
+            self.world.impulse_joints.insert(anchor, body, free, true);
+        }
+    }
+
+    pub fn fixed(&mut self, shape: ColliderBuilder) -> ColliderHandle {
+        self.world.insert_collider(shape, None)
+    }
+
+    /// A floor at `y = 0`.
+    pub fn floor(&mut self, friction: f64) -> ColliderHandle {
+        self.fixed(
+            ColliderBuilder::cuboid(real(50.0), real(0.5))
+                .translation(vec2(0.0, -0.5))
+                .friction(real(friction)),
+        )
+    }
+
+    pub fn no_gravity(&mut self) {
+        self.world.gravity = vec2(0.0, 0.0);
+    }
+
+    pub fn join(
+        &mut self,
+        one: RigidBodyHandle,
+        other: RigidBodyHandle,
+        joint: impl Into<GenericJoint>,
+    ) -> ImpulseJointHandle {
+        self.world.impulse_joints.insert(one, other, joint, true)
+    }
+
+    pub fn step_with(&mut self, hooks: &dyn PhysicsHooks) {
+        if self.anchor.is_none() {
+            RapierSets::of_world(&mut self.world, hooks, &self.heard).step();
+            return;
+        }
+        let report = self
+            .flex
+            .step_with_events(&mut self.world, &mut self.flex_bodies, hooks, &self.heard)
+            .expect("the step can be taken");
+        self.n_claimed = self.n_claimed.max(report.n_claimed().saturating_sub(1));
+    }
+
+    pub fn steps_with(&mut self, n: usize, hooks: &dyn PhysicsHooks) {
+        for _ in 0..n {
+            self.step_with(hooks);
+        }
+    }
+
+    pub fn step(&mut self) {
+        self.step_with(&());
+    }
+
+    pub fn steps(&mut self, n: usize) {
+        self.steps_with(n, &());
+    }
+
+    pub fn at(&self, body: RigidBodyHandle) -> [f64; 2] {
+        let at = self.world.bodies[body].translation();
+        [f64::from(at.x), f64::from(at.y)]
+    }
+
+    pub fn velocity(&self, body: RigidBodyHandle) -> [f64; 2] {
+        let v = self.world.bodies[body].linvel();
+        [f64::from(v.x), f64::from(v.y)]
+    }
+
+    pub fn spin(&self, body: RigidBodyHandle) -> f64 {
+        f64::from(self.world.bodies[body].angvel())
+    }
+
+    pub fn angle(&self, body: RigidBodyHandle) -> f64 {
+        let turn = self.world.bodies[body].rotation();
+        f64::from(turn.im).atan2(f64::from(turn.re))
+    }
+
+    pub fn sleeps(&self, body: RigidBodyHandle) -> bool {
+        self.world.bodies[body].is_sleeping()
+    }
+}
+
+pub type Behaviour = fn(&mut Stage) -> Verdict;
+
+/// Runs a behaviour both ways and compares the verdicts.
+pub fn compare(name: &str, behaviour: Behaviour, is_claimable: bool) {
+    let theirs = behaviour(&mut Stage::alone());
+    let mut stage = Stage::claimed();
+    let ours = behaviour(&mut stage);
+    println!(
+        "{name}\n  rapier alone: {}\n  claimed: {}",
+        theirs.measured, ours.measured
+    );
+    assert!(theirs.holds, "with rapier alone: {}", theirs.measured);
+    if is_claimable {
+        assert!(stage.n_claimed > 0, "nothing was claimed");
+    }
+    match DIFFERENCES.iter().find(|(listed, _)| *listed == name) {
+        None => assert!(ours.holds, "claimed: {}", ours.measured),
+        Some((_, why)) => {
+            println!("  differs: {why}");
+            assert!(!ours.holds, "differs no more: {}", ours.measured);
+        }
+    }
+}
+
+/// Makes a test of every behaviour; those after `unclaimed` have no dynamic body that could be claimed.
+macro_rules! behaviours {
+    ($($name:ident)* $(; unclaimed $($other:ident)*)?) => {
+        mod both_ways {
+            $(#[test] fn $name() { $crate::support::compare(stringify!($name), super::$name, true); })*
+            $($(#[test] fn $other() { $crate::support::compare(stringify!($other), super::$other, false); })*)?
+        }
+    };
+}
+
+/// A box of this half size.
+pub fn square(half: f64) -> ColliderBuilder {
+    ColliderBuilder::cuboid(real(half), real(half))
+}
