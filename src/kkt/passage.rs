@@ -4,27 +4,19 @@
 //! is never touched by what is solved right.
 
 use super::island::{ActiveContact, Island};
-use crate::constraint::contact::{Pair, PlacedPart, core_of, enters_surface, middle_of};
+use crate::constraint::contact::{
+    Pair, PlacedPart, core_of, enters_surface, middle_of, pierces_surface,
+};
 use crate::constraint::geometry::{Path, passage_through};
+use crate::math::Vec2;
 use crate::system::{Block, RigidBlock};
 
 /// Motion of two members against each other within the step, relative to the smaller, from which the way counts and not only
 /// its end.
 const FAR: f64 = 0.03;
 
-/// The middle of a flexible member, known when first asked for.
-#[derive(Default)]
-struct Cores(Vec<Option<Path>>);
-
-impl Cores {
-    fn of(&mut self, index: usize, blocks: &[Block]) -> Path {
-        self.0.resize(blocks.len(), None);
-        *self.0[index].get_or_insert_with(|| match &blocks[index] {
-            Block::Flex(block) => core_of(block),
-            Block::Rigid(block) => [block.start().centre, block.current().centre],
-        })
-    }
-}
+/// Motion of a vertex from which it may pierce a sheet, relative to the sheet's length.
+const STIRRED: f64 = 1e-3;
 
 /// Multiple of the way of what hits that no blow sends a light body on: a free one goes twice as far, the tip of a bar some times
 /// more.
@@ -71,9 +63,8 @@ impl Island {
 
     /// Whether a member has come into or through another by its middle. Only pairs that move far against each other are asked.
     pub(super) fn passes_through(&self) -> bool {
-        let mut cores = Cores::default();
         let (mut asked, mut line, mut net) = (None, None, 0);
-        for candidate in &self.candidates {
+        for candidate in self.candidates.iter().filter(|one| !one.law.may_pass) {
             match candidate.pair {
                 Pair::NodeOnPart { node, rigid, part } if asked != Some((node.0, part)) => {
                     asked = Some((node.0, part));
@@ -83,7 +74,7 @@ impl Island {
                         }
                         line = Some((node.0, rigid));
                     }
-                    let core = cores.of(node.0, &self.blocks);
+                    let core = self.core(node.0);
                     let Some(passage) = self.passage(core, node.0, rigid, &self.parts[part]) else {
                         return true;
                     };
@@ -92,8 +83,20 @@ impl Island {
                 Pair::NodeOnSurface { node, flex, .. } if asked != Some((node.0, flex)) => {
                     asked = Some((node.0, flex));
                     let pair = [node.0, flex];
-                    let paths = pair.map(|block| cores.of(block, &self.blocks));
+                    let paths = pair.map(|block| self.core(block));
                     if self.meet_by_their_middles(pair, paths) {
+                        return true;
+                    }
+                }
+                Pair::VertexOnSurface {
+                    rigid,
+                    arm,
+                    radius: 0.0,
+                    flex,
+                    segments,
+                } => {
+                    let listed = &self.segments[segments.0..segments.1];
+                    if self.pierces(rigid, arm, flex, listed) {
                         return true;
                     }
                 }
@@ -101,6 +104,23 @@ impl Island {
             }
         }
         net != 0
+    }
+
+    /// Whether a sharp vertex has gone in on one side of a flexible member and out on another.
+    fn pierces(&self, rigid: usize, arm: Vec2, flex: usize, listed: &[u32]) -> bool {
+        let (Block::Rigid(motion), Block::Flex(body)) = (&self.blocks[rigid], &self.blocks[flex])
+        else {
+            return false;
+        };
+        let path = [motion.start().point(arm), motion.current().point(arm)];
+        shift(path, core_of(body)) > STIRRED * body.size() && pierces_surface(body, listed, path)
+    }
+
+    fn core(&self, block: usize) -> Path {
+        match &self.blocks[block] {
+            Block::Flex(block) => core_of(block),
+            Block::Rigid(block) => [block.start().centre, block.current().centre],
+        }
     }
 
     /// How the middle of a flexible member has passed through a part; `None` if the part has passed into the member.

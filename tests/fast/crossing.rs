@@ -104,7 +104,8 @@ pub fn side(frame: &Frame) -> i32 {
     // At a node: the sharper of both segments decides.
     let other = if share == 0.0 { index - 1 } else { index + 1 };
     let next = [frame.line[other], frame.line[other + 1]];
-    let turn = cross(sub(pair[1], pair[0]), sub(next[1], next[0])) * if share == 0.0 { -1.0 } else { 1.0 };
+    let turn =
+        cross(sub(pair[1], pair[0]), sub(next[1], next[0])) * if share == 0.0 { -1.0 } else { 1.0 };
     // Nearest to a node from outside the bend: the bend turns away from the point.
     if turn > 0.0 { -1 } else { 1 }
 }

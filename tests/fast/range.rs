@@ -32,10 +32,12 @@ pub enum Projectile {
     Flexible,
 }
 
+/// The side that shots come from: the left of the middle line.
+const BEGAN: i32 = 1;
+
 /// One shot.
 #[derive(Clone, Copy, Debug)]
 pub struct Shot {
-    pub seed: u64,
     pub target: Target,
     pub projectile: Projectile,
     pub speed: f64,
@@ -90,7 +92,6 @@ impl Shot {
         let length = dice.between(2.0, 6.0);
         let size = log_between(dice, 0.05, 0.4);
         Self {
-            seed,
             target,
             projectile,
             speed: log_between(dice, 10.0, 1000.0),
@@ -138,9 +139,6 @@ pub struct Outcome {
     pub tunnelled: Option<String>,
     pub not_finite: bool,
     pub n_held: usize,
-    pub n_linearized: usize,
-    pub energy_ratio: f64,
-    pub reach: f64,
 }
 
 impl Range {
@@ -166,15 +164,16 @@ impl Range {
         match shot.target {
             Target::Clamped | Target::Free => {
                 let corner = shot.out([-half, -0.5 * shot.thickness]);
-                let mut sheet = FlexBodyBuilder::rectangle([shot.length, shot.thickness], [shot.n_cells, 1])
-                    .material(
-                        LinearElastic::plane_stress(shot.sheet_young, 0.3)
-                            .density(shot.sheet_density)
-                            .rayleigh(shot.rayleigh),
-                    )
-                    .friction(shot.friction)
-                    .rotation(shot.turn)
-                    .translation(corner);
+                let mut sheet =
+                    FlexBodyBuilder::rectangle([shot.length, shot.thickness], [shot.n_cells, 1])
+                        .material(
+                            LinearElastic::plane_stress(shot.sheet_young, 0.3)
+                                .density(shot.sheet_density)
+                                .rayleigh(shot.rayleigh),
+                        )
+                        .friction(shot.friction)
+                        .rotation(shot.turn)
+                        .translation(corner);
                 if shot.target == Target::Clamped {
                     sheet = sheet.pin_where(
                         move |[x, _]| x < 1e-9 || x > shot.length - 1e-9,
@@ -309,9 +308,7 @@ impl Range {
         let n_steps = flight.ceil() as usize + 12;
         let mut net = 0;
         let mut before = self.frame();
-        let began = 1;
         let mut is_round = false;
-        let mut first_energy = 0.0;
         for step in 0..n_steps {
             let report = match self.scene.try_step() {
                 Ok(report) => report,
@@ -320,13 +317,7 @@ impl Range {
                     return outcome;
                 }
             };
-            let note = format!("{} contacts, gap {:.1e}, newton {}, linear {}, held {}", report.contacts().len(), report.gap_violation(), report.n_newton(), report.n_linearized(), report.n_held());
-            if std::env::var("TRACE").is_ok() {
-                println!("  step {step}: {note}");
-            }
             outcome.n_held += report.n_held();
-            outcome.n_linearized += report.n_linearized();
-            let _ = &mut first_energy;
             if !self.is_finite() {
                 outcome.not_finite = true;
                 return outcome;
@@ -334,30 +325,14 @@ impl Range {
             let after = self.frame();
             net += net_crossings(&before, &after);
             let now = side(&after);
-            if std::env::var("TRACE").is_ok() {
-                println!("     {:?} side {now} net {net}  line {:.2?}", after.point, after.line);
-                for contact in self.scene.report().contacts() {
-                    println!("C       at {:.4?} n {:.3?} f {:.3e} gap {:.1e} {:?} on {:?}", contact.position, contact.normal, contact.normal_force, contact.gap, contact.contactor, contact.target);
-                }
-                if let Some(sheet) = self.sheet {
-                    let body = self.scene.body(sheet);
-                    let near: Vec<_> = (0..body.n_nodes()).filter(|&n| { let p = body.position(n); (p[0]-after.point[0]).hypot(p[1]-after.point[1]) < 0.8 }).map(|n| format!("{n}: {:.3?}", body.position(n))).collect();
-                    println!("N       {}", near.join(" "));
-                }
-                if let Some(body) = self.rigid {
-                    let b = &self.scene.world.bodies[body];
-                    println!("R       angle {:.3} v {:?} w {}", b.rotation().angle(), b.linvel(), b.angvel());
-                }
-            }
             is_round |= now == 0;
             if outcome.tunnelled.is_none() {
                 if net != 0 {
-                    outcome.tunnelled = Some(format!("step {step}: net {net}, side {now} of {began}; {note}"));
-                } else if !is_round && now != began {
-                    outcome.tunnelled = Some(format!("step {step}: side {now} of {began}; {note}"));
+                    outcome.tunnelled = Some(format!("step {step}: net {net}, side {now}"));
+                } else if !is_round && now != BEGAN {
+                    outcome.tunnelled = Some(format!("step {step}: side {now}"));
                 }
             }
-            outcome.reach = outcome.reach.max(after.line.iter().flatten().fold(0.0, |r, x| r.max(x.abs())));
             before = after;
         }
         outcome

@@ -1,30 +1,31 @@
-//! A thousand random shots.
+//! A thousand random shots: rigid and flexible bodies against sheets one cell thick and against thin walls.
 
+use crate::common::Findings;
 use crate::range::{Range, Shot};
 
+/// At up to 16 m a step bodies go through tens of their own sizes between two looks, and soft sheets stretch far beyond what small
+/// strains describe. Even so the middle of what was shot must stay on its side, whatever rapier's own continuous detection does, and no
+/// step may be refused.
+///
+/// Shots that no step can be found for are held for a step: less than a third of them, or the bound below fails.
 #[test]
 fn a_thousand_random_shots_never_pass_through_what_they_hit() {
-    let (mut tunnelled, mut errors, mut bad, mut held, mut linear) = (0, 0, 0, 0, 0);
-    let (mut nheld, mut nlin) = (0, 0);
-    let from: u64 = std::env::var("FROM").map_or(0, |v| v.parse().unwrap());
-    let to: u64 = std::env::var("TO").map_or(1000, |v| v.parse().unwrap());
-    for seed in from..to {
+    let mut findings = Findings::default();
+    let mut n_held = 0;
+    for seed in 0..1000 {
         let shot = Shot::random(seed);
-        let start = std::time::Instant::now();
         let outcome = Range::new(shot).run();
-        let took = start.elapsed().as_secs_f64();
-        tunnelled += i32::from(outcome.tunnelled.is_some());
-        errors += i32::from(outcome.error.is_some());
-        bad += i32::from(outcome.not_finite);
-        held += i32::from(outcome.n_held > 0);
-        linear += i32::from(outcome.n_linearized > 0);
-        nheld += outcome.n_held;
-        nlin += outcome.n_linearized;
-        if outcome.tunnelled.is_some() || outcome.error.is_some() || outcome.not_finite || took > 0.5 {
-            println!("{took:.2}s {outcome:?}\n   {shot:?}");
-        } else if outcome.n_held > 0 {
-            println!("held {} {seed} {:?} {:?} v {} dt 1/{}", outcome.n_held, shot.target, shot.projectile, shot.speed, 1.0/shot.dt);
+        n_held += usize::from(outcome.n_held > 0);
+        let wrong = [
+            outcome.tunnelled.as_deref(),
+            outcome.error.as_deref(),
+            outcome.not_finite.then_some("not finite"),
+        ];
+        for what in wrong.into_iter().flatten() {
+            findings.check(false, || format!("shot {seed}: {what}, {shot:?}"));
         }
     }
-    println!("tunnelled {tunnelled} errors {errors} not finite {bad} held {held} ({nheld}) linear {linear} ({nlin})");
+    println!("{n_held} of 1000 shots held for a step");
+    assert!(n_held < 333, "{n_held} of 1000 shots held for a step");
+    findings.report();
 }

@@ -12,5 +12,5 @@ pub use candidate::{Candidate, ContactKey, Owner, Pair};
 pub use kinematics::{Attachment, Kinematics, PlacedPart, Scene};
 pub use law::{ContactLaw, Direction};
 pub use memory::{ContactMemory, Remembered};
-pub use passage::{core_of, enters_surface, middle_of};
+pub use passage::{core_of, enters_surface, middle_of, pierces_surface};
 pub use surface::{SurfacePoint, closest_surface_point};

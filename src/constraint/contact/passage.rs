@@ -20,7 +20,8 @@ pub fn core_of(block: &FlexBlock) -> Path {
 
 /// The middle of a rigid part at the beginning of the step and now; `None` for a half-space.
 pub fn middle_of(rigid: &RigidBlock, placed: &PlacedPart) -> Option<Path> {
-    let arm = (!placed.part.is_half_space()).then(|| placed.pose.transform(placed.part.middle()))?;
+    let arm =
+        (!placed.part.is_half_space()).then(|| placed.pose.transform(placed.part.middle()))?;
     Some([rigid.start().point(arm), rigid.current().point(arm)])
 }
 
@@ -28,16 +29,42 @@ pub fn middle_of(rigid: &RigidBlock, placed: &PlacedPart) -> Option<Path> {
 ///
 /// Where cells are turned inside out the surface is met from behind: a point that leaves without having been inside has come in.
 pub fn enters_surface(block: &FlexBlock, point: Path) -> bool {
-    let boundary = block.model().mesh().boundary();
-    boundary.segments().iter().any(|&[a, b]| {
-        let from: Path = [block.start_position(a), block.position(a)];
-        let to: Path = [block.start_position(b), block.position(b)];
-        let along = [0, 1].map(|time| to[time] - from[time]);
-        let offset = [0, 1].map(|time| point[time] - from[time]);
-        let found = passages(along, offset);
-        let mut met = found.into_iter().flatten();
+    let n_segments = block.model().mesh().boundary().segments().len();
+    (0..n_segments).any(|segment| {
+        let mut met = met(block, segment, point).into_iter().flatten();
         met.any(|is_inward| is_inward || winding(block, point[0]) <= 0)
     })
+}
+
+/// Whether a point has come in through one of the listed segments and gone out through another that is not its neighbour: at a corner
+/// a point may go round what its straight way cuts off.
+pub fn pierces_surface(block: &FlexBlock, listed: &[u32], point: Path) -> bool {
+    let boundary = block.model().mesh().boundary();
+    let passed = |inward: bool| {
+        let segments = listed.iter().map(|&segment| segment as usize);
+        segments.filter(move |&segment| {
+            let mut met = met(block, segment, point).into_iter().flatten();
+            met.any(|is_inward| is_inward == inward)
+        })
+    };
+    passed(true).any(|entry| {
+        let near = [
+            entry,
+            boundary.previous_segment(entry),
+            boundary.next_segment(entry),
+        ];
+        passed(false).any(|exit| !near.contains(&exit))
+    })
+}
+
+/// The passages of a point through a boundary segment.
+fn met(block: &FlexBlock, segment: usize, point: Path) -> [Option<bool>; 2] {
+    let [a, b] = block.model().mesh().boundary().segments()[segment];
+    let from: Path = [block.start_position(a), block.position(a)];
+    let to: Path = [block.start_position(b), block.position(b)];
+    let along = [0, 1].map(|time| to[time] - from[time]);
+    let offset = [0, 1].map(|time| point[time] - from[time]);
+    passages(along, offset)
 }
 
 /// The passages of a point at `offset` through a segment that goes `along`, up to two, and whether they lead inwards.

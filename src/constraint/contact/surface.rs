@@ -256,9 +256,13 @@ pub(super) fn facing_point(
     let start_from = block.start_position(a);
     let start_along = block.start_position(b) - start_from;
     let start_offset = start - start_from;
-    let was_behind = -perp(start_along).dot(&start_offset) < -ENTRY_SLOP * start_along.norm_squared();
+    let was_behind =
+        -perp(start_along).dot(&start_offset) < -ENTRY_SLOP * start_along.norm_squared();
     let came_through = was_behind
-        && (0.0..=1.0).contains(&crossing([start_along, along], [start_offset, point - from]));
+        && (0.0..=1.0).contains(&crossing(
+            [start_along, along],
+            [start_offset, point - from],
+        ));
     (!came_through).then_some(SurfacePoint {
         segment: segment as usize,
         xi,

@@ -11,7 +11,9 @@ pub type Path = [Vec2; 2];
 pub fn passage_through(part: &ConvexPart, point: Path) -> i32 {
     let vertices = part.vertices();
     match vertices.len() {
-        0 => i32::from(part.face_distance(0, point[0]) > 0.0 && part.face_distance(0, point[1]) < 0.0),
+        0 => i32::from(
+            part.face_distance(0, point[0]) > 0.0 && part.face_distance(0, point[1]) < 0.0,
+        ),
         1 => 0,
         2 => passage_through_segment([vertices[0], vertices[1]], point),
         _ => i32::from(comes_in(part, point)),
