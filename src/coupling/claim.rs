@@ -108,7 +108,10 @@ impl Claims {
         self.flex.clear();
         self.flex_of_collider.clear();
         self.asleep.clear();
-        for (handle, body) in flex_bodies.iter() {
+        for (handle, body) in flex_bodies
+            .iter()
+            .filter(|(_, body)| !body.is_quarantined())
+        {
             if let Some(sleeper) = Sleeper::new(handle.into_raw_parts().0, body, sets) {
                 self.asleep.push(sleeper);
                 continue;

@@ -19,6 +19,7 @@ mod joints;
 mod masters;
 mod nearby;
 mod places;
+mod quarantine;
 mod reading;
 mod references;
 mod rigid_pairs;
@@ -34,6 +35,7 @@ pub(crate) use hand_back::{Landing, hand_back, land};
 pub(crate) use hooks::HookGate;
 pub(crate) use joints::{JointImpulse, write_impulses};
 pub(crate) use masters::Masters;
+pub(crate) use quarantine::{quarantine, quarantine_carriers};
 pub(crate) use reading::{GatherError, is_held_motion};
 pub use sets::RapierSets;
 pub(crate) use sleep::{

@@ -54,7 +54,9 @@ pub(crate) fn is_asleep(body: &FlexBody, bodies: &RigidBodySet) -> bool {
 
 /// Whether all that could move sleeps, so that there is nothing to do.
 pub(crate) fn is_all_asleep(sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
-    let is_quiet = |body: &FlexBody| !body.is_disturbed() && is_asleep(body, sets.bodies);
+    let is_quiet = |body: &FlexBody| {
+        body.is_quarantined() || (!body.is_disturbed() && is_asleep(body, sets.bodies))
+    };
     let rests = |body: &RigidBody| body.is_fixed() || body.is_sleeping() || !body.is_enabled();
     flex_bodies.iter().all(|(_, body)| is_quiet(body))
         && sets.bodies.iter().all(|(_, body)| rests(body))
@@ -67,7 +69,7 @@ pub(crate) fn wake_disturbed(
     has_changed: bool,
 ) {
     for (_, body) in flex_bodies.iter_mut() {
-        if body.is_disturbed() || has_changed {
+        if !body.is_quarantined() && (body.is_disturbed() || has_changed) {
             body.clear_disturbance();
             sets.islands
                 .wake_up(sets.bodies, body.rigid_body_handle(), true);

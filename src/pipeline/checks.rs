@@ -2,7 +2,7 @@
 
 use super::error::StepError;
 use super::flex_pipeline::FlexPipeline;
-use crate::body::{FlexBody, FlexBodyError, FlexBodySet};
+use crate::body::{FlexBody, FlexBodyError, FlexBodyHandle, FlexBodySet};
 use crate::coupling::{RapierSets, is_asleep, is_carried, is_held_motion};
 use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
@@ -33,7 +33,7 @@ impl FlexPipeline {
             return Err(StepError::Gravity(gravity.into()));
         }
         for (handle, body) in flex_bodies.iter() {
-            if is_asleep(body, sets.bodies) {
+            if body.is_quarantined() || is_asleep(body, sets.bodies) {
                 continue;
             }
             if !is_carried(body, sets.bodies, sets.colliders) {
@@ -81,7 +81,9 @@ impl FlexPipeline {
                 let holds = |dofs: &[f64]| dofs.iter().all(|&value| is_held(value));
                 let is_finite = holds(block.positions()) && holds(block.velocities());
                 if let (false, Some((handle, _))) = (is_finite, flex_bodies.at_index(*index)) {
-                    return Err(StepError::NotFinite(handle));
+                    return Err(StepError::NotFinite(
+                        self.overloaded(flex_bodies).unwrap_or(handle),
+                    ));
                 }
             }
         }
@@ -96,8 +98,22 @@ impl FlexPipeline {
         Ok(())
     }
 
+    /// The body of the island whose loads alone send it beyond what can be held: what touches it suffers, but is not to blame.
+    fn overloaded(&self, flex_bodies: &FlexBodySet) -> Option<FlexBodyHandle> {
+        let mut members = self.island.blocks.iter().zip(&self.island.flex_index);
+        members.find_map(|(block, index)| match (block, index) {
+            (Block::Flex(block), Some(index)) if block.is_overloaded() => {
+                flex_bodies.at_index(*index).map(|(handle, _)| handle)
+            }
+            _ => None,
+        })
+    }
+
     /// The error with the handles of the bodies whose blocks it names.
-    pub(super) fn name_bodies(&self, error: KktError) -> StepError {
+    pub(super) fn name_bodies(&self, error: KktError, flex_bodies: &FlexBodySet) -> StepError {
+        if let (KktError::Contact(_), Some(body)) = (&error, self.overloaded(flex_bodies)) {
+            return StepError::NotFinite(body);
+        }
         let KktError::LightPartner {
             block,
             dt,

@@ -5,6 +5,7 @@ mod checks;
 mod error;
 mod flex_pipeline;
 mod joint_accounts;
+mod quarantine;
 mod report;
 mod settings;
 
