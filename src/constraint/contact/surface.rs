@@ -62,6 +62,10 @@ fn entered_segment(
         let within = -ENTRY_SLOP..=1.0 + ENTRY_SLOP;
         let end_xi = offset.dot(&along) / along.norm_squared();
         let is_behind = within.contains(&end_xi);
+        if !is_behind && start_area <= ENTRY_SLOP * start_along.norm_squared() {
+            // What began on the line of a segment has not come through it beside its end.
+            continue;
+        }
         let xi = if is_behind {
             end_xi
         } else {
