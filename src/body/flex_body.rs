@@ -34,6 +34,7 @@ pub struct FlexBody {
     carrier: RigidBodyHandle,
     collider: ColliderHandle,
     pub(super) is_disturbed: bool,
+    is_quarantined: bool,
 }
 
 impl FlexBody {
@@ -66,6 +67,7 @@ impl FlexBody {
             carrier: RigidBodyHandle::invalid(),
             collider: ColliderHandle::invalid(),
             is_disturbed: false,
+            is_quarantined: false,
             model,
         }
     }
@@ -283,6 +285,12 @@ impl FlexBody {
             .sum()
     }
 
+    /// Whether the body is out of the world because its motion would not have been finite: it waits as the last sound step left it, until
+    /// it is mended and [`FlexBodySet::reinstate`](super::FlexBodySet::reinstate) is called.
+    pub fn is_quarantined(&self) -> bool {
+        self.is_quarantined
+    }
+
     /// Factor on the world's gravity (-).
     pub fn gravity_scale(&self) -> f64 {
         self.gravity_scale
@@ -308,6 +316,11 @@ impl FlexBody {
 
     pub(crate) fn clear_disturbance(&mut self) {
         self.is_disturbed = false;
+    }
+
+    pub(crate) fn set_quarantined(&mut self, is_quarantined: bool) {
+        self.is_quarantined = is_quarantined;
+        self.is_disturbed = true;
     }
 
     /// Takes what motion is left when the body falls asleep.

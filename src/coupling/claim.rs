@@ -10,7 +10,7 @@ use super::filter::{claimable_parent, may_touch};
 use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box, swept_surface};
 use super::sets::RapierSets;
 use super::sleep::Sleeper;
-use crate::body::FlexBodySet;
+use crate::body::{FlexBodySet, FlexState};
 use crate::math::from_rapier;
 use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
@@ -108,7 +108,10 @@ impl Claims {
         self.flex.clear();
         self.flex_of_collider.clear();
         self.asleep.clear();
-        for (handle, body) in flex_bodies.iter() {
+        for (handle, body) in flex_bodies
+            .iter()
+            .filter(|(_, body)| !body.is_quarantined())
+        {
             if let Some(sleeper) = Sleeper::new(handle.into_raw_parts().0, body, sets) {
                 self.asleep.push(sleeper);
                 continue;
@@ -117,13 +120,15 @@ impl Claims {
             let (swept, travel) = swept_surface(body, dt);
             let fall = from_rapier(sets.gravity).norm() * body.gravity_scale().abs() * dt * dt;
             let skin = body.contact_settings().contact_skin;
+            let recoil = recoil(body.state(), body.mass()) * dt;
+            let edge = edge + 2.0 * recoil;
             let swept = loosened(swept, (0.5 * edge + fall + skin) as Real);
             let index = handle.into_raw_parts().0;
             self.flex.push(ClaimedFlex {
                 index,
                 collider: body.collider_handle(),
                 swept,
-                travel,
+                travel: travel + recoil as Real,
                 edge,
                 solver_groups: body.contact_settings().solver_groups,
             });
@@ -360,5 +365,16 @@ impl Claims {
         let (one, other) = (self.root(one), self.root(other));
         // The smaller index stays the root, so that components do not depend on the order of unions.
         self.parent[one.max(other)] = one.min(other);
+    }
+}
+
+/// Speed (m/s) that a body held for a step, or woken, may have by the end of the next: neither its velocity nor its acceleration
+/// tells of the energy that it stores.
+fn recoil(state: &FlexState, mass: f64) -> f64 {
+    let is_stopped = state.kinetic_energy == 0.0 && state.frame.acceleration.norm_squared() == 0.0;
+    if is_stopped {
+        (2.0 * state.elastic_energy.max(0.0) / mass).sqrt()
+    } else {
+        0.0
     }
 }

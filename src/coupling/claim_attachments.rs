@@ -3,7 +3,7 @@
 use super::claim::Claims;
 use super::filter::claimable_body;
 use super::sets::RapierSets;
-use crate::body::{AttachmentTarget, FlexBodySet};
+use crate::body::{AttachmentTarget, FlexBody, FlexBodySet};
 use crate::rapier::prelude::*;
 
 /// An attachment taking part in the step.
@@ -33,6 +33,13 @@ impl Claims {
             let Some(flex) = slot_of(attachment.body()) else {
                 continue;
             };
+            let is_out = |handle| {
+                let body = flex_bodies.get(handle);
+                body.is_some_and(FlexBody::is_quarantined)
+            };
+            if matches!(attachment.target(), AttachmentTarget::Flexible(other) if is_out(other)) {
+                continue;
+            }
             let (other, rigid) = match attachment.target() {
                 AttachmentTarget::World => (None, None),
                 AttachmentTarget::RigidBody(handle) => (None, Some(handle)),

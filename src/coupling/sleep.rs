@@ -54,7 +54,7 @@ pub(crate) fn is_asleep(body: &FlexBody, bodies: &RigidBodySet) -> bool {
 /// Wakes the bodies that the user changed; all of them if `all`.
 pub(crate) fn wake_disturbed(sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet, all: bool) {
     for (_, body) in flex_bodies.iter_mut() {
-        if body.is_disturbed() || all {
+        if !body.is_quarantined() && (body.is_disturbed() || all) {
             body.clear_disturbance();
             sets.islands
                 .wake_up(sets.bodies, body.rigid_body_handle(), true);
@@ -65,7 +65,9 @@ pub(crate) fn wake_disturbed(sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBo
 impl Claims {
     /// Whether all that could move sleeps, so that there is nothing to do.
     pub fn is_all_asleep(&self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
-        let is_quiet = |body: &FlexBody| !body.is_disturbed() && is_asleep(body, sets.bodies);
+        let is_quiet = |body: &FlexBody| {
+            body.is_quarantined() || !body.is_disturbed() && is_asleep(body, sets.bodies)
+        };
         self.rests_all_rigid(sets) && flex_bodies.iter().all(|(_, body)| is_quiet(body))
     }
 

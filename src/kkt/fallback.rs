@@ -30,12 +30,13 @@ impl Island {
         // Bodies that stick in each other may ask for what no position can give.
         self.ignores_overlaps = true;
         self.start_again(settings, tolerance, memory);
-        if self.iterate(settings, memory, tolerance, summary) {
+        if self.iterate(settings, memory, tolerance, summary) && !self.is_astray() {
             return;
         }
         let is_solved = self
             .linear_step(settings, memory, tolerance, summary)
-            .is_ok();
+            .is_ok()
+            && !self.passes_through();
         let has_joints = !self.ties.is_empty();
         let is_thrown = self.blocks.iter().any(|block| match block {
             Block::Flex(block) => block.excess_motion() > THROWN,

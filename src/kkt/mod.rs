@@ -20,6 +20,7 @@ mod joint_velocity;
 mod momentum;
 mod multipliers;
 mod partner;
+mod passage;
 mod position;
 mod velocity;
 

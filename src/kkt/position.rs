@@ -63,7 +63,8 @@ impl Island {
                 self.iterate_functions(&trial, summary)
             }
         };
-        if !is_solved && !self.iterate(settings, memory, tolerance, summary) {
+        let is_solved = is_solved || self.iterate(settings, memory, tolerance, summary);
+        if !is_solved || self.is_astray() {
             self.fall_back(settings, memory, tolerance, summary);
         }
         if !self.ties.is_empty() {

@@ -2,7 +2,7 @@
 
 use super::error::StepError;
 use super::flex_pipeline::FlexPipeline;
-use crate::body::{FlexBody, FlexBodyError, FlexBodySet};
+use crate::body::{FlexBody, FlexBodyError, FlexBodyHandle, FlexBodySet};
 use crate::coupling::{RapierSets, is_asleep, is_carried, is_held_motion};
 use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
@@ -42,7 +42,7 @@ impl FlexPipeline {
         flex_bodies: &FlexBodySet,
     ) -> Result<(), StepError> {
         for (handle, body) in flex_bodies.iter() {
-            if is_asleep(body, sets.bodies) {
+            if body.is_quarantined() || is_asleep(body, sets.bodies) {
                 continue;
             }
             if !is_carried(body, sets.bodies, sets.colliders) {
@@ -86,7 +86,9 @@ impl FlexPipeline {
             if let (Block::Flex(block), Some(index)) = (block, index) {
                 let is_finite = are_held(block.positions()) && are_held(block.velocities());
                 if let (false, Some((handle, _))) = (is_finite, flex_bodies.at_index(*index)) {
-                    return Err(StepError::NotFinite(handle));
+                    return Err(StepError::NotFinite(
+                        self.overloaded(flex_bodies).unwrap_or(handle),
+                    ));
                 }
             }
         }
@@ -101,30 +103,35 @@ impl FlexPipeline {
         Ok(())
     }
 
+    /// The body of the island whose loads alone send it beyond what can be held: what touches it suffers, but is not to blame.
+    fn overloaded(&self, flex_bodies: &FlexBodySet) -> Option<FlexBodyHandle> {
+        let mut members = self.island.blocks.iter().zip(&self.island.flex_index);
+        members.find_map(|(block, index)| match (block, index) {
+            (Block::Flex(block), Some(index)) if block.is_overloaded() => {
+                flex_bodies.at_index(*index).map(|(handle, _)| handle)
+            }
+            _ => None,
+        })
+    }
+
     /// The error with the handles of the bodies whose blocks it names, or whose loads it comes from.
     pub(super) fn name_bodies(&self, error: KktError, flex_bodies: &FlexBodySet) -> StepError {
+        if let (KktError::Contact(_), Some(body)) = (&error, self.overloaded(flex_bodies)) {
+            return StepError::NotFinite(body);
+        }
         let KktError::LightPartner {
             block,
             dt,
             critical,
         } = error
         else {
-            return self.overloaded(flex_bodies).unwrap_or(error.into());
+            return error.into();
         };
         let found = self.gatherer.bodies.iter().find(|found| found.0 == block);
         match found {
             Some(&(_, body)) => StepError::LightPartner { body, dt, critical },
             None => error.into(),
         }
-    }
-
-    /// The flexible body whose loads are beyond all measure.
-    fn overloaded(&self, flex_bodies: &FlexBodySet) -> Option<StepError> {
-        let mut members = self.island.blocks.iter().zip(&self.island.flex_index);
-        let (_, index) = members
-            .find(|(block, _)| matches!(block, Block::Flex(block) if block.is_overloaded()))?;
-        let (handle, _) = flex_bodies.at_index((*index)?)?;
-        Some(StepError::NotFinite(handle))
     }
 
     /// Leaves no trace of a step that failed, before which energy of `dissipated` was lost (J).

@@ -3,7 +3,7 @@
 use super::error::StepError;
 use super::joint_accounts::drop_orphans;
 use super::report::StepReport;
-use crate::body::FlexBodySet;
+use crate::body::{FlexBodyHandle, FlexBodySet};
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
     Claims, EventBook, GatherSettings, Gatherer, HookGate, JointImpulse, Landing, Masters,
@@ -60,6 +60,8 @@ pub struct FlexPipeline {
     components: Vec<usize>,
     pub(super) events: EventBook,
     pub(super) report: StepReport,
+    /// Bodies taken out of the world in this step.
+    pub(super) sick: Vec<FlexBodyHandle>,
 }
 
 impl Default for FlexPipeline {
@@ -90,6 +92,7 @@ impl FlexPipeline {
             components: Vec::new(),
             events: EventBook::default(),
             report: StepReport::default(),
+            sick: Vec::new(),
         }
     }
 
@@ -184,6 +187,16 @@ impl FlexPipeline {
         mut sets: RapierSets<'_>,
         flex_bodies: &mut FlexBodySet,
     ) -> Result<&StepReport, StepError> {
+        self.step_without_the_sick(&mut sets, flex_bodies)?;
+        Ok(&self.report)
+    }
+
+    /// One try of a step.
+    pub(super) fn try_step(
+        &mut self,
+        sets: &mut RapierSets<'_>,
+        flex_bodies: &mut FlexBodySet,
+    ) -> Result<(), StepError> {
         self.report.clear();
         let (user, hooks) = (sets.events, sets.hooks);
         if flex_bodies.is_empty() {
@@ -191,82 +204,82 @@ impl FlexPipeline {
                 sets.step();
             } else {
                 sets.step_through(hooks, &self.events.gate(user, None));
-                self.events.tell(&sets);
+                self.events.tell(sets);
             }
-            return Ok(&self.report);
+            return Ok(());
         }
         let mut clock = Clock::start();
         let dissipated = self.report.energy.dissipated;
-        let step = self.check(&sets)?;
-        let change = self.claims.look_for_changes(&sets, flex_bodies);
+        let step = self.check(sets)?;
+        let change = self.claims.look_for_changes(sets, flex_bodies);
         let is_quiet = step.dt > 0.0 && change == WorldChange::None;
-        if is_quiet && self.claims.is_all_asleep(&sets, flex_bodies) {
-            self.step_asleep(&mut sets, flex_bodies.len());
-            return Ok(&self.report);
+        if is_quiet && self.claims.is_all_asleep(sets, flex_bodies) {
+            self.step_asleep(sets, flex_bodies.len());
+            return Ok(());
         }
-        self.check_bodies(step.dt, &sets, flex_bodies)?;
-        self.claims.note_world(&sets);
-        drop_orphans(&sets, flex_bodies);
+        self.check_bodies(step.dt, sets, flex_bodies)?;
+        self.claims.note_world(sets);
+        drop_orphans(sets, flex_bodies);
         sync_settings(flex_bodies, sets.colliders);
-        wake_disturbed(&mut sets, flex_bodies, change == WorldChange::Everywhere);
+        wake_disturbed(sets, flex_bodies, change == WorldChange::Everywhere);
         let is_changed = change == WorldChange::Somewhere;
         if is_changed {
-            self.wake_for_changes(&mut sets, flex_bodies);
+            self.wake_for_changes(sets, flex_bodies);
         }
-        self.claims.look_ahead(&sets, flex_bodies);
-        while self.claims.wake_met(&mut sets) {
-            self.claims.look_ahead(&sets, flex_bodies);
+        self.claims.look_ahead(sets, flex_bodies);
+        while self.claims.wake_met(sets) {
+            self.claims.look_ahead(sets, flex_bodies);
         }
         self.report.n_asleep = self.claims.n_asleep();
-        if let Some(joint) = self.claims.joint_to_carrier(&sets) {
+        if let Some(joint) = self.claims.joint_to_carrier(sets) {
             return Err(StepError::CarrierJoint(joint));
         }
         let is_detected = step.dt == 0.0
             || is_changed
-            || self.claims.needs_detection(&sets)
-            || self.claims.has_attached_bodies(&sets);
+            || self.claims.needs_detection(sets)
+            || self.claims.has_attached_bodies(sets);
         clock.lap(&mut self.report.times.claim);
         self.report.is_detected = is_detected;
         if is_detected {
             if !is_changed {
-                self.detect(&mut sets);
-                self.report.note_quarantine(&sets);
+                self.detect(sets);
+                self.report.note_quarantine(sets);
             }
             clock.lap(&mut self.report.times.rapier);
             if step.dt == 0.0 {
                 // The tree may be out to be optimized: a detection step without changes puts it back for queries.
-                self.detect(&mut sets);
-                self.events.tell_detected(&sets);
-                return Ok(&self.report);
+                self.detect(sets);
+                self.events.tell_detected(sets);
+                return Ok(());
             }
-            self.claims.sweep(&sets);
+            self.claims.sweep(sets);
         }
-        self.claims.walk(&sets);
-        self.gatherer.retain(&sets, flex_bodies);
+        self.claims.walk(sets);
+        self.gatherer.retain(sets, flex_bodies);
         clock.lap(&mut self.report.times.claim);
-        if let Err(error) = self.solve_islands(step, &sets, flex_bodies, &mut clock) {
+        if let Err(error) = self.solve_islands(step, sets, flex_bodies, &mut clock) {
             self.undo(flex_bodies, dissipated);
             if is_detected {
                 // As above.
-                self.detect(&mut sets);
+                self.detect(sets);
             }
             return Err(error);
         }
-        self.keep_awake(&mut sets, flex_bodies);
-        hand_back(&mut self.landings, &mut sets);
+        self.keep_awake(sets, flex_bodies);
+        hand_back(&mut self.landings, sets);
         clock.lap(&mut self.report.times.hand_back);
         let gate = self.hook_gate(hooks, true);
         sets.step_through(&gate, &self.events.gate(user, Some(&self.claims)));
-        self.report.note_quarantine(&sets);
+        self.report.note_quarantine(sets);
         clock.lap(&mut self.report.times.rapier);
-        self.wake_moving(&mut sets, flex_bodies);
-        land(&self.landings, &mut sets, &mut self.masters);
-        write_impulses(&self.joint_impulses, &mut sets);
+        self.wake_moving(sets, flex_bodies);
+        land(&self.landings, sets, &mut self.masters);
+        write_impulses(&self.joint_impulses, sets);
         self.commit_attachments(flex_bodies);
-        self.commit(&mut sets, flex_bodies);
-        self.events.tell(&sets);
+        self.commit(sets, flex_bodies);
+        self.events.tell(sets);
         clock.lap(&mut self.report.times.hand_back);
-        Ok(&self.report)
+        Ok(())
     }
 
     /// Rapier's step without length: what it stops is not told before the full step confirms it.

@@ -7,6 +7,7 @@ mod debug_render;
 mod error;
 mod flex_pipeline;
 mod joint_accounts;
+mod quarantine;
 mod report;
 mod rest;
 mod settings;

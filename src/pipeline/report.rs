@@ -132,6 +132,7 @@ pub struct StepReport {
     pub(super) n_pivots: usize,
     pub(super) n_factorizations: u64,
     pub(super) times: StageTimes,
+    pub(super) quarantined_flex_bodies: Vec<FlexBodyHandle>,
     pub(super) quarantined_bodies: Vec<RigidBodyHandle>,
     pub(super) quarantined_colliders: Vec<ColliderHandle>,
 }
@@ -249,6 +250,12 @@ impl StepReport {
     /// Time per stage.
     pub fn times(&self) -> &StageTimes {
         &self.times
+    }
+
+    /// Flexible bodies that left the world in this step because their motion would not have been finite: mend them and call
+    /// [`FlexBodySet::reinstate`](crate::body::FlexBodySet::reinstate), or remove them.
+    pub fn quarantined_flex_bodies(&self) -> &[FlexBodyHandle] {
+        &self.quarantined_flex_bodies
     }
 
     /// Rigid bodies that rapier disabled because their motion was not finite, in either of its two steps; its own list

@@ -94,6 +94,7 @@ pub struct FlexBlock {
     pub(super) inertia: f64,
     /// Whether the step is linearised; see [`FlexBlock::linearize`].
     pub(super) is_linear: bool,
+    pub(super) middle_cell: usize,
     pub(super) explicit: Explicit,
 }
 
@@ -174,6 +175,7 @@ impl FlexBlock {
             torque: 0.0,
             inertia: 0.0,
             is_linear: false,
+            middle_cell: model.mesh().middle_cell(),
             explicit,
             model,
         }

@@ -76,6 +76,11 @@ impl FlexBlock {
         !is_held(self.step.dt * most / self.arms.mass)
     }
 
+    /// Length of the step (s).
+    pub fn step_length(&self) -> f64 {
+        self.step.dt
+    }
+
     /// Largest velocity component of a node at the beginning, and in and at the end of the step (m/s).
     pub fn fastest(&self) -> [f64; 2] {
         let largest = |velocity: &[f64]| velocity.iter().fold(0.0f64, |most, v| most.max(v.abs()));
@@ -83,6 +88,11 @@ impl FlexBlock {
         let moved = moved.fold(0.0f64, |most, (end, start)| most.max((end - start).abs()));
         let end = largest(&self.velocity).max(moved / self.step.dt);
         [largest(&self.start_velocity), end]
+    }
+
+    /// Corners of the cell nearest to the middle of the body.
+    pub fn middle_cell(&self) -> &[usize] {
+        self.model.mesh().cell(self.middle_cell).corners()
     }
 
     /// How far a node has moved beyond what its own velocity would have done, relative to the body (-).

@@ -62,6 +62,9 @@ impl Cone {
 const POINTING: f64 = 0.25;
 
 /// The segment that a point crossed inwards during the step, the shallowest if there are several.
+///
+/// One that the point is still behind comes before one that it only passed through on its way: what flies on along the
+/// surface is held by the line of the segment, at the place where it came in.
 fn entered_segment(
     block: &FlexBlock,
     segments: &[u32],
@@ -70,33 +73,72 @@ fn entered_segment(
 ) -> Option<SurfacePoint> {
     let boundary = block.model().mesh().boundary();
     let mut entered: Option<SurfacePoint> = None;
+    let mut passed: Option<SurfacePoint> = None;
     for &segment in segments {
         let [a, b] = boundary.segments()[segment as usize];
         let (from, to) = (block.position(a), block.position(b));
         let along = to - from;
-        let normal = -perp(along).normalize();
-        let distance = normal.dot(&(point - from));
-        let xi = (point - from).dot(&along) / along.norm_squared();
-        if distance >= 0.0 || !(-ENTRY_SLOP..=1.0 + ENTRY_SLOP).contains(&xi) {
+        let offset = point - from;
+        let area = -perp(along).dot(&offset);
+        if area >= 0.0 {
             continue;
         }
+        let normal = -perp(along).normalize();
         if cone.is_some_and(|cone| !cone.faces(normal)) {
             continue;
         }
-        let (from, to) = (block.start_position(a), block.start_position(b));
-        let outward = -perp(to - from);
-        let was_outside = outward.dot(&(start - from)) >= -ENTRY_SLOP * outward.norm_squared();
-        if was_outside && entered.is_none_or(|best| distance > best.distance) {
-            let xi = xi.clamp(0.0, 1.0);
-            entered = Some(SurfacePoint {
+        let (start_from, start_to) = (block.start_position(a), block.start_position(b));
+        let start_along = start_to - start_from;
+        let start_offset = start - start_from;
+        let start_area = -perp(start_along).dot(&start_offset);
+        if start_area < -ENTRY_SLOP * start_along.norm_squared() {
+            continue;
+        }
+        let within = -ENTRY_SLOP..=1.0 + ENTRY_SLOP;
+        let end_xi = offset.dot(&along) / along.norm_squared();
+        let is_behind = within.contains(&end_xi);
+        if !is_behind && start_area <= ENTRY_SLOP * start_along.norm_squared() {
+            // What began on the line of a segment has not come through it beside its end.
+            continue;
+        }
+        let xi = if is_behind {
+            end_xi
+        } else {
+            crossing([start_along, along], [start_offset, offset])
+        };
+        let best = if is_behind { &mut entered } else { &mut passed };
+        let distance = area / along.norm();
+        if within.contains(&xi) && best.is_none_or(|best| distance > best.distance) {
+            *best = Some(SurfacePoint {
                 segment: segment as usize,
-                xi,
+                xi: xi.clamp(0.0, 1.0),
                 normal,
                 distance,
             });
         }
     }
-    entered
+    entered.or(passed)
+}
+
+/// Where on a segment, which goes `along`, a point at `offset` from its first node comes to lie on its line, as all move straight
+/// from the first to the second of each pair, from one side of the line to the other.
+fn crossing(along: [Vec2; 2], offset: [Vec2; 2]) -> f64 {
+    let area = |one: Vec2, other: Vec2| perp(one).dot(&other);
+    // The area between both is `(1-t)² s + t (1-t) m + t² e`, which changes sign once.
+    let end = area(along[1], offset[1]);
+    let start = area(along[0], offset[0]);
+    let start = if start * end < 0.0 { start } else { 0.0 };
+    let mixed = area(along[0], offset[1]) + area(along[1], offset[0]);
+    let (a, b) = (start - mixed + end, mixed - 2.0 * start);
+    let q = 0.5 * ((b * b - 4.0 * a * start).max(0.0).sqrt().copysign(b) + b);
+    let roots = [-start / q, -q / a];
+    let time = roots
+        .into_iter()
+        .find(|time| (0.0..=1.0).contains(time))
+        .unwrap_or(0.0);
+    let along = along[0] + time * (along[1] - along[0]);
+    let offset = offset[0] + time * (offset[1] - offset[0]);
+    offset.dot(&along) / along.norm_squared()
 }
 
 /// Part of a segment's length by which a point may miss it and still count as having come in through it.
@@ -260,7 +302,21 @@ pub(super) fn facing_point(
     let normal = -perp(along).normalize();
     let distance = normal.dot(&(point - from));
     let xi = (point - from).dot(&along) / along.norm_squared();
-    (distance > 0.0 && xi > 0.0 && xi < 1.0).then_some(SurfacePoint {
+    if !(distance > 0.0 && xi > 0.0 && xi < 1.0) {
+        return None;
+    }
+    // What came through the body from behind has been met on its other side.
+    let start_from = block.start_position(a);
+    let start_along = block.start_position(b) - start_from;
+    let start_offset = start - start_from;
+    let was_behind =
+        -perp(start_along).dot(&start_offset) < -ENTRY_SLOP * start_along.norm_squared();
+    let came_through = was_behind
+        && (0.0..=1.0).contains(&crossing(
+            [start_along, along],
+            [start_offset, point - from],
+        ));
+    (!came_through).then_some(SurfacePoint {
         segment: segment as usize,
         xi,
         normal,

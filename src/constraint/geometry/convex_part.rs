@@ -194,8 +194,9 @@ impl ConvexPart {
         self.size
     }
 
+    /// Middle of its bounding box, in its own coordinates (m).
     #[inline]
-    pub(super) fn middle(&self) -> Vec2 {
+    pub fn middle(&self) -> Vec2 {
         self.middle
     }
 

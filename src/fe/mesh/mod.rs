@@ -209,6 +209,21 @@ impl Mesh {
         [origin[0] + moment[0] / area, origin[1] + moment[1] / area]
     }
 
+    /// The cell nearest to the centroid.
+    pub fn middle_cell(&self) -> usize {
+        let [x, y] = self.centroid();
+        let off = |cell: &usize| {
+            let corners = self.cell(*cell).corners();
+            let sum = corners.iter().fold([0.0; 2], |[sx, sy], &node| {
+                [sx + self.nodes[node][0], sy + self.nodes[node][1]]
+            });
+            let n = corners.len() as f64;
+            (sum[0] / n - x).hypot(sum[1] / n - y)
+        };
+        let nearest = (0..self.n_cells()).min_by(|one, other| off(one).total_cmp(&off(other)));
+        nearest.unwrap_or(0)
+    }
+
     /// Measures of the shape of the cells.
     pub fn quality(&self) -> Quality {
         Quality::measure(self)

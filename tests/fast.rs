@@ -1,0 +1,10 @@
+//! Fast bodies: whatever hits, at whatever speed, stays on its side.
+
+#[path = "common/mod.rs"]
+mod common;
+#[path = "fast/crossing.rs"]
+mod crossing;
+#[path = "fast/range.rs"]
+mod range;
+#[path = "fast/shots.rs"]
+mod shots;
