@@ -245,6 +245,7 @@ impl FlexBlock {
         self.start_acceleration.copy_from_slice(&state.acceleration);
         self.start_frame = state.frame;
         self.start_torque = state.torque;
+        self.torque = state.torque;
         self.start_energy = [state.kinetic_energy, state.elastic_energy];
         self.prescribed.copy_from_slice(load.prescribed);
         self.start_reaction.copy_from_slice(load.reaction);
