@@ -56,9 +56,9 @@ impl PressedPoint {
 /// What the handler was told about pairs of carriers and claimed bodies.
 #[derive(Debug, Default)]
 pub(crate) struct EventBook {
-    heard: Mutex<Heard>,
+    pub(super) heard: Mutex<Heard>,
     /// Pairs that pressed in the last step: whether above their threshold.
-    pressed: HashMap<PairName, bool>,
+    pub(super) pressed: HashMap<PairName, bool>,
     /// Those of the step before.
     pressed_before: HashMap<PairName, bool>,
     points: Vec<PressedPoint>,
@@ -67,11 +67,11 @@ pub(crate) struct EventBook {
 
 /// What came from rapier, and what of it was passed on.
 #[derive(Debug, Default)]
-struct Heard {
+pub(super) struct Heard {
     /// Pairs that the user knows to touch and rapier has not announced.
-    ahead: HashSet<PairName>,
+    pub(super) ahead: HashSet<PairName>,
     /// Events not passed on yet, in rapier's order.
-    held: Vec<CollisionEvent>,
+    pub(super) held: Vec<CollisionEvent>,
     pairs: ForcePairs,
 }
 

@@ -1,7 +1,7 @@
 //! The `f64` motion of claimed rigid bodies, kept from step to step while rapier's copy is the one we wrote.
 
 use super::shapes::pose_of;
-use crate::math::{Vec2, from_rapier};
+use crate::math::{Vec2, atan2, from_rapier};
 use crate::rapier::math::{Pose, Real, Vector};
 use crate::rapier::prelude::*;
 use crate::system::RigidMotion;
@@ -9,7 +9,11 @@ use std::collections::HashMap;
 
 /// What is kept of a claimed body.
 #[derive(Clone, Copy, Debug)]
-struct Master {
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub(super) struct Master {
     motion: RigidMotion,
     acceleration: [f64; 3],
     pose: Pose,
@@ -20,7 +24,7 @@ struct Master {
 /// Motions of all bodies claimed in the last step.
 #[derive(Debug, Default)]
 pub(crate) struct Masters {
-    last: HashMap<RigidBodyHandle, Master>,
+    pub(super) last: HashMap<RigidBodyHandle, Master>,
     next: HashMap<RigidBodyHandle, Master>,
 }
 
@@ -86,7 +90,7 @@ pub(crate) fn read_motion(body: &RigidBody) -> RigidMotion {
     let centre = pose.transform(local_centre(body));
     RigidMotion {
         centre,
-        angle: pose.sin.atan2(pose.cos),
+        angle: atan2(pose.sin, pose.cos),
         velocity: from_rapier(body.linvel()),
         spin: f64::from(body.angvel()),
     }

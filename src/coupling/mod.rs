@@ -20,6 +20,8 @@ mod masters;
 mod nearby;
 mod places;
 mod reading;
+#[cfg(feature = "serde-serialize")]
+mod record;
 mod references;
 mod rigid_pairs;
 mod sets;
@@ -35,6 +37,8 @@ pub(crate) use hooks::HookGate;
 pub(crate) use joints::{JointImpulse, write_impulses};
 pub(crate) use masters::Masters;
 pub(crate) use reading::{GatherError, is_held_motion};
+#[cfg(feature = "serde-serialize")]
+pub(crate) use record::CouplingRecord;
 pub use sets::RapierSets;
 pub(crate) use sleep::{
     is_all_asleep, is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving,

@@ -23,7 +23,7 @@ pub fn cross(a: Vec2, b: Vec2) -> f64 {
 /// The rotation matrix of an angle (rad).
 #[inline]
 pub fn rotation(angle: f64) -> Mat2 {
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = sin_cos(angle);
     Mat2::new(cos, -sin, sin, cos)
 }
 
@@ -56,6 +56,12 @@ pub fn add_node_vec(dofs: &mut [f64], node: usize, value: Vec2) {
     dofs[2 * node + 1] += value.y;
 }
 
+mod elementary;
+mod mix;
+#[cfg(feature = "serde-serialize")]
+pub(crate) mod ordered;
 mod real;
 
+pub use elementary::{atan, atan2, cos, exp, hypot, sin, sin_cos, tan};
+pub use mix::mix;
 pub use real::{from_rapier, is_held, to_rapier};
