@@ -459,6 +459,39 @@ fn library_code_has_no_unwrap_no_expect_no_todo_and_nothing_unsafe() {
     assert_none(&violations);
 }
 
+/// Files that only tell, or only check: no step depends on their last digit.
+const TELLERS: [&str; 3] = [
+    "integrator/amplification.rs",
+    "fe/element/conformance/",
+    "fe/mesh/quality.rs",
+];
+
+#[test]
+fn elementary_functions_have_one_place() {
+    let functions = [
+        "sin", "cos", "sin_cos", "tan", "asin", "acos", "atan", "atan2", "exp", "ln", "log10",
+        "log2", "powf", "cbrt", "hypot", "mul_add",
+    ];
+    let mut violations = Vec::new();
+    for source in &sources() {
+        let tells = TELLERS.iter().any(|teller| source.name.starts_with(teller));
+        if tells || source.name == "math/elementary.rs" {
+            continue;
+        }
+        for (at, word) in words(&source.code) {
+            let is_call = source.code[at + word.len()..].starts_with('(');
+            if functions.contains(&word) && is_call && source.code[..at].ends_with('.') {
+                violations.push(format!(
+                    "{}:{}: `.{word}()` is the operating system's: call `math::{word}`",
+                    source.name,
+                    source.line_of(at)
+                ));
+            }
+        }
+    }
+    assert_none(&violations);
+}
+
 #[test]
 fn no_source_file_outgrows_a_reader() {
     let violations: Vec<String> = sources()

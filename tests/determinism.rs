@@ -1,5 +1,8 @@
 //! The same scene gives the same bits, and the order in which bodies were inserted is not physics.
 
+#[path = "snapshot/scenes.rs"]
+mod scenes;
+
 use foil2d::body::BuildError;
 use foil2d::prelude::*;
 use foil2d::rapier::math::Real;
@@ -174,6 +177,93 @@ fn the_order_of_insertion_changes_no_bit() -> Result<(), BuildError> {
             other.step();
             assert_eq!(expected, other.hash(), "order {index}, step {step}");
         }
+    }
+    Ok(())
+}
+
+/// FNV-1a over the bits of every body, flexible and rigid, in the order of their handles.
+fn hash_of(run: &scenes::Run) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325u64;
+    let mut take = |value: f64| {
+        for byte in value.to_bits().to_le_bytes() {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    };
+    for (_, body) in run.flex_bodies.iter() {
+        body.positions().iter().for_each(|x| take(*x));
+        body.velocities().iter().for_each(|v| take(*v));
+        body.total_contact_force().into_iter().for_each(&mut take);
+    }
+    for (_, body) in run.world.bodies.iter() {
+        let (at, turn, v) = (body.translation(), body.rotation(), body.linvel());
+        let numbers: [Real; 7] = [at.x, at.y, turn.re, turn.im, v.x, v.y, body.angvel()];
+        numbers.map(f64::from).into_iter().for_each(&mut take);
+    }
+    hash
+}
+
+#[test]
+fn a_scene_of_everything_comes_to_the_same_bits_and_events_twice() {
+    let run = || {
+        let (mut run, log) = (scenes::everything(), scenes::Log::default());
+        (0..200).for_each(|_| run.step(&log));
+        (hash_of(&run), log.take())
+    };
+    assert_eq!(run(), run());
+}
+
+/// What 300 steps of a scene with contact, joints, attachments, hooks and sleep come to, on every machine. A change that moves
+/// results changes this number, and says so in its commit.
+#[cfg(all(feature = "enhanced-determinism", not(feature = "f64")))]
+#[test]
+fn a_scene_of_everything_comes_to_the_same_bits_on_every_platform() {
+    let mut run = scenes::everything();
+    let log = scenes::Log::default();
+    (0..300).for_each(|_| run.step(&log));
+    let found = hash_of(&run);
+    assert_eq!(found, 0xc788_2fcd_cdaa_c4ec, "found {found:#018x}");
+}
+
+/// Beside everything, enough boxes for rapier to share them out.
+#[cfg(feature = "parallel")]
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let of_threads = |n_threads: usize| {
+        let mut run = scenes::everything();
+        for index in 0..120 {
+            let (column, row) = (index % 20, index / 20);
+            let at = [18.0 + 0.31 * f64::from(column), 0.2 + 0.4 * f64::from(row)];
+            run.rigid(at, ColliderBuilder::cuboid(0.14, 0.14));
+        }
+        let pipeline = &mut run.world.physics_pipeline;
+        pipeline.configure_thread_pool(n_threads).expect("threads");
+        let log = scenes::Log::default();
+        (0..60).for_each(|_| run.step(&log));
+        (hash_of(&run), log.take())
+    };
+    let alone = of_threads(1);
+    for n_threads in [2, 3] {
+        let together = of_threads(n_threads);
+        assert_eq!(alone.0, together.0, "{n_threads} threads");
+        assert_eq!(alone.1, together.1, "events with {n_threads} threads");
+    }
+}
+
+#[test]
+fn bodies_far_away_change_no_bit_of_an_island() -> Result<(), BuildError> {
+    let order = [0, 1, 2, 3];
+    let mut alone = scene(order, order)?;
+    let mut beside = scene(order, order)?;
+    let far = flexible("block").translation([15.0, 0.3]);
+    beside.flex_bodies.insert(far, &mut beside.world)?;
+    let (body, collider) = rigid("crate");
+    beside
+        .world
+        .insert(body.translation(Vector::new(-15.0, 0.5)), collider);
+    for step in 0..200 {
+        alone.step();
+        beside.step();
+        assert_eq!(alone.state(), beside.state(), "step {step}");
     }
     Ok(())
 }

@@ -8,6 +8,10 @@ use crate::rapier::prelude::{
 
 /// How a body's surface meets others; the names and meanings are rapier's.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct ContactSettings {
     /// Coulomb's coefficient μ (-).
     pub friction: f64,

@@ -2,6 +2,7 @@
 
 use super::flex_body::FlexBody;
 use crate::fe::frequency::frequency_bound;
+use crate::math::hypot;
 
 impl FlexBody {
     /// An upper bound of the largest natural frequency of the body as it is held (rad/s), with nodes without mass held too,
@@ -16,7 +17,7 @@ impl FlexBody {
             let bound = frequency_bound(self.model(), self.fixed_dofs());
             let omega = bound.unwrap_or(f64::INFINITY);
             let ratio = 0.5 * self.model().rayleigh().stiffness * omega;
-            omega * (ratio + ratio.hypot(1.0))
+            omega * (ratio + hypot(ratio, 1.0))
         })
     }
 }

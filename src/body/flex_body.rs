@@ -13,9 +13,9 @@ use std::sync::{Arc, OnceLock};
 /// A flexible body.
 #[derive(Debug)]
 pub struct FlexBody {
-    model: Arc<Model>,
-    frame: Frame,
-    arms: Arms,
+    pub(super) model: Arc<Model>,
+    pub(super) frame: Frame,
+    pub(super) arms: Arms,
     pub(super) is_fixed: Vec<bool>,
     pub(super) prescribed: Vec<f64>,
     pub(super) nodal_force: Vec<f64>,
@@ -26,15 +26,15 @@ pub struct FlexBody {
     /// Anything the user wants to keep with the body.
     pub user_data: u128,
     pub(super) state: FlexState,
-    is_started: bool,
-    contact_force: Vec<f64>,
-    reaction: Vec<f64>,
-    energy_reserve: f64,
+    pub(super) is_started: bool,
+    pub(super) contact_force: Vec<f64>,
+    pub(super) reaction: Vec<f64>,
+    pub(super) energy_reserve: f64,
     pub(super) frequency: OnceLock<f64>,
-    carrier: RigidBodyHandle,
-    collider: ColliderHandle,
+    pub(super) carrier: RigidBodyHandle,
+    pub(super) collider: ColliderHandle,
     pub(super) is_disturbed: bool,
-    is_quarantined: bool,
+    pub(super) is_quarantined: bool,
 }
 
 impl FlexBody {

@@ -3,10 +3,14 @@
 //! The elastic force is `R K u`, completed by the torque that makes the internal forces free of a resultant moment.
 
 use crate::fe::model::Model;
-use crate::math::{Vec2, cross, node_vec};
+use crate::math::{Vec2, atan2, cross, node_vec};
 
 /// What a body's frame may do, decided by its pins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum Frame {
     /// The pins hold the rotation: the frame keeps the orientation it was built with.
     Fixed,
@@ -107,7 +111,7 @@ impl Arms {
             sine += cross(moment, x);
             cosine += moment.dot(&x);
         }
-        let angle = sine.atan2(cosine);
+        let angle = atan2(sine, cosine);
         angle + ((near - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
     }
 

@@ -2,6 +2,10 @@
 
 /// Names a flexible body of one set; stays invalid for ever once the body is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct FlexBodyHandle {
     pub(super) set: u32,
     pub(super) index: u32,

@@ -11,6 +11,8 @@ mod frame;
 mod handle;
 mod pick;
 mod pin;
+#[cfg(feature = "serde-serialize")]
+mod record;
 mod set;
 mod state;
 mod steering;
@@ -28,5 +30,7 @@ pub use frame::{Arms, Frame, frame_of_pins};
 pub use handle::FlexBodyHandle;
 pub use pick::SurfacePick;
 pub use pin::Pin;
+#[cfg(feature = "serde-serialize")]
+pub(crate) use record::{SetRecord, SetRecordError};
 pub use set::FlexBodySet;
 pub use state::{BodyEnergy, FlexState, FrameMotion};

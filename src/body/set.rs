@@ -14,16 +14,16 @@ static NEXT_SET: AtomicU32 = AtomicU32::new(0);
 /// Bodies are visited in the order of their slots, so results do not depend on hashing.
 #[derive(Debug)]
 pub struct FlexBodySet {
-    id: u32,
-    slots: Vec<Slot>,
-    vacant: Vec<u32>,
+    pub(super) id: u32,
+    pub(super) slots: Vec<Slot>,
+    pub(super) vacant: Vec<u32>,
     attachments: Attachments,
 }
 
 #[derive(Debug)]
-struct Slot {
-    generation: u32,
-    body: Option<FlexBody>,
+pub(super) struct Slot {
+    pub(super) generation: u32,
+    pub(super) body: Option<FlexBody>,
 }
 
 impl Default for FlexBodySet {
@@ -40,6 +40,23 @@ impl FlexBodySet {
             slots: Vec::new(),
             vacant: Vec::new(),
             attachments: Attachments::default(),
+        }
+    }
+
+    /// A set of parts that fit each other; sets made from now on have other numbers.
+    #[cfg(feature = "serde-serialize")]
+    pub(super) fn from_parts(
+        id: u32,
+        slots: Vec<Slot>,
+        vacant: Vec<u32>,
+        attachments: Attachments,
+    ) -> Self {
+        NEXT_SET.fetch_max(id.wrapping_add(1), Ordering::Relaxed);
+        Self {
+            id,
+            slots,
+            vacant,
+            attachments,
         }
     }
 

@@ -8,6 +8,10 @@ use crate::math::{Vec2, cross, node_vec, perp, rotation, set_node_vec};
 
 /// Rigid motion of a body's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct FrameMotion {
     /// Centre `c` (m).
     pub centre: Vec2,
@@ -34,6 +38,10 @@ pub struct BodyEnergy {
 
 /// The committed motion of a flexible body; nodal vectors are interleaved.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct FlexState {
     /// World positions (m).
     pub position: Vec<f64>,

@@ -6,7 +6,7 @@ use crate::constraint::contact::{
 };
 use crate::constraint::geometry::Pose2;
 use crate::kkt::Island;
-use crate::math::Vec2;
+use crate::math::{Vec2, atan2};
 use crate::system::{Block, FlexBlock, RigidBlock, RigidMotion};
 
 /// A box that grows.
@@ -76,7 +76,7 @@ fn segment_bounds(block: &FlexBlock, segment: usize) -> Bounds {
 
 /// World pose of a part on a body moving as `motion`.
 pub(super) fn world_pose(motion: &RigidMotion, part: &PlacedPart) -> Pose2 {
-    let angle = part.pose.sin.atan2(part.pose.cos) + motion.angle;
+    let angle = atan2(part.pose.sin, part.pose.cos) + motion.angle;
     Pose2::new(motion.point(part.pose.translation), angle)
 }
 
@@ -96,7 +96,7 @@ pub(super) fn add_parts(
 ) -> std::ops::Range<usize> {
     let first = island.parts.len();
     for shape in parts {
-        let turn = offset.sin.atan2(offset.cos) + shape.pose.sin.atan2(shape.pose.cos);
+        let turn = atan2(offset.sin, offset.cos) + atan2(shape.pose.sin, shape.pose.cos);
         let pose = Pose2::new(offset.transform(shape.pose.translation), turn);
         island.parts.push(PlacedPart {
             part: shape.part.clone(),
@@ -306,5 +306,5 @@ fn is_sharp_corner(block: &FlexBlock, index: usize) -> bool {
         block.start_position(after) - block.start_position(at),
     );
     let sine = crate::math::cross(incoming, outgoing);
-    sine > 0.0 && sine.atan2(incoming.dot(&outgoing)) > 30f64.to_radians()
+    sine > 0.0 && atan2(sine, incoming.dot(&outgoing)) > 30f64.to_radians()
 }

@@ -20,8 +20,8 @@ pub(super) struct Changes {
     pub bodies: Vec<RigidBodyHandle>,
     /// Marked colliders and those of marked bodies; some twice.
     pub colliders: Vec<ColliderHandle>,
-    n_colliders: usize,
-    gravity: Vector,
+    pub n_colliders: usize,
+    pub gravity: Vector,
 }
 
 /// What may end the rest of a flexible body that sleeps.

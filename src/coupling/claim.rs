@@ -62,7 +62,7 @@ pub(crate) struct Claims {
     pub(super) partners: Vec<(RigidBodyHandle, ImpulseJointHandle)>,
     /// Component of every member: flexible bodies first, then rigid ones.
     parent: Vec<usize>,
-    rigid_index: HashMap<RigidBodyHandle, usize>,
+    pub(super) rigid_index: HashMap<RigidBodyHandle, usize>,
     pub(super) flex_of_collider: HashMap<ColliderHandle, usize>,
     seen: HashSet<(ColliderHandle, ColliderHandle)>,
     /// What the swept boxes meet, by flexible body.
@@ -75,7 +75,7 @@ pub(crate) struct Claims {
     pub(super) woken: Vec<RigidBodyHandle>,
     pub(super) changes: Changes,
     /// What the user's filter said of pairs that it was asked about.
-    answers: HashMap<PairName, Option<SolverFlags>>,
+    pub(super) answers: HashMap<PairName, Option<SolverFlags>>,
 }
 
 impl Claims {

@@ -58,7 +58,7 @@ impl PressedPoint {
 pub(crate) struct EventBook {
     pub(super) heard: Mutex<Heard>,
     /// Pairs that pressed in the last step: whether above their threshold.
-    pressed: HashMap<PairName, bool>,
+    pub(super) pressed: HashMap<PairName, bool>,
     /// Those of the step before.
     pressed_before: HashMap<PairName, bool>,
     points: Vec<PressedPoint>,
@@ -69,9 +69,9 @@ pub(crate) struct EventBook {
 #[derive(Debug, Default)]
 pub(super) struct Heard {
     /// Pairs that the user knows to touch and rapier has not announced.
-    ahead: HashSet<PairName>,
+    pub(super) ahead: HashSet<PairName>,
     /// Events not passed on yet, in rapier's order.
-    held: Vec<CollisionEvent>,
+    pub(super) held: Vec<CollisionEvent>,
     /// Events of sensors that were left in the step without length, from there on.
     pub(super) left: Vec<CollisionEvent>,
     pairs: ForcePairs,

@@ -36,9 +36,9 @@ struct PlacedCollider {
 #[derive(Debug, Default)]
 pub(crate) struct Gatherer {
     /// One per slot of the flexible set.
-    pool: Vec<Option<Box<FlexBlock>>>,
+    pub(super) pool: Vec<Option<Box<FlexBlock>>>,
     shapes: ShapeCache,
-    references: References,
+    pub(super) references: References,
     placed: HashMap<ColliderHandle, PlacedCollider>,
     block_of_body: HashMap<RigidBodyHandle, usize>,
     flex_blocks: HashMap<usize, usize>,

@@ -5,7 +5,7 @@
 
 use super::masters::{Masters, cap_speed};
 use super::sets::RapierSets;
-use crate::math::{Vec2, from_rapier, to_rapier};
+use crate::math::{Vec2, atan2, from_rapier, tan, to_rapier};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use crate::system::RigidBlock;
@@ -53,7 +53,7 @@ pub(crate) fn hand_back(landings: &mut [Landing], sets: &mut RapierSets<'_>) {
         };
         landing.axes = body.locked_axes();
         let n = (iterations + body.additional_solver_iterations()).max(1) as f64;
-        let angle = f64::from(body.rotation().im).atan2(f64::from(body.rotation().re));
+        let angle = atan2(f64::from(body.rotation().im), f64::from(body.rotation().re));
         let turned = wrap(landing.motion.angle - angle);
         let moved = landing.motion.centre - from_rapier(body.center_of_mass());
         body.set_locked_axes(
@@ -62,7 +62,7 @@ pub(crate) fn hand_back(landings: &mut [Landing], sets: &mut RapierSets<'_>) {
         );
         body.set_linvel(to_rapier(moved / dt), false);
         // Rapier integrates a linearised rotation, `n` times per step.
-        body.set_angvel(((turned / n).tan() * n / dt) as Real, false);
+        body.set_angvel((tan(turned / n) * n / dt) as Real, false);
     }
 }
 

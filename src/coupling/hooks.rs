@@ -21,10 +21,10 @@ use std::collections::HashMap;
 /// What the hooks said of the contacts of the flexible stage.
 #[derive(Debug, Default)]
 pub(crate) struct HookBook {
-    last: HashMap<ContactKey, u32>,
+    pub(super) last: HashMap<ContactKey, u32>,
     next: HashMap<ContactKey, u32>,
     /// Pairs the hooks were asked about: whether they left any contact.
-    left: HashMap<PairName, bool>,
+    pub(super) left: HashMap<PairName, bool>,
     unseen: Vec<Candidate>,
 }
 

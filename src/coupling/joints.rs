@@ -11,7 +11,7 @@ use crate::constraint::joint::{
     JointGrip, JointKey, JointLaw, JointMemory, JointOwner, JointRow, Measure, Spring,
 };
 use crate::kkt::Island;
-use crate::math::{Vec2, from_rapier};
+use crate::math::{Vec2, atan2, from_rapier, sin_cos};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use crate::system::{Block, Point, RigidMotion};
@@ -59,7 +59,7 @@ impl Side {
         Self {
             block,
             arm: from_rapier(frame.translation) - local_centre(body),
-            angle: f64::from(frame.rotation.im).atan2(f64::from(frame.rotation.re)),
+            angle: atan2(f64::from(frame.rotation.im), f64::from(frame.rotation.re)),
         }
     }
 }
@@ -245,7 +245,7 @@ impl RowWriter<'_> {
     fn push(&mut self, kind: u32, axis: usize, measured: Axis, sign: f64, law: JointLaw) {
         let [first, second] = self.sides;
         let unit = |axis: usize| {
-            let (sin, cos) = first.angle.sin_cos();
+            let (sin, cos) = sin_cos(first.angle);
             if axis == 0 {
                 Vec2::new(cos, sin)
             } else {

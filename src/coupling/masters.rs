@@ -2,7 +2,7 @@
 
 use super::hand_back::Landing;
 use super::shapes::pose_of;
-use crate::math::{Vec2, from_rapier};
+use crate::math::{Vec2, atan2, from_rapier};
 use crate::rapier::math::{Pose, Real, Vector};
 use crate::rapier::prelude::*;
 use crate::system::RigidMotion;
@@ -10,7 +10,11 @@ use std::collections::HashMap;
 
 /// What is kept of a claimed body.
 #[derive(Clone, Copy, Debug)]
-struct Master {
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub(super) struct Master {
     motion: RigidMotion,
     acceleration: [f64; 3],
     drive: [f64; 3],
@@ -22,7 +26,7 @@ struct Master {
 /// Motions of all bodies claimed in the last step.
 #[derive(Debug, Default)]
 pub(crate) struct Masters {
-    last: HashMap<RigidBodyHandle, Master>,
+    pub(super) last: HashMap<RigidBodyHandle, Master>,
     next: HashMap<RigidBodyHandle, Master>,
 }
 
@@ -110,7 +114,7 @@ pub(crate) fn read_motion(body: &RigidBody) -> RigidMotion {
     let centre = pose.transform(local_centre(body));
     RigidMotion {
         centre,
-        angle: pose.sin.atan2(pose.cos),
+        angle: atan2(pose.sin, pose.cos),
         velocity: from_rapier(body.linvel()),
         spin: f64::from(body.angvel()),
     }

@@ -22,6 +22,8 @@ mod nearby;
 mod places;
 mod quarantine;
 mod reading;
+#[cfg(feature = "serde-serialize")]
+mod record;
 mod references;
 mod rigid_pairs;
 mod sensor_events;
@@ -40,5 +42,7 @@ pub(crate) use joints::{JointImpulse, write_impulses};
 pub(crate) use masters::Masters;
 pub(crate) use quarantine::{quarantine, quarantine_carriers};
 pub(crate) use reading::{GatherError, is_held_motion};
+#[cfg(feature = "serde-serialize")]
+pub(crate) use record::CouplingRecord;
 pub use sets::RapierSets;
 pub(crate) use sleep::{is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving};

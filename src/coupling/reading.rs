@@ -6,7 +6,7 @@ use crate::body::FlexBodyHandle;
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
 use crate::linalg::cholesky::CholeskyError;
-use crate::math::{Vec2, from_rapier, is_held};
+use crate::math::{Vec2, atan2, from_rapier, is_held};
 use crate::rapier::prelude::*;
 use crate::system::{RigidBlock, RigidLoad, RigidMotion};
 use thiserror::Error;
@@ -54,7 +54,7 @@ pub(super) fn offset_of(collider: &Collider, body: &RigidBody) -> Pose2 {
 pub(super) fn at_rest(pose: &Pose2) -> RigidMotion {
     RigidMotion {
         centre: pose.translation,
-        angle: pose.sin.atan2(pose.cos),
+        angle: atan2(pose.sin, pose.cos),
         ..RigidMotion::default()
     }
 }
@@ -76,7 +76,7 @@ pub(super) fn prescribed_block(body: &RigidBody, dt: f64) -> RigidBlock {
     };
     let next = pose_of(&next);
     let centre = next.transform(local_centre(body));
-    let turned = (next.sin.atan2(next.cos) - start.angle + std::f64::consts::PI)
+    let turned = (atan2(next.sin, next.cos) - start.angle + std::f64::consts::PI)
         .rem_euclid(std::f64::consts::TAU)
         - std::f64::consts::PI;
     let end = RigidMotion {

@@ -9,9 +9,15 @@ use std::collections::HashMap;
 type PartName = (Owner, u32);
 
 /// Reference faces by pair, looked up by key only.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub(super) struct References {
+    #[cfg_attr(feature = "serde-serialize", serde(with = "crate::math::ordered"))]
     last: HashMap<[PartName; 2], PairReference>,
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
     next: HashMap<[PartName; 2], PairReference>,
 }
 

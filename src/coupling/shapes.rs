@@ -1,7 +1,7 @@
 //! Rapier's shapes as rounded convex parts, converted once and kept until the shape changes.
 
 use crate::constraint::geometry::{ConvexPart, Pose2};
-use crate::math::{Vec2, from_rapier};
+use crate::math::{Vec2, atan2, from_rapier};
 use crate::rapier::math::Pose;
 use crate::rapier::parry::shape::{Shape, TypedShape};
 use crate::rapier::prelude::*;
@@ -69,7 +69,7 @@ impl ShapeCache {
 pub fn pose_of(pose: &Pose) -> Pose2 {
     // The rotation is normalized again: its f32 entries are a unit vector to 1e-7 only.
     let (cos, sin) = (f64::from(pose.rotation.re), f64::from(pose.rotation.im));
-    Pose2::new(from_rapier(pose.translation), sin.atan2(cos))
+    Pose2::new(from_rapier(pose.translation), atan2(sin, cos))
 }
 
 fn convert(shape: &dyn Shape, pose: Pose2, parts: &mut Vec<ShapePart>) {
@@ -132,7 +132,7 @@ fn convert(shape: &dyn Shape, pose: Pose2, parts: &mut Vec<ShapePart>) {
         TypedShape::Compound(compound) => {
             for (local, child) in compound.shapes() {
                 let local = pose_of(local);
-                let angle = pose.sin.atan2(pose.cos) + local.sin.atan2(local.cos);
+                let angle = atan2(pose.sin, pose.cos) + atan2(local.sin, local.cos);
                 let child_pose = Pose2::new(pose.transform(local.translation), angle);
                 convert(child.as_ref(), child_pose, parts);
             }

@@ -23,6 +23,10 @@ const SET_BACK: Real = 0.5;
 
 /// A flexible body whose carrier sleeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub(crate) struct Sleeper {
     /// Slot in the set.
     pub index: u32,

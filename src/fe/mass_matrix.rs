@@ -5,6 +5,10 @@ use crate::math::{Vec2, cross, node_vec, sum_over_dofs};
 
 /// How the mass of a body is represented.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum MassKind {
     /// Nodal masses (row sums; HRZ on quadratic elements).
     #[default]

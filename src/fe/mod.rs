@@ -9,6 +9,7 @@
 //! | [`model`] | `K`, `M` and stresses of one body |
 //! | [`mass`] | nodal masses with an inertia-free contact boundary |
 //! | [`frequency`] | the largest natural frequency, which bounds the step of explicit integration |
+//! | [`record`] | names of elements and materials in snapshots |
 //! | [`recovery`] | stresses at points and, smoothed, at nodes |
 //!
 //! SI units throughout; the strain order is `[e_xx, e_yy, g_xy]` with engineering shear.
@@ -21,4 +22,7 @@ mod massless;
 pub mod material;
 pub mod mesh;
 pub mod model;
+#[cfg(feature = "serde-serialize")]
+pub(crate) mod model_record;
+pub mod record;
 pub mod recovery;

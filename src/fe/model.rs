@@ -65,7 +65,7 @@ pub struct ModelDescription {
 /// The assembled, immutable finite-element model of one body.
 #[derive(Clone, Debug)]
 pub struct Model {
-    description: ModelDescription,
+    pub(super) description: ModelDescription,
     stiffness: BlockMatrix,
     mass: MassMatrix,
     /// For every massless node the massive nodes that stand for its velocity.

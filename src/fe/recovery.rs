@@ -5,6 +5,7 @@
 
 use super::element::{Element, ElementError, MAX_NODES, MAX_POINTS};
 use super::material::Material;
+use crate::math::{atan2, hypot};
 
 /// The stress at a point (Pa).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,8 +42,8 @@ impl Stress {
     pub fn principal(&self) -> (f64, f64, f64) {
         let mean = 0.5 * (self.xx + self.yy);
         let half = 0.5 * (self.xx - self.yy);
-        let radius = half.hypot(self.xy);
-        (mean + radius, mean - radius, 0.5 * self.xy.atan2(half))
+        let radius = hypot(half, self.xy);
+        (mean + radius, mean - radius, 0.5 * atan2(self.xy, half))
     }
 
     fn components(&self) -> [f64; 4] {

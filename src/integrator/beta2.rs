@@ -62,6 +62,10 @@ pub struct Weights {
 /// at 60 Hz, while the motion of a free body's frame is not damped at all. The trapezoidal rule keeps the energy of vibrations,
 /// but also keeps the remainder of every impact alternating in the contact forces of stiff bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct Beta2 {
     beta0: f64,
     beta1: f64,

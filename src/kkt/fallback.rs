@@ -4,6 +4,7 @@
 use super::island::{Island, IslandSummary, KktError, SolveSettings};
 use super::position::PARTING_RATE;
 use crate::constraint::contact::ContactMemory;
+use crate::math::exp;
 use crate::system::Block;
 
 /// Solves for the working set of a linearised step.
@@ -120,7 +121,7 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
-        let kept = (-PARTING_RATE * settings.dt).exp();
+        let kept = exp(-PARTING_RATE * settings.dt);
         summary.is_linearized = true;
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {

@@ -11,7 +11,7 @@ use super::island::{Island, SolveSettings};
 use super::position::PARTING_RATE;
 use crate::constraint::joint::{JointGrip, JointLaw, JointRow, Spring, When, unit_wrench};
 use crate::linalg::complementarity::{RowKind, Status};
-use crate::math::Vec2;
+use crate::math::{Vec2, exp};
 use crate::system::{Block, Point, Response};
 
 /// Violation at the beginning of a step (m or rad) beyond which a joint closes over several steps: someone has put it there.
@@ -280,7 +280,7 @@ fn resolve(
     (start, mobility): (f64, f64),
     settings: &SolveSettings,
 ) -> Resolved {
-    let kept = (-PARTING_RATE * settings.dt).exp();
+    let kept = exp(-PARTING_RATE * settings.dt);
     // A force over the step, λ, is `scale` times the multiplier.
     let scale = if is_hard {
         2.0 * settings.b0 / (settings.dt * settings.dt)

@@ -8,7 +8,7 @@ use super::constraint_function::{ContactMethod, Trial};
 use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
 use crate::constraint::contact::{Candidate, ContactMemory, Kinematics, Remembered, Scene};
 use crate::linalg::complementarity::Status;
-use crate::math::Vec2;
+use crate::math::{Vec2, exp};
 use crate::system::Block;
 
 /// Turning below this angle (rad) changes no position by more than round-off.
@@ -86,7 +86,7 @@ impl Island {
         tolerance: f64,
         memory: &ContactMemory,
     ) {
-        let kept = (-PARTING_RATE * settings.dt).exp();
+        let kept = exp(-PARTING_RATE * settings.dt);
         self.contacts.clear();
         self.is_working.clear();
         self.is_working.resize(self.candidates.len(), false);
@@ -102,7 +102,7 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) -> bool {
-        let kept = (-PARTING_RATE * settings.dt).exp();
+        let kept = exp(-PARTING_RATE * settings.dt);
         let mut peak = 0.0f64;
         for iteration in 0..settings.max_newton {
             summary.n_newton += 1;

@@ -23,7 +23,7 @@ pub fn cross(a: Vec2, b: Vec2) -> f64 {
 /// The rotation matrix of an angle (rad).
 #[inline]
 pub fn rotation(angle: f64) -> Mat2 {
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = sin_cos(angle);
     Mat2::new(cos, -sin, sin, cos)
 }
 
@@ -56,8 +56,14 @@ pub fn add_node_vec(dofs: &mut [f64], node: usize, value: Vec2) {
     dofs[2 * node + 1] += value.y;
 }
 
+mod elementary;
+mod mix;
+#[cfg(feature = "serde-serialize")]
+pub(crate) mod ordered;
 mod real;
 mod sum;
 
+pub use elementary::{atan, atan2, cos, exp, hypot, sin, sin_cos, tan};
+pub use mix::mix;
 pub use real::{are_held, from_rapier, is_held, to_rapier};
 pub use sum::{sum_over, sum_over_dofs};

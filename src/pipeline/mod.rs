@@ -11,6 +11,8 @@ mod quarantine;
 mod report;
 mod rest;
 mod settings;
+#[cfg(feature = "serde-serialize")]
+mod snapshot;
 
 #[cfg(feature = "debug-render")]
 pub use debug_render::FlexDebugRender;
@@ -19,3 +21,5 @@ pub use flex_pipeline::FlexPipeline;
 pub use report::{
     ContactReport, EnergyReport, Held, JointReport, Participant, StageTimes, StepReport,
 };
+#[cfg(feature = "serde-serialize")]
+pub use snapshot::{Snapshot, SnapshotError};

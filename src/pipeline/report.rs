@@ -6,6 +6,10 @@ use crate::rapier::prelude::{ColliderHandle, ImpulseJointHandle, RigidBodyHandle
 
 /// One side of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum Participant {
     /// A flexible body.
     Flex(FlexBodyHandle),
@@ -15,6 +19,10 @@ pub enum Participant {
 
 /// One closed contact at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct ContactReport {
     /// Position (m).
     pub position: [f64; 2],
@@ -39,6 +47,10 @@ pub struct ContactReport {
 
 /// What holds without touching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum Held {
     /// An impulse joint of rapier.
     Joint(ImpulseJointHandle),
@@ -48,6 +60,10 @@ pub enum Held {
 
 /// Reaction of one joint of claimed bodies, or of one attachment.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct JointReport {
     /// Which.
     pub joint: Held,
@@ -61,6 +77,10 @@ pub struct JointReport {
 
 /// Energy of all flexible and claimed rigid bodies (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct EnergyReport {
     /// Kinetic energy.
     pub kinetic: f64,
@@ -107,6 +127,10 @@ impl StageTimes {
 
 /// The outcome of the last step.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct StepReport {
     pub(super) contacts: Vec<ContactReport>,
     /// Contacts of the step before, of which those of sleepers are kept.
@@ -130,7 +154,10 @@ pub struct StepReport {
     pub(super) n_linearized: usize,
     pub(super) n_held: usize,
     pub(super) n_pivots: usize,
+    /// What was spent is no state.
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pub(super) n_factorizations: u64,
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pub(super) times: StageTimes,
     pub(super) quarantined_flex_bodies: Vec<FlexBodyHandle>,
     pub(super) quarantined_bodies: Vec<RigidBodyHandle>,

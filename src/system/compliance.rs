@@ -42,28 +42,21 @@ impl Compliance {
         self.columns.iter_mut().for_each(|column| *column = None);
     }
 
-    /// Computes the columns of `node`, and of the next unknown ones along the boundary, if they are not known yet;
-    /// returns whether they were new.
+    /// Computes the columns of `node` and of those of its group along the boundary, if they are not known yet; returns whether
+    /// they were new.
     pub fn prepare(&mut self, node: usize, is_fixed: &[bool], factor: &mut BlockCholesky) -> bool {
-        let first = self.slot[node] as usize;
-        if self.columns[first].is_some() {
+        let own = self.slot[node] as usize;
+        if self.columns[own].is_some() {
             return false;
         }
-        let n_boundary = self.boundary.len();
-        let mut batch = [first; BATCH];
-        let unknown = (first..n_boundary)
-            .chain(0..first)
-            .filter(|&slot| self.columns[slot].is_none());
-        let mut n_new = 0;
-        for (place, slot) in batch.iter_mut().zip(unknown) {
-            *place = slot;
-            n_new += 1;
-        }
-        let batch = &batch[..n_new];
+        // Groups that do not depend on who was asked for before: a column is the same bits whenever it is computed.
+        let first = own - own % BATCH;
+        let batch = first..self.boundary.len().min(first + BATCH);
+        let n_new = batch.len();
         let n_dofs = self.scratch.len() / (2 * BATCH);
         let responses = &mut self.scratch[..2 * n_new * n_dofs];
         responses.fill(0.0);
-        for (pair, &slot) in responses.chunks_exact_mut(2 * n_dofs).zip(batch) {
+        for (pair, slot) in responses.chunks_exact_mut(2 * n_dofs).zip(batch.clone()) {
             for axis in 0..2 {
                 let dof = 2 * self.boundary[slot] + axis;
                 if !is_fixed[dof] {
@@ -76,7 +69,7 @@ impl Compliance {
             .selection
             .get_or_insert_with(|| factor.select(boundary.iter().copied()));
         factor.solve_many_for(selection, responses, 2 * n_new);
-        for (pair, &slot) in responses.chunks_exact(2 * n_dofs).zip(batch) {
+        for (pair, slot) in responses.chunks_exact(2 * n_dofs).zip(batch) {
             let (x, y) = pair.split_at(n_dofs);
             let block = |&at: &usize| Mat2::new(x[2 * at], y[2 * at], x[2 * at + 1], y[2 * at + 1]);
             self.columns[slot] = Some(boundary.iter().map(block).collect());

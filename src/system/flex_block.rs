@@ -247,6 +247,7 @@ impl FlexBlock {
         self.start_acceleration.copy_from_slice(&state.acceleration);
         self.start_frame = state.frame;
         self.start_torque = state.torque;
+        self.torque = state.torque;
         self.start_energy = [state.kinetic_energy, state.elastic_energy];
         for &dof in &self.fixed_dofs {
             self.prescribed[dof] = load.prescribed[dof];

@@ -307,7 +307,11 @@ impl FlexBlock {
         state.velocity.copy_from_slice(&self.velocity);
         state.displacement.copy_from_slice(&self.displacement);
         state.frame = self.frame;
-        state.torque = self.torque;
+        state.torque = match self.kind {
+            // Nothing turns, and nobody asks.
+            Frame::Fixed => 0.0,
+            Frame::Free | Frame::Hinged(_) => self.torque,
+        };
         state.elastic_energy = self.end_elastic;
         state.kinetic_energy = kinetic_energy;
         state.acceleration.copy_from_slice(&self.increment);

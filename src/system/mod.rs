@@ -6,6 +6,8 @@
 mod compliance;
 mod explicit_block;
 mod explicit_motion;
+#[cfg(feature = "serde-serialize")]
+mod explicit_record;
 mod flex_block;
 mod flex_impulse;
 mod flex_momentum;
@@ -17,6 +19,8 @@ mod moments;
 mod rigid_block;
 mod step;
 
+#[cfg(feature = "serde-serialize")]
+pub(crate) use explicit_record::ExplicitRecord;
 pub use flex_block::FlexBlock;
 pub use flex_motion::Balance;
 pub use moments::Moments;

@@ -5,6 +5,10 @@ use crate::math::{Mat2, Vec2, perp, rotation};
 
 /// Position and velocity of a rigid body about its centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct RigidMotion {
     /// Centre of mass (m).
     pub centre: Vec2,

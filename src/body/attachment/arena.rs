@@ -5,6 +5,10 @@ use crate::body::{FlexBodyHandle, FlexBodySet};
 
 /// Names an attachment of one [`FlexBodySet`]; stays invalid for ever once it is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct AttachmentHandle {
     set: u32,
     index: u32,
@@ -18,14 +22,22 @@ impl AttachmentHandle {
     }
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 struct Slot {
     generation: u32,
     attachment: Option<Attachment>,
 }
 
 /// Attachments by handle, in the order of their slots.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub(crate) struct Attachments {
     slots: Vec<Slot>,
 }

@@ -19,6 +19,10 @@ use crate::rapier::prelude::RigidBodyHandle;
 
 /// What an attachment holds on to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum AttachmentTarget {
     /// The world; [`Attachment::set_target`] moves it.
     World,
@@ -30,6 +34,10 @@ pub enum AttachmentTarget {
 
 /// How an attachment holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum AttachmentKind {
     /// The mean of the nodes stays at a point of the target; the body may turn about it.
     Pin,
@@ -48,6 +56,10 @@ pub enum AttachmentKind {
 
 /// A point of the target that nodes are held at.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub(crate) enum Anchor {
     /// A point of the world or of a rigid body, in its coordinates (m).
     Point(Vec2),
@@ -57,6 +69,10 @@ pub(crate) enum Anchor {
 
 /// Offset and turn of the world's side of an attachment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub(crate) struct Shift {
     pub offset: Vec2,
     pub angle: f64,
@@ -64,6 +80,10 @@ pub(crate) struct Shift {
 
 /// One attachment of a flexible body.
 #[derive(Clone, Debug)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct Attachment {
     pub(crate) body: FlexBodyHandle,
     pub(crate) target: AttachmentTarget,

@@ -6,6 +6,10 @@ use crate::math::Vec2;
 
 /// What a point or a target belongs to, stable from step to step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum Owner {
     /// A flexible body, by its index in the set.
     Flex(u32),
@@ -15,6 +19,10 @@ pub enum Owner {
 
 /// Names a contact across steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct ContactKey {
     /// Owner of the point.
     pub contactor: Owner,

@@ -6,6 +6,10 @@ use std::collections::HashMap;
 
 /// The last state of one contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct Remembered {
     /// Normal multiplier of the position stage, compressive positive (N).
     pub normal: f64,
@@ -19,8 +23,14 @@ pub struct Remembered {
 ///
 /// Looked up by key only, never iterated, so that results do not depend on hashing.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct ContactMemory {
+    #[cfg_attr(feature = "serde-serialize", serde(with = "crate::math::ordered"))]
     last: HashMap<ContactKey, Remembered>,
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
     next: HashMap<ContactKey, Remembered>,
 }
 

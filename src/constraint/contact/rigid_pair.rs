@@ -6,7 +6,7 @@ use super::kinematics::{Kinematics, Scene, rigid_of};
 use crate::constraint::geometry::{
     Feature, PairContact, Pose2, crossing_overlap, entered_separation, start_separation,
 };
-use crate::math::{Vec2, perp, rotation};
+use crate::math::{Vec2, atan2, perp, rotation};
 use crate::system::{Point, RigidBlock, RigidMotion};
 
 /// Relative turn that counts as a straight piece of a vertex's path (rad).
@@ -180,7 +180,7 @@ fn deepest_crossing(
     let pose = |side: usize| {
         let motion = at(rigid_of(scene, blocks[side])?);
         let own = &scene.parts[parts[side]].pose;
-        let angle = own.sin.atan2(own.cos) + motion.angle;
+        let angle = atan2(own.sin, own.cos) + motion.angle;
         Some(Pose2::new(motion.point(own.translation), angle))
     };
     let [a, b] = parts.map(|part| &*scene.parts[part].part);

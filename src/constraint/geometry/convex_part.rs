@@ -19,6 +19,10 @@ use crate::math::{Vec2, perp};
 
 /// A feature of a part's core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum Feature {
     /// Face `i`, from vertex `i` to vertex `i + 1`. With two vertices, `Face(0)` is the side to the left of the
     /// direction from vertex 0 to vertex 1 and `Face(1)` the right one. A half-space has `Face(0)` only.

@@ -42,6 +42,10 @@ pub struct PairContact {
 
 /// The face that the contacts of a pair were measured to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct PairReference {
     /// Whether it is a face of part `b`.
     pub on_b: bool,

@@ -1,6 +1,6 @@
 //! A rigid placement in the plane, `world = translation + R local` with `R = [[cos, -sin], [sin, cos]]`.
 
-use crate::math::Vec2;
+use crate::math::{Vec2, sin_cos};
 
 /// Position and orientation of a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +22,7 @@ impl Default for Pose2 {
 impl Pose2 {
     /// A pose from the world position of the local origin (m) and an angle (rad).
     pub fn new(translation: Vec2, angle: f64) -> Self {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = sin_cos(angle);
         Self {
             translation,
             cos,

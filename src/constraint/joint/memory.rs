@@ -4,6 +4,10 @@ use std::collections::HashMap;
 
 /// What a joint row belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum JointOwner {
     /// An impulse joint of rapier, by index and generation.
     Impulse(u32, u32),
@@ -13,6 +17,10 @@ pub enum JointOwner {
 
 /// Names a joint row across steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct JointKey {
     /// The joint.
     pub owner: JointOwner,
@@ -24,8 +32,14 @@ pub struct JointKey {
 ///
 /// Looked up by key only, never iterated, so that results do not depend on hashing.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct JointMemory {
+    #[cfg_attr(feature = "serde-serialize", serde(with = "crate::math::ordered"))]
     last: HashMap<JointKey, f64>,
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
     next: HashMap<JointKey, f64>,
 }
 

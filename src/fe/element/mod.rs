@@ -20,6 +20,7 @@ pub use tri3::Tri3;
 pub use tri6::Tri6;
 
 use crate::fe::material::Material;
+use crate::fe::record::ElementRecord;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -70,6 +71,11 @@ pub enum ElementError {
 pub trait Element: Send + Sync + Debug {
     /// The name used in messages.
     fn name(&self) -> &'static str;
+
+    /// What a snapshot writes of the element; bodies with one that is [`ElementRecord::Unknown`] cannot be saved.
+    fn record(&self) -> ElementRecord {
+        ElementRecord::Unknown
+    }
 
     /// The number of corners, 3 or 4; the corners are the first nodes.
     fn n_corners(&self) -> usize;

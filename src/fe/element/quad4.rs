@@ -4,6 +4,7 @@ use super::kinematics::{add_stiffness, jacobian, physical_gradient, strain_from_
 use super::quadrature::{QuadraturePoint, SQUARE_4};
 use super::{Element, ElementError};
 use crate::fe::material::Material;
+use crate::fe::record::ElementRecord;
 
 /// The four-node quadrilateral with Wilson's incompatible modes as corrected by Taylor (QM6).
 ///
@@ -34,6 +35,10 @@ const N_DOFS: usize = 12;
 const CORNERS: [[f64; 2]; N_NODES] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
 impl Element for Quad4 {
+    fn record(&self) -> ElementRecord {
+        ElementRecord::Quad4
+    }
+
     fn name(&self) -> &'static str {
         "Quad4"
     }

@@ -2,6 +2,7 @@
 
 use super::Element;
 use super::quadrature::{QuadraturePoint, TRIANGLE_1, TRIANGLE_3};
+use crate::fe::record::ElementRecord;
 
 /// The three-node triangle, of constant strain.
 ///
@@ -19,6 +20,10 @@ use super::quadrature::{QuadraturePoint, TRIANGLE_1, TRIANGLE_3};
 pub struct Tri3;
 
 impl Element for Tri3 {
+    fn record(&self) -> ElementRecord {
+        ElementRecord::Tri3
+    }
+
     fn name(&self) -> &'static str {
         "Tri3"
     }

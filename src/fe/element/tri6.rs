@@ -2,6 +2,7 @@
 
 use super::Element;
 use super::quadrature::{QuadraturePoint, TRIANGLE_3, TRIANGLE_7};
+use crate::fe::record::ElementRecord;
 
 /// The six-node triangle, of linear strain; its sides may be curved.
 ///
@@ -20,6 +21,10 @@ use super::quadrature::{QuadraturePoint, TRIANGLE_3, TRIANGLE_7};
 pub struct Tri6;
 
 impl Element for Tri6 {
+    fn record(&self) -> ElementRecord {
+        ElementRecord::Tri6
+    }
+
     fn name(&self) -> &'static str {
         "Tri6"
     }

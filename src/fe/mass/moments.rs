@@ -1,5 +1,7 @@
 //! Moments of nodal masses, and the polynomial that restores them: `sum_i m_i p(x_i) q(x_i) = target_q`.
 
+use crate::math::{atan2, sin_cos};
+
 /// A term of p that differs from the terms before it by less than this part of itself is left out.
 const DEPENDENT: f64 = 1e-7;
 const N_TERMS: usize = 6;
@@ -28,7 +30,7 @@ impl Frame {
         let xx = mean(&|x| (x[0] - centre[0]).powi(2));
         let yy = mean(&|x| (x[1] - centre[1]).powi(2));
         let xy = mean(&|x| (x[0] - centre[0]) * (x[1] - centre[1]));
-        let (sin, cos) = (0.5 * (2.0 * xy).atan2(xx - yy)).sin_cos();
+        let (sin, cos) = sin_cos(0.5 * atan2(2.0 * xy, xx - yy));
         let mut frame = Self {
             centre,
             axis: [cos, sin],

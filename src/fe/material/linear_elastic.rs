@@ -1,9 +1,14 @@
 //! Isotropic linear elasticity: `sigma = D eps`, `W = eps . D eps / 2`.
 
 use super::{Material, MaterialError, Rayleigh};
+use crate::fe::record::MaterialRecord;
 
 /// What happens in the direction normal to the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum Plane {
     /// A thin sheet, free to change its thickness: `s_zz = 0`.
     Stress,
@@ -25,6 +30,10 @@ pub enum Plane {
 /// assert_eq!(Material::density(&steel), 7800.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct LinearElastic {
     plane: Plane,
     young: f64,
@@ -109,6 +118,10 @@ impl LinearElastic {
 }
 
 impl Material for LinearElastic {
+    fn record(&self) -> MaterialRecord {
+        MaterialRecord::LinearElastic(*self)
+    }
+
     fn density(&self) -> f64 {
         self.density
     }

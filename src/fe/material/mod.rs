@@ -11,6 +11,7 @@ mod rayleigh;
 pub use linear_elastic::{LinearElastic, Plane};
 pub use rayleigh::{DampingError, Rayleigh};
 
+use super::record::MaterialRecord;
 use std::fmt::Debug;
 
 /// A law from strain to stress, linear or not.
@@ -51,6 +52,11 @@ pub trait Material: Send + Sync + Debug {
     /// The first parameter out of its range, with its value and the cure.
     fn validate(&self) -> Result<(), MaterialError> {
         Ok(())
+    }
+
+    /// What a snapshot writes of the material; bodies of one that is [`MaterialRecord::Unknown`] cannot be saved.
+    fn record(&self) -> MaterialRecord {
+        MaterialRecord::Unknown
     }
 }
 

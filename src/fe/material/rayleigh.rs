@@ -6,6 +6,10 @@ use thiserror::Error;
 ///
 /// A mode of circular frequency `w` has the damping ratio `alpha / (2 w) + beta w / 2`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct Rayleigh {
     /// The mass part alpha (1/s). It drags rigid motion too: leave it at zero for free bodies.
     pub mass: f64,

@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use crate::math::hypot;
+
 use super::{Cells, MeshError, crossing, geometry};
 
 const NONE: usize = usize::MAX;
@@ -121,7 +123,7 @@ impl Boundary {
     fn mean_length(&self, nodes: &[[f64; 2]]) -> f64 {
         let length = |&[a, b]: &[usize; 2]| {
             let ([a_x, a_y], [b_x, b_y]) = (nodes[a], nodes[b]);
-            (b_x - a_x).hypot(b_y - a_y)
+            hypot(b_x - a_x, b_y - a_y)
         };
         self.segments.iter().map(length).sum::<f64>() / self.segments.len() as f64
     }

@@ -14,6 +14,10 @@ use super::geometry;
 ///          0-------1                0---3---1                0-----------1
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum CellKind {
     /// Triangle with its three corners.
     Tri3,

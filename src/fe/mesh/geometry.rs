@@ -1,6 +1,7 @@
 //! Plane vectors and the area moments of a cell, `A = 1/2 ∮ (x dy - y dx)`.
 
 use super::CellKind;
+use crate::math::hypot;
 
 /// Two lengths closer than this, relative to the diagonal of the bounding box, count as equal.
 ///
@@ -24,7 +25,7 @@ pub(super) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 pub(super) fn length(a: [f64; 2]) -> f64 {
-    a[0].hypot(a[1])
+    hypot(a[0], a[1])
 }
 
 pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {

@@ -1,5 +1,6 @@
 //! The constraint functions `w(g, λ)` and `v(u̇, τ)`, without dimensions, and their derivatives.
 
+use crate::math::atan;
 use std::f64::consts::FRAC_2_PI;
 
 /// A function of two variables at a point: its value and both derivatives.
@@ -60,7 +61,7 @@ fn stretched(sum: f64, epsilon: f64) -> f64 {
     // The arc tangent contributes less than 1.
     let mut y = ((sum - 1.0) / epsilon).max(0.0);
     for _ in 0..MOST_ITERATIONS {
-        let excess = sum - FRAC_2_PI * y.atan() - epsilon * y;
+        let excess = sum - FRAC_2_PI * atan(y) - epsilon * y;
         let rise = excess / (FRAC_2_PI / (1.0 + y * y) + epsilon);
         if rise <= 4.0 * f64::EPSILON * y {
             break;
@@ -137,7 +138,7 @@ mod tests {
             for stretch in [0.0f64, 1e-3, 0.7, 30.0, 1e3] {
                 for sign in [1.0, -1.0] {
                     let slip = sign * epsilon * stretch;
-                    let ratio = FRAC_2_PI * (sign * stretch).atan();
+                    let ratio = FRAC_2_PI * atan(sign * stretch);
                     let found = tangential(slip, ratio, epsilon).value;
                     // The ratio is known to 1e-16, which the arc tangent stretches by ε (1 + y²) at most.
                     let known = 1e-15 * (epsilon * (1.0 + stretch * stretch)).min(1.0);

@@ -12,6 +12,7 @@ use crate::kkt::island::{Island, IslandSummary, SolveSettings};
 use crate::kkt::multipliers::prepare;
 use crate::kkt::position::{ANGLE_TOLERANCE, PARTING_RATE, ROWS_KEPT_FROM};
 use crate::linalg::complementarity::{Problem, RowKind, Status};
+use crate::math::exp;
 use crate::system::{Block, Response};
 use std::f64::consts::FRAC_2_PI;
 
@@ -67,7 +68,7 @@ impl Island {
         summary: &mut IslandSummary,
     ) -> bool {
         let functions = trial.functions;
-        let kept = (-PARTING_RATE * trial.settings.dt).exp();
+        let kept = exp(-PARTING_RATE * trial.settings.dt);
         let mut scale = None;
         let mut epsilon = begin;
         let mut is_near = false;

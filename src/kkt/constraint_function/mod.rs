@@ -35,6 +35,10 @@ use thiserror::Error;
 
 /// How the laws of contact are enforced in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum ContactMethod {
     /// Lagrange multipliers with exact complementarity and Coulomb's cone.
     #[default]
@@ -54,6 +58,10 @@ pub enum ContactMethod {
 /// # Ok::<(), foil2d::kkt::EpsilonError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct ConstraintFunction {
     /// `[ε_N, ε_T]` (-).
     pub(super) epsilon: [f64; 2],

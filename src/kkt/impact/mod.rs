@@ -33,6 +33,10 @@ use super::island::{Island, IslandSummary, KktError, SolveSettings};
 
 /// How impacts are treated. Whether a body's contact boundary carries inertia is chosen per body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum ImpactTreatment {
     /// Velocity impulses between masses and on impacts shorter than the step, and no energy from contact: stable at any
     /// step and mesh.

@@ -74,6 +74,10 @@ const SWEPT: f64 = 1e-10;
 
 /// The solver that found the answer. The last two are finished by an active-set solve if it improves them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub enum Method {
     /// The active set alone.
     #[default]

@@ -16,6 +16,7 @@ pub use rectangle::rectangle;
 
 use super::MeshError;
 use super::geometry::length;
+use crate::math::{cos, sin};
 
 /// Largest number of nodes of a structured mesh: a slip in a unit should not exhaust the memory.
 const NODE_LIMIT: usize = 4_000_000;
@@ -77,5 +78,5 @@ fn polar_midpoint(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 
 /// Point at a radius (m) and an angle (rad).
 fn polar(radius: f64, angle: f64) -> [f64; 2] {
-    [radius * angle.cos(), radius * angle.sin()]
+    [radius * cos(angle), radius * sin(angle)]
 }

@@ -1,0 +1,222 @@
+//! What a snapshot writes of the border with rapier: whatever the next step, or the next event, depends on. All else is found anew
+//! in every step.
+
+use super::claim::Claims;
+use super::events::{EventBook, PairName};
+use super::gather::Gatherer;
+use super::hooks::HookBook;
+use super::masters::{Master, Masters};
+use super::references::References;
+use super::sleep::Sleeper;
+use crate::body::FlexBodySet;
+use crate::constraint::contact::ContactKey;
+use crate::constraint::joint::JointMemory;
+use crate::rapier::prelude::*;
+use crate::system::{ExplicitRecord, FlexBlock};
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::sync::{Arc, PoisonError};
+
+/// Handles as numbers, to sort by.
+trait Numbered: Copy {
+    fn number(self) -> [u32; 4];
+}
+
+impl Numbered for ColliderHandle {
+    fn number(self) -> [u32; 4] {
+        let (index, generation) = self.into_raw_parts();
+        [index, generation, 0, 0]
+    }
+}
+
+impl Numbered for RigidBodyHandle {
+    fn number(self) -> [u32; 4] {
+        let (index, generation) = self.into_raw_parts();
+        [index, generation, 0, 0]
+    }
+}
+
+impl Numbered for PairName {
+    fn number(self) -> [u32; 4] {
+        let [one, other] = self.map(ColliderHandle::into_raw_parts);
+        [one.0, one.1, other.0, other.1]
+    }
+}
+
+/// The entries of a map in the order of their handles.
+fn listed<K: Numbered, V: Clone>(map: &HashMap<K, V>) -> Vec<(K, V)> {
+    let all = map.iter().map(|(key, value)| (*key, value.clone()));
+    let mut all: Vec<(K, V)> = all.collect();
+    all.sort_unstable_by_key(|(key, _)| key.number());
+    all
+}
+
+/// The claim of the last step, as far as events and hooks ask for it in a step without a claim.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct ClaimRecord {
+    surfaces: Vec<(ColliderHandle, usize)>,
+    claimed: Vec<(RigidBodyHandle, usize)>,
+    asleep: Vec<Sleeper>,
+    n_colliders: usize,
+    gravity: Vector,
+    answers: Vec<(PairName, Option<u32>)>,
+}
+
+impl ClaimRecord {
+    fn of(claims: &Claims) -> Self {
+        let answers = listed(&claims.answers).into_iter();
+        Self {
+            surfaces: listed(&claims.flex_of_collider),
+            claimed: listed(&claims.rigid_index),
+            asleep: claims.asleep.clone(),
+            n_colliders: claims.changes.n_colliders,
+            gravity: claims.changes.gravity,
+            answers: answers
+                .map(|(name, answer)| (name, answer.map(|flags| flags.bits())))
+                .collect(),
+        }
+    }
+
+    fn build(self) -> Claims {
+        let answers = self.answers.into_iter();
+        let mut claims = Claims::default();
+        claims.flex_of_collider = self.surfaces.into_iter().collect();
+        claims.rigid_index = self.claimed.into_iter().collect();
+        claims.asleep = self.asleep;
+        claims.changes.n_colliders = self.n_colliders;
+        claims.changes.gravity = self.gravity;
+        claims.answers = answers
+            .map(|(name, bits)| (name, bits.map(SolverFlags::from_bits_truncate)))
+            .collect();
+        claims
+    }
+}
+
+/// What the user's handler knows and still has to hear.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct EventRecord {
+    ahead: Vec<PairName>,
+    /// The two colliders, whether they started to touch, and rapier's flags.
+    held: Vec<(PairName, bool, u32)>,
+    pressed: Vec<(PairName, bool)>,
+}
+
+impl EventRecord {
+    fn of(book: &EventBook) -> Self {
+        let heard = book.heard.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut ahead: Vec<PairName> = heard.ahead.iter().copied().collect();
+        ahead.sort_unstable_by_key(|name| name.number());
+        let held = heard.held.iter().map(|event| match *event {
+            CollisionEvent::Started(one, other, flags) => ([one, other], true, flags.bits()),
+            CollisionEvent::Stopped(one, other, flags) => ([one, other], false, flags.bits()),
+        });
+        Self {
+            ahead,
+            held: held.collect(),
+            pressed: listed(&book.pressed),
+        }
+    }
+
+    fn build(self) -> EventBook {
+        let held = self.held.into_iter().map(|([one, other], starts, bits)| {
+            let flags = CollisionEventFlags::from_bits_truncate(bits);
+            if starts {
+                CollisionEvent::Started(one, other, flags)
+            } else {
+                CollisionEvent::Stopped(one, other, flags)
+            }
+        });
+        let mut book = EventBook::default();
+        book.pressed = self.pressed.into_iter().collect();
+        let mut heard = book.heard.lock().unwrap_or_else(PoisonError::into_inner);
+        heard.ahead = self.ahead.into_iter().collect();
+        heard.held = held.collect();
+        drop(heard);
+        book
+    }
+}
+
+/// What the user's hooks said.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct HookRecord {
+    user_data: Vec<(ContactKey, u32)>,
+    left: Vec<(PairName, bool)>,
+}
+
+impl HookRecord {
+    fn of(book: &HookBook) -> Self {
+        let user_data = book.last.iter().map(|(key, data)| (*key, *data));
+        let mut user_data: Vec<_> = user_data.collect();
+        user_data.sort_unstable();
+        Self {
+            user_data,
+            left: listed(&book.left),
+        }
+    }
+
+    fn build(self) -> HookBook {
+        let mut book = HookBook::default();
+        book.last = self.user_data.into_iter().collect();
+        book.left = self.left.into_iter().collect();
+        book
+    }
+}
+
+/// The border with rapier as a snapshot writes it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct CouplingRecord {
+    claims: ClaimRecord,
+    events: EventRecord,
+    hooks: HookRecord,
+    masters: Vec<(RigidBodyHandle, Master)>,
+    references: References,
+    joint_memory: JointMemory,
+    explicit: Vec<(u32, ExplicitRecord)>,
+}
+
+impl CouplingRecord {
+    /// The record of what a pipeline holds.
+    pub fn of(claims: &Claims, events: &EventBook, masters: &Masters, gatherer: &Gatherer) -> Self {
+        let pool = gatherer.pool.iter().enumerate();
+        let explicit = pool.filter_map(|(index, block)| {
+            let record = block.as_ref()?.explicit_record()?;
+            Some((index as u32, record))
+        });
+        Self {
+            claims: ClaimRecord::of(claims),
+            events: EventRecord::of(events),
+            hooks: HookRecord::of(&gatherer.hooks),
+            masters: listed(&masters.last),
+            references: gatherer.references.clone(),
+            joint_memory: gatherer.joint_memory.clone(),
+            explicit: explicit.collect(),
+        }
+    }
+
+    /// All of it again, `None` if it does not fit the bodies.
+    pub fn build(
+        self,
+        flex_bodies: &FlexBodySet,
+    ) -> Option<(Claims, EventBook, Masters, Gatherer)> {
+        let mut gatherer = Gatherer::default();
+        gatherer.references = self.references;
+        gatherer.joint_memory = self.joint_memory;
+        gatherer.hooks = self.hooks.build();
+        for (index, record) in self.explicit {
+            let (_, body) = flex_bodies.at_index(index)?;
+            let (model, fixed) = (Arc::clone(body.model()), body.fixed_dofs().to_vec());
+            let mut block = FlexBlock::explicit(model, fixed, body.frame());
+            if !block.recall(record) {
+                return None;
+            }
+            let slot = index as usize;
+            if gatherer.pool.len() <= slot {
+                gatherer.pool.resize_with(slot + 1, || None);
+            }
+            gatherer.pool[slot] = Some(Box::new(block));
+        }
+        let mut masters = Masters::default();
+        masters.last = self.masters.into_iter().collect();
+        Some((self.claims.build(), self.events.build(), masters, gatherer))
+    }
+}

@@ -1,0 +1,102 @@
+//! How elements and materials are named in snapshots, and found again.
+//!
+//! Built-in ones are written with their parameters. One of your own gives a name ([`Material::record`], [`Element::record`]); whoever
+//! reads the snapshot hands over the object of that name in [`KnownLaws`].
+
+#[cfg(feature = "serde-serialize")]
+pub use super::model_record::ModelRecordError;
+
+use super::element::{Element, Quad4, Tri3, Tri6};
+use super::material::{LinearElastic, Material};
+use std::sync::Arc;
+
+/// What a snapshot writes of a material.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+#[non_exhaustive]
+pub enum MaterialRecord {
+    /// Nothing: bodies of this material cannot be saved.
+    #[default]
+    Unknown,
+    /// Hooke's law, with its parameters.
+    LinearElastic(LinearElastic),
+    /// The name of a material in [`KnownLaws`]; two with different parameters need two names.
+    Named(String),
+}
+
+/// What a snapshot writes of an element.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+#[non_exhaustive]
+pub enum ElementRecord {
+    /// Nothing: bodies with this element cannot be saved.
+    #[default]
+    Unknown,
+    /// [`Tri3`].
+    Tri3,
+    /// [`Tri6`].
+    Tri6,
+    /// [`Quad4`].
+    Quad4,
+    /// The name of an element in [`KnownLaws`].
+    Named(String),
+}
+
+/// Elements and materials of your own, by the names that their records give.
+#[derive(Clone, Debug, Default)]
+pub struct KnownLaws {
+    materials: Vec<(String, Arc<dyn Material>)>,
+    elements: Vec<(String, Arc<dyn Element>)>,
+}
+
+impl KnownLaws {
+    /// None but the built-in ones.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a material under the name its [record](Material::record) gives; a later one of the same name replaces it.
+    pub fn material(mut self, name: impl Into<String>, material: impl Material + 'static) -> Self {
+        self.materials.push((name.into(), Arc::new(material)));
+        self
+    }
+
+    /// Adds an element under the name its [record](Element::record) gives; a later one of the same name replaces it.
+    pub fn element(mut self, name: impl Into<String>, element: impl Element + 'static) -> Self {
+        self.elements.push((name.into(), Arc::new(element)));
+        self
+    }
+
+    /// The material of a record, `None` if its name is not known.
+    pub fn find_material(&self, record: &MaterialRecord) -> Option<Arc<dyn Material>> {
+        match record {
+            MaterialRecord::Unknown => None,
+            MaterialRecord::LinearElastic(law) => Some(Arc::new(*law)),
+            MaterialRecord::Named(name) => find(&self.materials, name),
+        }
+    }
+
+    /// The element of a record, `None` if its name is not known.
+    pub fn find_element(&self, record: &ElementRecord) -> Option<Arc<dyn Element>> {
+        match record {
+            ElementRecord::Unknown => None,
+            ElementRecord::Tri3 => Some(Arc::new(Tri3)),
+            ElementRecord::Tri6 => Some(Arc::new(Tri6)),
+            ElementRecord::Quad4 => Some(Arc::new(Quad4)),
+            ElementRecord::Named(name) => find(&self.elements, name),
+        }
+    }
+}
+
+fn find<T: ?Sized>(known: &[(String, Arc<T>)], name: &str) -> Option<Arc<T>> {
+    let mut latest_first = known.iter().rev();
+    latest_first
+        .find(|(own, _)| own == name)
+        .map(|(_, found)| Arc::clone(found))
+}

@@ -1,0 +1,186 @@
+//! Saved and restored, a run is the run it was.
+
+use super::support::*;
+use foil2d::kkt::ConstraintFunction;
+
+#[test]
+fn three_hundred_steps_saved_and_three_hundred_more_are_six_hundred() {
+    let log = Log::default();
+    let mut straight = everything();
+    (0..300).for_each(|_| straight.step(&log));
+    let heard = log.take();
+    assert!(heard.len() > 20, "the scene has events: {}", heard.len());
+    assert!(straight.flex.report().n_asleep() > 0, "something sleeps");
+    assert!(
+        straight.flex.report().joints().len() > 2,
+        "joints and attachments hold"
+    );
+    assert!(straight.flex.report().contacts().len() > 8, "things touch");
+    let mut resumed = straight.resumed();
+    assert_same(&straight, &resumed, "after nothing");
+    compare(&mut straight, &mut resumed, 300);
+}
+
+#[test]
+fn a_copy_in_memory_goes_on_like_one_of_bytes() {
+    let log = Log::default();
+    let mut straight = everything();
+    (0..100).for_each(|_| straight.step(&log));
+    let (world, flex_bodies, flex) = straight.snapshot().restore().expect("a sound one");
+    let mut copy = Run {
+        world,
+        flex_bodies,
+        flex,
+        n_steps: straight.n_steps,
+        held: straight.held,
+    };
+    compare(&mut straight, &mut copy, 100);
+}
+
+/// Saves and restores after every step: no cache may ever decide a bit.
+fn step_by_step(mut straight: Run, n_steps: usize) {
+    let mut resumed = straight.resumed();
+    let mut n_contacts = 0;
+    for step in 0..n_steps {
+        let (one, other) = (Log::default(), Log::default());
+        straight.step(&one);
+        resumed.step(&other);
+        assert_eq!(one.take(), other.take(), "events of step {step}");
+        assert_same(&straight, &resumed, &format!("after step {step}"));
+        resumed = resumed.resumed();
+        n_contacts = n_contacts.max(straight.flex.report().contacts().len());
+    }
+    assert!(n_contacts > 1, "things touch: {n_contacts} contacts");
+}
+
+#[test]
+fn a_run_restored_after_every_step_never_differs() {
+    step_by_step(everything(), 360);
+}
+
+#[test]
+fn a_run_by_the_trapezoidal_rule_restored_after_every_step_never_differs() {
+    let mut run = everything();
+    run.flex = FlexPipeline::new().with_integrator(Beta2::trapezoidal());
+    step_by_step(run, 150);
+}
+
+#[test]
+fn a_run_by_constraint_functions_restored_after_every_step_never_differs() {
+    let mut run = everything();
+    let functions = ConstraintFunction::new(1e-4, 1e-3).expect("sound epsilons");
+    run.flex =
+        FlexPipeline::new().with_contact_method(ContactMethod::ConstraintFunction(functions));
+    step_by_step(run, 100);
+}
+
+/// An explicit block remembers internal forces, late forces and half kicks of the step before.
+#[test]
+fn an_explicit_run_restored_after_every_step_never_differs() {
+    let mut run = Run::new();
+    run.world.integration_parameters.dt = 1e-4;
+    let soft = LinearElastic::plane_stress(1e5, 0.3).density(1000.0);
+    let damped = soft.rayleigh(1e-5).rayleigh_mass(0.5);
+    let kept = FlexBodyBuilder::rectangle([0.5, 0.5], [5, 5])
+        .translation([0.0, 0.002])
+        .linvel([0.3, -1.0]);
+    run.flexible(kept.material(damped).contact_inertia(ContactInertia::Kept));
+    let moved = FlexBodyBuilder::rectangle([0.5, 0.5], [5, 5])
+        .rotation(0.2)
+        .translation([1.5, 0.002])
+        .linvel([0.3, -1.0]);
+    run.flexible(moved.material(damped));
+    run.rigid([0.25, 0.65], ColliderBuilder::ball(0.14));
+    run.flex = FlexPipeline::new().with_integrator(Beta2::central_difference());
+    step_by_step(run, 400);
+}
+
+#[test]
+fn a_world_saved_asleep_wakes_as_it_would_have() {
+    let log = Log::default();
+    let mut straight = Run::new();
+    let stiff = LinearElastic::plane_stress(1e8, 0.3)
+        .density(1000.0)
+        .rayleigh(5e-3);
+    let block = FlexBodyBuilder::rectangle([0.5, 0.25], [4, 2]).translation([-10.0, 0.001]);
+    let block = straight.flexible(block.material(stiff).friction(0.5));
+    straight.rigid([-9.75, 0.46], ColliderBuilder::cuboid(0.2, 0.2));
+    let is_asleep = |run: &Run| {
+        let carrier = run.flex_bodies[block].rigid_body_handle();
+        run.world.bodies[carrier].is_sleeping()
+    };
+    let woken = (0..900).find(|_| {
+        straight.step(&log);
+        is_asleep(&straight)
+    });
+    assert!(woken.is_some(), "the block falls asleep");
+    (0..5).for_each(|_| straight.step(&log));
+    let mut resumed = straight.resumed();
+    compare(&mut straight, &mut resumed, 5);
+    assert!(is_asleep(&resumed), "it still sleeps");
+    for run in [&mut straight, &mut resumed] {
+        run.rigid([-9.7, 1.5], ColliderBuilder::ball(0.1));
+    }
+    compare(&mut straight, &mut resumed, 200);
+}
+
+/// Bodies come and go: vacant slots, and handles that were given before.
+#[test]
+fn handles_are_valid_after_a_restore_and_new_ones_are_those_of_the_straight_run() {
+    let log = Log::default();
+    let mut straight = everything();
+    (0..10).for_each(|_| straight.step(&log));
+    let handles: Vec<_> = straight
+        .flex_bodies
+        .iter()
+        .map(|(handle, _)| handle)
+        .collect();
+    straight
+        .flex_bodies
+        .remove(handles[2], &mut straight.world)
+        .expect("it is there");
+    straight.step(&log);
+    let mut resumed = straight.resumed();
+    assert!(
+        resumed.flex_bodies.get(handles[2]).is_none(),
+        "its handle is stale"
+    );
+    let one = resumed.flex_bodies[handles[1]].positions();
+    assert_eq!(one, straight.flex_bodies[handles[1]].positions());
+    for run in [&mut straight, &mut resumed] {
+        let added = FlexBodyBuilder::rectangle([0.4, 0.4], [4, 4]).translation([-6.0, 1.0]);
+        let handle = run.flexible(added.material(rubber()));
+        assert_eq!(handle.into_raw_parts(), (2, 1));
+    }
+    compare(&mut straight, &mut resumed, 60);
+}
+
+#[test]
+fn changes_that_wait_for_the_next_step_are_saved_too() {
+    let log = Log::default();
+    let mut straight = everything();
+    (0..120).for_each(|_| straight.step(&log));
+    let added = FlexBodyBuilder::rectangle([0.4, 0.4], [4, 4]).translation([-6.0, 3.0]);
+    let added = straight.flexible(added.material(rubber()).angvel(3.0));
+    straight.rigid([5.5, 2.0], ColliderBuilder::ball(0.2));
+    let (slider, body) = straight.flex_bodies.iter_mut().nth(1).expect("it is there");
+    body.set_nodal_force(0, [0.0, 50.0]).expect("it has a node");
+    body.set_velocities(&vec![0.5; 2 * body.n_nodes()])
+        .expect("two a node");
+    let spring = AttachmentBuilder::spring_damper(added, 1e3, 10.0)
+        .node(0)
+        .to_flexible(slider);
+    straight
+        .flex_bodies
+        .attach(spring, &straight.world.bodies)
+        .expect("it is sound");
+    let moved = straight
+        .world
+        .bodies
+        .iter_mut()
+        .find(|(_, body)| body.is_dynamic() && !body.is_sleeping() && body.mass() > 0.0);
+    let (_, moved) = moved.expect("something moves");
+    moved.set_linvel(at(0.3, 1.0), true);
+    let mut resumed = straight.resumed();
+    compare(&mut straight, &mut resumed, 200);
+}
