@@ -1,5 +1,6 @@
 //! The pipeline: settings and buffers, no state of its own but the memory of contacts and claimed bodies.
 
+use super::clock::Clock;
 use super::error::StepError;
 use super::joint_accounts::drop_orphans;
 use super::report::StepReport;
@@ -420,31 +421,6 @@ impl FlexPipeline {
                 sets.integration_parameters,
             );
             stop_if_asleep(body, sets.bodies);
-        }
-    }
-}
-
-/// Laps of a stop-watch, if the feature `timing` is on.
-#[derive(Debug)]
-struct Clock {
-    #[cfg(feature = "timing")]
-    last: std::time::Instant,
-}
-
-impl Clock {
-    fn start() -> Self {
-        Self {
-            #[cfg(feature = "timing")]
-            last: std::time::Instant::now(),
-        }
-    }
-
-    fn lap(&mut self, _sum: &mut f64) {
-        #[cfg(feature = "timing")]
-        {
-            let now = std::time::Instant::now();
-            *_sum += (now - self.last).as_secs_f64();
-            self.last = now;
         }
     }
 }

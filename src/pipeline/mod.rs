@@ -2,6 +2,7 @@
 
 mod accounts;
 mod checks;
+mod clock;
 #[cfg(feature = "debug-render")]
 mod debug_render;
 mod error;

@@ -61,6 +61,9 @@ impl Cone {
 /// Least cosine between a surface and a direction of a corner that push each other: faces bulge by some degrees.
 const POINTING: f64 = 0.25;
 
+/// Depth, over the length of the segment, up to which a corner may have slipped over the edge of a surface; deeper it has been shot in.
+const CORNER_DEPTH: f64 = 0.25;
+
 /// The segment that a point crossed inwards during the step, the shallowest if there are several.
 ///
 /// One that the point is still behind comes before one that it only passed through on its way: what flies on along the
@@ -84,7 +87,8 @@ fn entered_segment(
             continue;
         }
         let normal = -perp(along).normalize();
-        if cone.is_some_and(|cone| !cone.faces(normal)) {
+        let is_shallow = -area < CORNER_DEPTH * along.norm_squared();
+        if is_shallow && cone.is_some_and(|cone| !cone.faces(normal)) {
             continue;
         }
         let (start_from, start_to) = (block.start_position(a), block.start_position(b));

@@ -15,6 +15,7 @@ mod quadratic;
 mod quality;
 mod validate;
 
+use crate::math::hypot;
 pub use boundary::{Boundary, BoundaryLoop};
 pub use cell::{Cell, CellKind};
 pub use error::MeshError;
@@ -218,7 +219,7 @@ impl Mesh {
                 [sx + self.nodes[node][0], sy + self.nodes[node][1]]
             });
             let n = corners.len() as f64;
-            (sum[0] / n - x).hypot(sum[1] / n - y)
+            hypot(sum[0] / n - x, sum[1] / n - y)
         };
         let nearest = (0..self.n_cells()).min_by(|one, other| off(one).total_cmp(&off(other)));
         nearest.unwrap_or(0)
