@@ -328,16 +328,21 @@ impl Island {
         }
     }
 
-    /// Unresolved contacts that stay closed keep no relative acceleration either, or their multipliers would alternate.
+    /// Contacts that hold velocities and stay closed keep no relative acceleration either.
+    ///
+    /// Between surfaces with mass, multipliers would alternate otherwise. Rigid bodies that press each other would start the next step with
+    /// accelerations that no pose allows, and its multipliers, at the levers of its end, would turn them back too far: a tower on a
+    /// soft block rocks itself up by `p h dt / I` a second.
     fn settle_accelerations(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
-        self.hard_accelerations(settings);
+        self.wrenches.clear();
+        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         self.add_spring_forces(settings.dt);
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
         for index in 0..self.contacts.len() {
             let contact = self.contacts[index];
-            if contact.is_hard || !contact.is_closed() || contact.holds_velocity() == 0.0 {
+            if !contact.is_closed() || contact.holds_velocity() == 0.0 {
                 continue;
             }
             let kinematics = contact.kinematics;
@@ -387,21 +392,5 @@ impl Island {
         self.gather_rows(Response::Acceleration);
         self.add_to_rigid(Response::Acceleration, 1.0);
         Ok(())
-    }
-
-    /// Writes the mean hard contact forces of the step as wrenches, so that total accelerations are known.
-    fn hard_accelerations(&mut self, settings: &SolveSettings) {
-        self.wrenches.clear();
-        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
-        for contact in self.contacts.iter().filter(|contact| contact.is_hard) {
-            let force = contact.impulse.map(|impulse| impulse / settings.dt);
-            Self::spread(
-                &mut self.blocks,
-                &contact.kinematics,
-                force,
-                Some(&mut self.wrenches),
-                |_, _, _, _| {},
-            );
-        }
     }
 }
