@@ -278,3 +278,47 @@ fn blocks_and_boxes_of_one_width_stand_edge_on_edge() {
         assert!(overlap < 1e-6 || !is_resolved, "{overlap} at 1/{rate} s");
     }
 }
+
+#[test]
+fn a_tower_on_a_soft_block_does_not_rock_itself_up() {
+    // Eight boxes turn about the edges of a block that is soft within the step, the top one pushed a little. At 1/60 s their spin grew by
+    // 1.6 a second while accelerations of the boxes left out what they carry.
+    for rate in [30.0, 60.0, 120.0] {
+        let mut scene = Scene::new(1.0 / rate);
+        scene.ground(0.5);
+        scene.flexible(
+            FlexBodyBuilder::rectangle([0.5, 0.3], [6, 4])
+                .material(
+                    LinearElastic::plane_stress(1e7, 0.3)
+                        .density(1000.0)
+                        .rayleigh(1e-3),
+                )
+                .friction(0.5)
+                .translation([-0.25, 0.0]),
+        );
+        let boxes: Vec<_> = (0..8)
+            .map(|k| {
+                boxed(
+                    &mut scene,
+                    [0.0, 0.375 + 0.15 * f64::from(k)],
+                    [0.25, 0.075],
+                    75.0,
+                )
+            })
+            .collect();
+        scene.world.bodies[boxes[7].0].set_angvel(real(0.01), true);
+        let mut spins = [0.0f64; 2];
+        for step in 0..(15.0 * rate) as usize {
+            scene.step();
+            let fastest = boxes
+                .iter()
+                .map(|&(body, _)| scene.world.bodies[body].angvel().abs());
+            let fastest = fastest.fold(0.0, foil2d::rapier::math::Real::max);
+            let late = usize::from(step as f64 > 10.0 * rate);
+            spins[late] = spins[late].max(f64::from(fastest));
+        }
+        println!("1/{rate} s: {spins:?}");
+        // What is left are contacts at the block's edges that open and close; without the cure 0.1 and more at 1/60 s.
+        assert!(spins[1] < 1e-3, "{spins:?} rad/s at 1/{rate} s");
+    }
+}
