@@ -5,12 +5,13 @@ use super::delassus::RowDirection;
 use super::impact::ImpactTreatment;
 use super::joint_rows::ActiveJoint;
 use crate::constraint::contact::{
-    Candidate, ContactMemory, Kinematics, PlacedPart, Remembered, Scene,
+    Candidate, ContactMemory, Kinematics, Owner, PlacedPart, Remembered, Scene,
 };
 use crate::constraint::joint::{JointGrip, JointRow};
 use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
+use std::collections::HashSet;
 use thiserror::Error;
 
 /// Why an island cannot be solved.
@@ -215,6 +216,8 @@ pub struct Island {
     pub(super) ignores_overlaps: bool,
     /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.
     pub(super) pressed_before: Vec<[usize; 2]>,
+    /// Who pressed whom in the last step.
+    pub(super) pressed_owners: HashSet<[Owner; 2]>,
     pub(super) solver: Solver,
     pub(super) newton: Newton,
 }

@@ -34,6 +34,14 @@ pub struct ContactKey {
     pub part: u32,
 }
 
+impl ContactKey {
+    /// The two owners, in an order that does not depend on whose point it is.
+    pub fn owners(&self) -> [Owner; 2] {
+        let pair = [self.contactor, self.target];
+        [pair[0].min(pair[1]), pair[0].max(pair[1])]
+    }
+}
+
 /// How the point and the target of a candidate are held by the island's blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pair {

@@ -1,8 +1,8 @@
 //! What a contact remembers from one step to the next: multipliers for the warm start, the feature it touched.
 
-use super::candidate::ContactKey;
+use super::candidate::{ContactKey, Owner};
 use crate::constraint::geometry::Feature;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The last state of one contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -21,7 +21,7 @@ pub struct Remembered {
 
 /// All contacts of the last step that were closed or near.
 ///
-/// Looked up by key only, never iterated, so that results do not depend on hashing.
+/// Looked up by key, and listed into a set only, so that results do not depend on hashing.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(
     feature = "serde-serialize",
@@ -38,6 +38,12 @@ impl ContactMemory {
     /// The state of a contact in the last step.
     pub fn recall(&self, key: &ContactKey) -> Remembered {
         self.last.get(key).copied().unwrap_or_default()
+    }
+
+    /// Lists who pressed whom in the last step, by any of their points; see [`ContactKey::owners`].
+    pub fn list_pressed(&self, pairs: &mut HashSet<[Owner; 2]>) {
+        let pressed = self.last.iter().filter(|(_, state)| state.normal > 0.0);
+        pairs.extend(pressed.map(|(key, _)| key.owners()));
     }
 
     /// Notes the state of a contact for the next step.
