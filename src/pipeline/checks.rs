@@ -3,7 +3,7 @@
 use super::error::StepError;
 use super::flex_pipeline::FlexPipeline;
 use crate::body::{FlexBody, FlexBodyError, FlexBodyHandle, FlexBodySet};
-use crate::coupling::{RapierSets, is_asleep, is_carried, is_held_motion};
+use crate::coupling::{RapierSets, is_asleep, is_carried, is_held_motion, rounding};
 use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
 use crate::kkt::KktError;
@@ -16,6 +16,22 @@ const SHORTEST: f64 = 1e-8 * (1.0 - 1e-7);
 
 /// Longest step (s): nothing a step resolves takes longer, and predictors grow as its square.
 const LONGEST: f64 = 1e4;
+
+/// Refuses margins that rapier cannot grow a box by: it panics, at the first collider it looks at, near or far.
+fn check_margins(sets: &RapierSets<'_>) -> Result<(), StepError> {
+    let is_margin = |value: f64| value >= 0.0 && is_held(value);
+    let prediction = f64::from(sets.integration_parameters.prediction_distance());
+    if !is_margin(prediction) {
+        return Err(StepError::Prediction(prediction));
+    }
+    for (handle, collider) in sets.colliders.iter_enabled() {
+        let skin = f64::from(collider.contact_skin());
+        if !(is_margin(skin) && is_margin(rounding(collider.shape()))) {
+            return Err(StepError::Margin(handle));
+        }
+    }
+    Ok(())
+}
 
 impl FlexPipeline {
     /// Refuses a step length or gravity that nothing can be stepped with, before anything is touched.
@@ -34,13 +50,14 @@ impl FlexPipeline {
         })
     }
 
-    /// Refuses bodies that are awake and cannot be stepped, before anything is touched.
+    /// Refuses colliders that rapier cannot step, and bodies that are awake and cannot be stepped, before anything is touched.
     pub(super) fn check_bodies(
         &self,
         dt: f64,
         sets: &RapierSets<'_>,
         flex_bodies: &FlexBodySet,
     ) -> Result<(), StepError> {
+        check_margins(sets)?;
         for (handle, body) in flex_bodies.iter() {
             if body.is_quarantined() || is_asleep(body, sets.bodies) {
                 continue;
