@@ -2,8 +2,6 @@
 
 #[path = "pipeline/coming_and_going.rs"]
 mod coming_and_going;
-#[path = "pipeline/fuzz.rs"]
-mod fuzz;
 #[path = "pipeline/loads.rs"]
 mod loads;
 #[path = "pipeline/rapier_features.rs"]

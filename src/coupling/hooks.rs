@@ -153,6 +153,10 @@ impl HookBook {
             user_data: self.last.get(&candidate.key).copied().unwrap_or(0),
             is_kept: true,
         };
+        if !given.is_finite() {
+            // Centres that lie upon each other have no normal yet: nothing to show, and no mistake of the user's.
+            return Ok(true);
+        }
         let at = [
             to_rapier(kinematics.position),
             to_rapier(kinematics.position - gap * kinematics.normal),

@@ -20,6 +20,9 @@ const TURNED: f64 = 0.5;
 /// tip of a bar some times more.
 const FLUNG: f64 = 10.0;
 
+/// The same for a linearised step of joints, which begins with what the last one gave: it may be as fast, or cross the body, and no more.
+const JERKED: f64 = 1.0;
+
 impl Island {
     pub(super) fn fall_back(
         &mut self,
@@ -63,11 +66,18 @@ impl Island {
         self.open_working_set(settings, tolerance, memory);
     }
 
-    /// Holds the island if contact has flung a member away faster than any collision could.
-    pub(super) fn hold_if_flung(&mut self, dt: f64, summary: &mut IslandSummary) {
-        if self.contacts.is_empty() {
-            return;
-        }
+    /// Holds the island if contact, or a linearised step of joints, has flung a member away faster than any collision could.
+    ///
+    /// Joints that iterations closed may well fling: what was stretched is let go. In a linearised step the rows of a body that
+    /// turns point where it no longer is, and every step begins with more speed than the last.
+    pub(super) fn hold_if_flung(&mut self, settings: &SolveSettings, summary: &mut IslandSummary) {
+        let is_pulled = summary.is_linearized && !self.ties.is_empty();
+        let greatest = match (is_pulled, self.contacts.is_empty()) {
+            (true, _) => JERKED,
+            (false, false) => FLUNG,
+            (false, true) => return,
+        };
+        let dt = settings.dt;
         let (mut before, mut after) = (0.0f64, 0.0f64);
         for block in &self.blocks {
             if let Block::Flex(block) = block {
@@ -80,7 +90,7 @@ impl Island {
                 before = before.max(moved / dt);
             }
         }
-        if after > FLUNG * before {
+        if after > greatest * before {
             self.hold(summary);
             for block in &mut self.blocks {
                 if let Block::Flex(block) = block {
@@ -88,6 +98,7 @@ impl Island {
                     block.measure_elastic_energy();
                 }
             }
+            summary.work = self.actual_work(settings);
             summary.end_energy = self.end_energy();
         }
     }

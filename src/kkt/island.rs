@@ -263,7 +263,7 @@ impl Island {
         summary.end_energy = self.end_energy();
         if treatment.limits_energy() {
             self.limit_energy(settings, allowance, reserve, &mut summary);
-            self.hold_if_flung(settings.dt, &mut summary);
+            self.hold_if_flung(settings, &mut summary);
         }
         self.publish_forces(settings.dt);
         Ok(summary)

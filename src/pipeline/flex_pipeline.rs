@@ -212,6 +212,7 @@ impl FlexPipeline {
         let mut clock = Clock::start();
         let dissipated = self.report.energy.dissipated;
         let step = self.check(sets)?;
+        drop_orphans(sets, flex_bodies);
         let change = self.claims.look_for_changes(sets, flex_bodies);
         let is_quiet = step.dt > 0.0 && change == WorldChange::None;
         if is_quiet && self.claims.is_all_asleep(sets, flex_bodies) {
@@ -220,7 +221,6 @@ impl FlexPipeline {
         }
         self.check_bodies(step.dt, sets, flex_bodies)?;
         self.claims.note_world(sets);
-        drop_orphans(sets, flex_bodies);
         sync_settings(flex_bodies, sets.colliders);
         wake_disturbed(sets, flex_bodies, change == WorldChange::Everywhere);
         let is_changed = change == WorldChange::Somewhere;

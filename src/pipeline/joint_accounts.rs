@@ -94,13 +94,19 @@ impl FlexPipeline {
     }
 }
 
-/// Drops attachments whose rigid body is gone.
+/// Drops attachments whose rigid body is gone, and wakes what they held: a body without colliders leaves no other trace.
 pub(super) fn drop_orphans(sets: &RapierSets<'_>, flex_bodies: &mut FlexBodySet) {
-    let lives = |target| match target {
-        AttachmentTarget::RigidBody(handle) => sets.bodies.contains(handle),
-        AttachmentTarget::World | AttachmentTarget::Flexible(_) => true,
+    let is_orphan = |target| match target {
+        AttachmentTarget::RigidBody(handle) => !sets.bodies.contains(handle),
+        AttachmentTarget::World | AttachmentTarget::Flexible(_) => false,
     };
-    flex_bodies
-        .attachments_mut()
-        .retain(|attachment| lives(attachment.target()));
+    let mut all = flex_bodies.iter_attachments();
+    while let Some((handle, _)) = all.find(|(_, attachment)| is_orphan(attachment.target())) {
+        drop(all);
+        // It was found a moment ago: there is nothing to refuse.
+        if flex_bodies.detach(handle).is_err() {
+            return;
+        }
+        all = flex_bodies.iter_attachments();
+    }
 }
