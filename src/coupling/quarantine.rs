@@ -11,6 +11,9 @@ impl FlexBodySet {
     /// Puts a quarantined body back into the world, where and as fast as it was: what made it sick has to be mended before, or
     /// the next step takes it out again. Does nothing to a body that is well.
     ///
+    /// Its attachments hold again at once: where what they hold it to has moved away, the next step pulls the body there, however far that
+    /// is. Detach them first.
+    ///
     /// # Errors
     /// If the handle is stale or foreign.
     pub fn reinstate(

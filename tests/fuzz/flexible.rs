@@ -3,7 +3,7 @@
 use crate::chance::Chance;
 use crate::common::*;
 use crate::play::{Outcome, Play};
-use foil2d::body::{ContactSettings, FlexBodyError};
+use foil2d::body::{AttachmentTarget, ContactSettings, FlexBodyError};
 use foil2d::rapier::math::Real;
 
 fn builder(chance: &mut Chance) -> FlexBodyBuilder {
@@ -213,6 +213,19 @@ impl Play {
                     body.set_nodal_force(node, [0.0; 2])?;
                 }
                 self.spoiled.retain(|&other| other != handle);
+            }
+            // What holds the body has moved on without it.
+            let held: Vec<_> = scene
+                .bodies
+                .iter_attachments()
+                .filter(|(_, held)| {
+                    held.body() == handle || held.target() == AttachmentTarget::Flexible(handle)
+                })
+                .map(|(held, _)| held)
+                .collect();
+            for held in held {
+                scene.bodies.detach(held)?;
+                self.ties.retain(|tie| tie.handle != held);
             }
             let (bodies, colliders) = (&mut scene.world.bodies, &mut scene.world.colliders);
             scene.bodies.reinstate(handle, bodies, colliders)?;
