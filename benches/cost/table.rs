@@ -41,7 +41,7 @@ pub fn print_reading() {
 const READING: &str = "
 Reading
   - foil2d Tri3 and rapier's soft bodies share every triangle; Quad4 (QM6, the default) has the same nodes. dt = 1/60 s.
-  - \"rapier's\" is what rapier's own two steps take within foil2d's step (detection with dt = 0, then the full step);
+  - \"rapier's\" is what rapier's own steps take within foil2d's step (one with dt = 0 where it was needed, then the full one);
     \"stage\" is the rest. Ratios are of whole steps.
   - rapier's soft bodies run with 4 substeps and default settings; \"converged Fem\" lifts the cap of 20
     conjugate-gradient iterations to 2000, \"Fem to 1e-8\" lowers the tolerance from 1e-5 as well: same tip, more work.
