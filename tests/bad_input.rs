@@ -998,6 +998,76 @@ fn numbers_that_are_not_finite_in_a_rigid_body_never_reach_a_flexible_one() {
     }
 }
 
+/// Rapier panics where it grows a box by less than nothing, at whichever collider it looks at.
+#[test]
+fn margins_that_no_box_can_grow_by_are_refused_wherever_the_collider_is() {
+    type Spoil = fn(&mut Collider, Real);
+    let spoils: [(&str, Spoil); 2] = [
+        ("skin", |collider, bad| collider.set_contact_skin(bad)),
+        ("rounding", |collider, bad| {
+            collider.set_shape(SharedShape::round_cuboid(0.2, 0.2, bad));
+        }),
+    ];
+    for warm_up in [0, 10] {
+        for (name, spoil) in spoils {
+            for bad in [Real::NAN, Real::INFINITY, Real::NEG_INFINITY, -1.0, 1e30] {
+                for at in [0.0, 1e3] {
+                    let mut scene = Scene::new();
+                    let stone = scene.world.insert_collider(
+                        ColliderBuilder::cuboid(0.2, 0.2).translation(Vector::new(at, -0.5)),
+                        None,
+                    );
+                    for _ in 0..warm_up {
+                        scene.step().expect("a sound step");
+                    }
+                    let state = scene.state();
+                    let kept = scene.world.colliders[stone].clone();
+                    spoil(&mut scene.world.colliders[stone], bad);
+                    for _ in 0..2 {
+                        let error = scene.step().expect_err(name);
+                        assert_eq!(error, StepError::Margin(stone), "{name} = {bad} at {at} m");
+                    }
+                    assert_eq!(state, scene.state(), "{name} = {bad} at {at} m");
+                    let stone = &mut scene.world.colliders[stone];
+                    stone.set_contact_skin(kept.contact_skin());
+                    stone.set_shape(kept.shared_shape().clone());
+                    scene.assert_goes_on();
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn margins_of_a_disabled_collider_stop_nothing() {
+    let mut scene = Scene::new();
+    let stone = ColliderBuilder::cuboid(0.2, 0.2).translation(Vector::new(5.0, -0.5));
+    let stone = scene
+        .world
+        .insert_collider(stone.contact_skin(Real::NAN).enabled(false), None);
+    scene.assert_goes_on();
+    scene.world.colliders[stone].set_enabled(true);
+    let error = scene.step().expect_err("the collider takes part now");
+    assert_eq!(error, StepError::Margin(stone));
+    scene.world.colliders[stone].set_contact_skin(0.0);
+    scene.assert_goes_on();
+}
+
+#[test]
+fn a_prediction_distance_that_no_box_can_grow_by_is_refused() {
+    for bad in [Real::NAN, Real::INFINITY, -1.0] {
+        let mut scene = Scene::new();
+        scene.step().expect("a sound step");
+        let state = scene.state();
+        scene.world.integration_parameters.length_unit = bad;
+        let error = scene.step().expect_err("the boxes cannot grow");
+        assert!(matches!(error, StepError::Prediction(_)), "{error}");
+        assert_eq!(state, scene.state(), "length unit {bad}");
+        scene.world.integration_parameters.length_unit = 1.0;
+        scene.assert_goes_on();
+    }
+}
+
 #[test]
 fn gravity_that_is_not_finite_is_refused_and_leaves_no_trace() {
     for warm_up in [0, 10] {

@@ -36,6 +36,7 @@ pub(crate) use joints::{JointImpulse, write_impulses};
 pub(crate) use masters::Masters;
 pub(crate) use reading::{GatherError, is_held_motion};
 pub use sets::RapierSets;
+pub(crate) use shapes::rounding;
 pub(crate) use sleep::{
     is_all_asleep, is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving,
 };

@@ -129,8 +129,7 @@ pub(super) fn law_of(
         return Ok(ContactLaw::default());
     };
     for (handle, collider) in [(one, first), (other, second)] {
-        let is_finite = collider.friction().is_finite() && collider.restitution().is_finite();
-        if !(is_finite && is_held(f64::from(collider.contact_skin()))) {
+        if !(collider.friction().is_finite() && collider.restitution().is_finite()) {
             return Err(GatherError::Coefficient(handle));
         }
     }

@@ -72,6 +72,16 @@ pub fn pose_of(pose: &Pose) -> Pose2 {
     Pose2::new(from_rapier(pose.translation), sin.atan2(cos))
 }
 
+/// Radius by which rapier rounds the corners of a shape (m); none where it computes boxes without it.
+pub(crate) fn rounding(shape: &dyn Shape) -> f64 {
+    match shape.as_typed_shape() {
+        TypedShape::RoundCuboid(round) => f64::from(round.border_radius),
+        TypedShape::RoundTriangle(round) => f64::from(round.border_radius),
+        TypedShape::RoundConvexPolygon(round) => f64::from(round.border_radius),
+        _ => 0.0,
+    }
+}
+
 fn convert(shape: &dyn Shape, pose: Pose2, parts: &mut Vec<ShapePart>) {
     let mut push = |part: ConvexPart| {
         parts.push(ShapePart {

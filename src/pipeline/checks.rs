@@ -3,7 +3,7 @@
 use super::error::StepError;
 use super::flex_pipeline::FlexPipeline;
 use crate::body::{FlexBody, FlexBodyError, FlexBodySet};
-use crate::coupling::{RapierSets, is_asleep, is_carried, is_held_motion};
+use crate::coupling::{RapierSets, is_asleep, is_carried, is_held_motion, rounding};
 use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
 use crate::kkt::KktError;
@@ -16,6 +16,22 @@ const SHORTEST: f64 = 1e-8 * (1.0 - 1e-7);
 
 /// Longest step (s): nothing a step resolves takes longer, and predictors grow as its square.
 const LONGEST: f64 = 1e4;
+
+/// Refuses margins that rapier cannot grow a box by: it panics, at the first collider it looks at, near or far.
+fn check_margins(sets: &RapierSets<'_>) -> Result<(), StepError> {
+    let is_margin = |value: f64| value >= 0.0 && is_held(value);
+    let prediction = f64::from(sets.integration_parameters.prediction_distance());
+    if !is_margin(prediction) {
+        return Err(StepError::Prediction(prediction));
+    }
+    for (handle, collider) in sets.colliders.iter_enabled() {
+        let skin = f64::from(collider.contact_skin());
+        if !(is_margin(skin) && is_margin(rounding(collider.shape()))) {
+            return Err(StepError::Margin(handle));
+        }
+    }
+    Ok(())
+}
 
 impl FlexPipeline {
     /// Refuses what cannot be stepped, before anything is touched.
@@ -32,6 +48,7 @@ impl FlexPipeline {
         if !is_held(gravity.x) || !is_held(gravity.y) {
             return Err(StepError::Gravity(gravity.into()));
         }
+        check_margins(sets)?;
         for (handle, body) in flex_bodies.iter() {
             if is_asleep(body, sets.bodies) {
                 continue;

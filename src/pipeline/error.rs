@@ -56,6 +56,16 @@ pub enum StepError {
     /// Gravity is not finite or too large for rapier's precision.
     #[error("gravity is {0:?} m/s^2: set `gravity` to finite numbers")]
     Gravity([f64; 2]),
+    /// Rapier's prediction distance is negative, not finite or too large.
+    #[error(
+        "the prediction distance is {0:e} m: set `integration_parameters.length_unit` and `normalized_prediction_distance` to finite numbers that are not negative"
+    )]
+    Prediction(f64),
+    /// A collider, wherever it is, has a margin that rapier's boxes cannot be grown by.
+    #[error(
+        "{0:?} has a contact skin, or a rounding of its shape, that is negative, not finite or too large: set it to zero or a positive number (m), or disable the collider"
+    )]
+    Margin(ColliderHandle),
     /// The result is not finite, or too large for rapier's precision.
     #[error(
         "flexible body {0:?} would move to a position that is not finite: look at its loads and velocities"
@@ -83,7 +93,7 @@ pub enum StepError {
     ExplicitAttachment(AttachmentHandle),
     /// A collider that touches a flexible body has a coefficient that is not finite.
     #[error(
-        "{0:?} touches a flexible body, and its friction, restitution or contact skin is not finite or its skin too large: set all to finite numbers"
+        "{0:?} touches a flexible body, and its friction or restitution is not finite: set both to finite numbers"
     )]
     Coefficient(ColliderHandle),
     /// `modify_solver_contacts` left numbers that are not finite.
