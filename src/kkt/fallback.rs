@@ -27,6 +27,7 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) {
+        summary.is_doubtful = true;
         // Bodies that stick in each other may ask for what no position can give.
         self.ignores_overlaps = true;
         self.start_again(settings, tolerance, memory);
@@ -61,11 +62,18 @@ impl Island {
         self.open_working_set(settings, tolerance, memory);
     }
 
-    /// Holds the island if contact has flung a member away faster than any collision could.
-    pub(super) fn hold_if_flung(&mut self, dt: f64, summary: &mut IslandSummary) {
+    /// Holds the island if contact has flung a member away faster than any collision could, or if a step in doubt has more than
+    /// doubled the energy that there was, with what loads and springs have done (`supply`, J): such energy is stored in bodies
+    /// that the iterations have wedged where no motion leads, and no velocity can give it back.
+    pub(super) fn hold_if_flung(&mut self, dt: f64, supply: f64, summary: &mut IslandSummary) {
         if self.contacts.is_empty() {
             return;
         }
+        let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
+        // Bodies that were put into each other are pressed apart, whatever energy that takes.
+        let is_parting = self.contacts.iter().any(|contact| contact.allowance < 0.0);
+        let gain = after - before - supply;
+        let is_fed = summary.is_doubtful && !is_parting && gain > before + supply.max(0.0);
         let (mut before, mut after) = (0.0f64, 0.0f64);
         for block in &self.blocks {
             if let Block::Flex(block) = block {
@@ -78,7 +86,7 @@ impl Island {
                 before = before.max(moved / dt);
             }
         }
-        if after > FLUNG * before {
+        if is_fed || after > FLUNG * before {
             self.hold(summary);
             for block in &mut self.blocks {
                 if let Block::Flex(block) = block {

@@ -148,6 +148,8 @@ pub struct IslandSummary {
     pub has_failed: bool,
     /// Whether Lagrange multipliers then solved the step.
     pub is_substituted: bool,
+    /// Whether the iterations ended along extrapolated gaps, or failed: the step may have left the motion that it continues.
+    pub is_doubtful: bool,
     /// Whether Newton's iterations failed and a linearised step was taken.
     pub is_linearized: bool,
     /// Whether even that threw a body about, so that the island stayed where it was, at rest.
@@ -259,8 +261,9 @@ impl Island {
         summary.start_energy = before;
         summary.end_energy = self.end_energy();
         if treatment.limits_energy() {
+            let stored = reserve.max(0.0);
             self.limit_energy(settings, allowance, reserve, &mut summary);
-            self.hold_if_flung(settings.dt, &mut summary);
+            self.hold_if_flung(settings.dt, allowance + stored, &mut summary);
         }
         self.publish_forces(settings.dt);
         Ok(summary)

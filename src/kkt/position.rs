@@ -11,35 +11,11 @@ use crate::linalg::complementarity::Status;
 use crate::math::Vec2;
 use crate::system::Block;
 
-/// Turning below this angle (rad) changes no position by more than round-off.
-pub(super) const ANGLE_TOLERANCE: f64 = 1e-11;
-
-/// Iteration from which the rows, directions and levers of the forces, stay what they are.
-pub(super) const ROWS_KEPT_FROM: usize = 2;
-
-/// Iteration from which gaps are extrapolated along the rows.
-const GAPS_KEPT_FROM: usize = 12;
-
-/// Iterations after which the stiffness of hinged bodies against turning is found anew.
-const RESTIFFENED_EVERY: usize = 5;
-
-/// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
-const NEAR: f64 = 1e5;
-
 /// Rate at which bodies that were put into each other part (1/s): a third of the overlap in a step of 1/60 s.
 pub(super) const PARTING_RATE: f64 = 24.0;
 
 /// Multiple of the tolerance from which an overlap counts as put there.
 const OVERLAPPED: f64 = 1e7;
-
-/// Iterations in which the working set still forms.
-const SETTLING: usize = 6;
-
-/// Growth of the error, from the largest while the working set forms, that will not come back.
-const DIVERGENCE: f64 = 1e2;
-
-/// Multiple of the tolerance that still counts when the iterations are used up.
-const ACCEPTABLE: f64 = 1e5;
 
 impl Island {
     pub(super) fn solve_positions(
@@ -91,59 +67,6 @@ impl Island {
         self.is_working.resize(self.candidates.len(), false);
         self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
         self.open_joints(settings);
-    }
-
-    /// Newton's iterations; returns whether they converged.
-    pub(super) fn iterate(
-        &mut self,
-        settings: &SolveSettings,
-        memory: &ContactMemory,
-        tolerance: f64,
-        summary: &mut IslandSummary,
-    ) -> bool {
-        let kept = (-PARTING_RATE * settings.dt).exp();
-        let mut peak = 0.0f64;
-        for iteration in 0..settings.max_newton {
-            summary.n_newton += 1;
-            let turned = self.correct();
-            let is_guess = iteration == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
-            let mut error = self.measure(is_guess || iteration >= GAPS_KEPT_FROM);
-            // Under the last step's multipliers bodies may be anywhere: geometry counts if these are nearly right.
-            let misleads = is_guess && error > NEAR * tolerance;
-            if is_guess && !misleads {
-                error = self.measure(false);
-            }
-            let has_more = !misleads && self.add_violated(tolerance, kept, memory);
-            if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
-                return true;
-            }
-            if iteration < SETTLING {
-                peak = peak.max(turned).max(error);
-            }
-            let is_diverging = turned.max(error) > DIVERGENCE * peak;
-            if is_diverging || !(turned + error).is_finite() {
-                return false;
-            }
-            if iteration + 1 < settings.max_newton {
-                let has_joints = !self.ties.is_empty();
-                if has_joints && iteration > 0 && iteration % RESTIFFENED_EVERY == 0 {
-                    self.restiffen_turns(settings);
-                    self.correct();
-                    self.measure(iteration >= GAPS_KEPT_FROM);
-                }
-                let refreshes = iteration < ROWS_KEPT_FROM && !misleads;
-                if refreshes {
-                    self.refresh_rows();
-                }
-                let solved = self.solve_multipliers(settings, refreshes, tolerance, summary);
-                if solved.is_err() {
-                    return false;
-                }
-            } else if turned.max(error) <= ACCEPTABLE * tolerance && !has_more {
-                return true;
-            }
-        }
-        false
     }
 
     /// Round-off of a gap: positions of this size, and their predictions, are no better known.
