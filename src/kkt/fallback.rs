@@ -19,6 +19,9 @@ const TURNED: f64 = 0.5;
 /// tip of a bar some times more.
 const FLUNG: f64 = 10.0;
 
+/// Overlap, relative to a body's size, that no step in doubt leaves: someone has put it there.
+const PUT_INTO: f64 = 1e-2;
+
 impl Island {
     pub(super) fn fall_back(
         &mut self,
@@ -71,7 +74,16 @@ impl Island {
         }
         let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
         // Bodies that were put into each other are pressed apart, whatever energy that takes.
-        let is_parting = self.contacts.iter().any(|contact| contact.allowance < 0.0);
+        let mut members = self.blocks.iter();
+        let size = members.find_map(|block| match block {
+            Block::Flex(block) => Some(block.size()),
+            Block::Rigid(_) => None,
+        });
+        let deep = PUT_INTO * size.unwrap_or_default();
+        let is_parting = self
+            .contacts
+            .iter()
+            .any(|contact| contact.allowance < -deep);
         let gain = after - before - supply;
         let is_fed = summary.is_doubtful && !is_parting && gain > before + supply.max(0.0);
         let (mut before, mut after) = (0.0f64, 0.0f64);
