@@ -42,6 +42,7 @@ impl FlexBodySet {
             _ => vec![mean],
         };
         let anchors = self.anchors_of(&plan, target, &places, bodies)?;
+        self.check_near(&plan, target, (&places, &anchors), bodies)?;
         let kind = match plan.kind {
             AttachmentKind::Spring {
                 stiffness, damping, ..
@@ -105,6 +106,31 @@ impl FlexBodySet {
         }
     }
 
+    /// Refuses to join flexible bodies that are far apart: the overlap or gap that a joint begins with is closed within steps, and
+    /// that would tear at both of them.
+    fn check_near(
+        &self,
+        plan: &Plan,
+        target: AttachmentTarget,
+        (places, anchors): (&[Vec2], &[Anchor]),
+        bodies: &RigidBodySet,
+    ) -> Result<(), AttachmentError> {
+        let (AttachmentTarget::Flexible(other), false) =
+            (target, matches!(plan.kind, AttachmentKind::Spring { .. }))
+        else {
+            return Ok(());
+        };
+        let most = 0.5 * extent(self.try_get(plan.body)?).min(extent(self.try_get(other)?));
+        let pairs = places.iter().zip(anchors);
+        let distance = pairs
+            .map(|(at, anchor)| (at - self.world_point(target, anchor, bodies)).norm())
+            .fold(0.0, f64::max);
+        if distance > most {
+            return Err(AttachmentError::TooFar { distance, most });
+        }
+        Ok(())
+    }
+
     /// Where an anchor is now (m).
     fn world_point(
         &self,
@@ -128,6 +154,17 @@ impl FlexBodySet {
             (Anchor::Surface(..), _) => Vec2::zeros(),
         }
     }
+}
+
+/// Diagonal of the box of a body's nodes at rest (m).
+fn extent(body: &FlexBody) -> f64 {
+    let nodes = body.mesh().nodes();
+    let mut corners = [Vec2::repeat(f64::INFINITY), Vec2::repeat(f64::NEG_INFINITY)];
+    for node in nodes {
+        let node = Vec2::from(*node);
+        corners = [corners[0].inf(&node), corners[1].sup(&node)];
+    }
+    (corners[1] - corners[0]).norm()
 }
 
 /// The nodes of a choice, checked.

@@ -23,6 +23,9 @@ const FLUNG: f64 = 10.0;
 /// The same for a linearised step of joints, which begins with what the last one gave: it may be as fast, or cross the body, and no more.
 const JERKED: f64 = 1.0;
 
+/// Overlap, relative to a body's size, that no step in doubt leaves: someone has put it there.
+const PUT_INTO: f64 = 1e-2;
+
 impl Island {
     pub(super) fn fall_back(
         &mut self,
@@ -31,6 +34,7 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) {
+        summary.is_doubtful = true;
         // Bodies that stick in each other may ask for what no position can give.
         self.ignores_overlaps = true;
         self.start_again(settings, tolerance, memory);
@@ -66,17 +70,24 @@ impl Island {
         self.open_working_set(settings, tolerance, memory);
     }
 
-    /// Holds the island if contact, or a linearised step of joints, has flung a member away faster than any collision could.
+    /// Holds the island if contact, or a linearised step of joints, has flung a member away faster than any collision could,
+    /// or if a step in doubt has fed it; see [`Island::is_fed`].
     ///
     /// Joints that iterations closed may well fling: what was stretched is let go. In a linearised step the rows of a body that
     /// turns point where it no longer is, and every step begins with more speed than the last.
-    pub(super) fn hold_if_flung(&mut self, settings: &SolveSettings, summary: &mut IslandSummary) {
+    pub(super) fn hold_if_flung(
+        &mut self,
+        settings: &SolveSettings,
+        supply: f64,
+        summary: &mut IslandSummary,
+    ) {
         let is_pulled = summary.is_linearized && !self.ties.is_empty();
         let greatest = match (is_pulled, self.contacts.is_empty()) {
             (true, _) => JERKED,
             (false, false) => FLUNG,
             (false, true) => return,
         };
+        let is_fed = !self.contacts.is_empty() && self.is_fed(supply, summary);
         let dt = settings.dt;
         let (mut before, mut after) = (0.0f64, 0.0f64);
         for block in &self.blocks {
@@ -90,7 +101,7 @@ impl Island {
                 before = before.max(moved / dt);
             }
         }
-        if after > greatest * before {
+        if is_fed || after > greatest * before {
             self.hold(summary);
             for block in &mut self.blocks {
                 if let Block::Flex(block) = block {
@@ -101,6 +112,23 @@ impl Island {
             summary.work = self.actual_work(settings);
             summary.end_energy = self.end_energy();
         }
+    }
+
+    /// Whether a step in doubt has more than doubled the energy that there was, with what loads and springs have done (`supply`, J):
+    /// such energy is stored in bodies that the iterations have wedged where no motion leads, and no velocity can give it back.
+    fn is_fed(&self, supply: f64, summary: &IslandSummary) -> bool {
+        let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
+        // Bodies that were put into each other are pressed apart, whatever energy that takes.
+        let mut members = self.blocks.iter();
+        let size = members.find_map(|block| match block {
+            Block::Flex(block) => Some(block.size()),
+            Block::Rigid(_) => None,
+        });
+        let deep = PUT_INTO * size.unwrap_or_default();
+        let mut contacts = self.contacts.iter();
+        let is_parting = contacts.any(|contact| contact.allowance < -deep);
+        let gain = after - before - supply;
+        summary.is_doubtful && !is_parting && gain > before + supply.max(0.0)
     }
 
     /// Leaves every member where the step began, at rest.
@@ -150,7 +178,7 @@ impl Island {
             self.solve_multipliers(settings, round == 0, tolerance, summary)?;
         }
         self.correct();
-        self.measure(true);
+        self.measure(false);
         Ok(())
     }
 }

@@ -87,6 +87,12 @@ pub struct ActiveContact {
     /// Gap and relative motion `Σ w u` at the last measurement, from which gaps are extrapolated where the
     /// geometry has no answer or keeps changing.
     pub(super) known: Option<(f64, Vec2)>,
+    /// How far apart the bodies are where geometry has no gap but a force acts, 0 elsewhere (m).
+    pub(super) apart: f64,
+    /// Whether geometry has no gap, so that no force may act.
+    pub(super) is_lost: bool,
+    /// How often it has been let go for that within the step.
+    pub(super) losses: u8,
     /// Tangential motion since the beginning of the step (m).
     pub slip: f64,
     /// Share of the contact that is shorter than the step, 0 to 1 (-).
@@ -149,6 +155,8 @@ pub struct IslandSummary {
     pub has_failed: bool,
     /// Whether Lagrange multipliers then solved the step.
     pub is_substituted: bool,
+    /// Whether the iterations ended along extrapolated gaps, or failed: the step may have left the motion that it continues.
+    pub is_doubtful: bool,
     /// Whether Newton's iterations failed and a linearised step was taken.
     pub is_linearized: bool,
     /// Whether even that threw a body about, so that the island stayed where it was, at rest.
@@ -262,8 +270,9 @@ impl Island {
         summary.start_energy = before;
         summary.end_energy = self.end_energy();
         if treatment.limits_energy() {
+            let stored = reserve.max(0.0);
             self.limit_energy(settings, allowance, reserve, &mut summary);
-            self.hold_if_flung(settings, &mut summary);
+            self.hold_if_flung(settings, allowance + stored, &mut summary);
         }
         self.publish_forces(settings.dt);
         Ok(summary)

@@ -13,6 +13,7 @@ mod fallback;
 mod forward;
 mod impact;
 mod island;
+mod iterate;
 mod joint_rows;
 mod joint_system;
 mod joint_twist;

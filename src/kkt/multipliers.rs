@@ -41,6 +41,7 @@ impl Island {
         );
         self.take_out_multipliers(has_new_rows);
         self.add_joint_positions(settings, has_new_rows);
+        self.let_go();
         let redundancy = self.redundancy_tolerance(tolerance / settings.b0);
         self.solver.set_redundancy_tolerance(redundancy);
         let has_joints = self.kinds.len() > self.rows.len();
@@ -101,6 +102,26 @@ impl Island {
                 self.multipliers.push(contact.multiplier[1]);
                 self.statuses.push(contact.status[1]);
             }
+        }
+    }
+
+    /// Takes contacts that geometry has lost out of the problem: what would answer to them is open.
+    fn let_go(&mut self) {
+        let n = self.kinds.len();
+        for (row, direction) in self.rows.iter().enumerate() {
+            if !self.contacts[direction.contact].is_lost {
+                continue;
+            }
+            let own = self.delassus[row * n + row];
+            for other in 0..n {
+                self.delassus[row * n + other] = 0.0;
+                self.delassus[other * n + row] = 0.0;
+            }
+            self.delassus[row * n + row] = own;
+            self.free[row] = match self.kinds[row] {
+                RowKind::Friction { .. } => 0.0,
+                _ => own * self.multipliers[row].abs(),
+            };
         }
     }
 

@@ -11,35 +11,14 @@ use crate::linalg::complementarity::Status;
 use crate::math::{Vec2, exp};
 use crate::system::Block;
 
-/// Turning below this angle (rad) changes no position by more than round-off.
-pub(super) const ANGLE_TOLERANCE: f64 = 1e-11;
-
-/// Iteration from which the rows, directions and levers of the forces, stay what they are.
-pub(super) const ROWS_KEPT_FROM: usize = 2;
-
-/// Iteration from which gaps are extrapolated along the rows.
-const GAPS_KEPT_FROM: usize = 12;
-
-/// Iterations after which the stiffness of hinged bodies against turning is found anew.
-const RESTIFFENED_EVERY: usize = 5;
-
-/// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
-const NEAR: f64 = 1e5;
-
 /// Rate at which bodies that were put into each other part (1/s): a third of the overlap in a step of 1/60 s.
 pub(super) const PARTING_RATE: f64 = 24.0;
 
 /// Multiple of the tolerance from which an overlap counts as put there.
 const OVERLAPPED: f64 = 1e7;
 
-/// Iterations in which the working set still forms.
-const SETTLING: usize = 6;
-
-/// Growth of the error, from the largest while the working set forms, that will not come back.
-const DIVERGENCE: f64 = 1e2;
-
-/// Multiple of the tolerance that still counts when the iterations are used up.
-const ACCEPTABLE: f64 = 1e5;
+/// Times that a contact without a gap is let go within a step.
+const LET_GO: u8 = 2;
 
 impl Island {
     pub(super) fn solve_positions(
@@ -92,59 +71,6 @@ impl Island {
         self.is_working.resize(self.candidates.len(), false);
         self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
         self.open_joints(settings);
-    }
-
-    /// Newton's iterations; returns whether they converged.
-    pub(super) fn iterate(
-        &mut self,
-        settings: &SolveSettings,
-        memory: &ContactMemory,
-        tolerance: f64,
-        summary: &mut IslandSummary,
-    ) -> bool {
-        let kept = exp(-PARTING_RATE * settings.dt);
-        let mut peak = 0.0f64;
-        for iteration in 0..settings.max_newton {
-            summary.n_newton += 1;
-            let turned = self.correct();
-            let is_guess = iteration == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
-            let mut error = self.measure(is_guess || iteration >= GAPS_KEPT_FROM);
-            // Under the last step's multipliers bodies may be anywhere: geometry counts if these are nearly right.
-            let misleads = is_guess && error > NEAR * tolerance;
-            if is_guess && !misleads {
-                error = self.measure(false);
-            }
-            let has_more = !misleads && self.add_violated(tolerance, kept, memory);
-            if turned <= ANGLE_TOLERANCE && error <= tolerance && !has_more {
-                return true;
-            }
-            if iteration < SETTLING {
-                peak = peak.max(turned).max(error);
-            }
-            let is_diverging = turned.max(error) > DIVERGENCE * peak;
-            if is_diverging || !(turned + error).is_finite() {
-                return false;
-            }
-            if iteration + 1 < settings.max_newton {
-                let has_joints = !self.ties.is_empty();
-                if has_joints && iteration > 0 && iteration % RESTIFFENED_EVERY == 0 {
-                    self.restiffen_turns(settings);
-                    self.correct();
-                    self.measure(iteration >= GAPS_KEPT_FROM);
-                }
-                let refreshes = iteration < ROWS_KEPT_FROM && !misleads;
-                if refreshes {
-                    self.refresh_rows();
-                }
-                let solved = self.solve_multipliers(settings, refreshes, tolerance, summary);
-                if solved.is_err() {
-                    return false;
-                }
-            } else if turned.max(error) <= ACCEPTABLE * tolerance && !has_more {
-                return true;
-            }
-        }
-        false
     }
 
     /// Round-off of a gap: positions of this size, and their predictions, are no better known.
@@ -228,26 +154,37 @@ impl Island {
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
             let at = moved(&contact.kinematics, &self.blocks);
-            let found = match contact.known {
-                Some(_) if extrapolates => None,
-                _ => candidate.evaluate(&scene, &contact.remembered),
-            };
-            let along = contact.kinematics.normal;
-            contact.kinematics.gap = match (found, contact.known) {
-                (Some(found), _) => {
+            let is_asked = !(extrapolates && contact.known.is_some());
+            let found = is_asked.then(|| candidate.evaluate(&scene, &contact.remembered));
+            let mut gap = contact.extrapolated(at);
+            match found {
+                Some(Some(found)) => {
+                    gap = found.gap - contact.allowance;
                     contact.measured = found;
-                    found.gap - contact.allowance
+                    contact.is_lost = false;
+                    contact.apart = 0.0;
                 }
-                (None, Some((gap, from))) => gap + along.dot(&(at - from)),
-                (None, None) => contact.kinematics.gap,
-            };
-            contact.known = Some((contact.kinematics.gap, at));
+                Some(None) => {
+                    contact.note_loss(candidate.distance(&scene));
+                    if !contact.is_lost {
+                        gap = contact.apart;
+                    }
+                }
+                None => {}
+            }
+            contact.kinematics.gap = gap;
+            contact.known = Some((gap, at));
             let kinematics = contact.kinematics;
-            error = error.max(-kinematics.gap);
+            if !contact.is_lost {
+                error = error.max(-gap);
+            }
             if contact.multiplier[0] <= 0.0 {
                 continue;
             }
-            error = error.max(kinematics.gap.abs());
+            error = error.max(gap.abs());
+            if is_asked {
+                error = error.max(contact.apart);
+            }
             contact.slip = slip(&kinematics, &self.blocks);
             if candidate.law.friction > 0.0 {
                 error = error.max(match contact.status[1] {
@@ -307,6 +244,7 @@ impl Island {
     fn gap_violation(&self) -> f64 {
         self.contacts
             .iter()
+            .filter(|contact| !contact.is_lost || contact.multiplier[0] > 0.0)
             .fold(0.0, |worst, contact| worst.max(-contact.gap()))
     }
 }
@@ -363,6 +301,24 @@ impl ActiveContact {
         (gap - linear.min(travelled), is_clear)
     }
 
+    /// The gap that follows the row from where it was measured last, to where the points have moved `at` (m).
+    fn extrapolated(&self, at: Vec2) -> f64 {
+        match self.known {
+            Some((gap, from)) => gap + self.kinematics.normal.dot(&(at - from)),
+            None => self.kinematics.gap,
+        }
+    }
+
+    /// Notes that geometry has no gap, with bodies this far `apart` (m). The contact is let go, as the neighbour that it slid to
+    /// takes over; one that comes and goes presses on the edge between both, as far as bodies touch.
+    fn note_loss(&mut self, apart: f64) {
+        if self.apart == 0.0 {
+            self.losses = self.losses.saturating_add(1);
+        }
+        self.is_lost = self.losses <= LET_GO;
+        self.apart = apart;
+    }
+
     fn new(
         candidate: usize,
         kinematics: Kinematics,
@@ -410,6 +366,9 @@ impl ActiveContact {
             status: [normal, tangential],
             allowance: 0.0,
             known: Some((kinematics.gap, moved(&kinematics, blocks))),
+            apart: 0.0,
+            losses: 0,
+            is_lost: false,
             slip: 0.0,
             unresolved: 0.0,
             approach,

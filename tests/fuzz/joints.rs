@@ -214,7 +214,14 @@ impl Play {
         } else {
             builder
         };
-        let attached = scene.bodies.attach(builder, &scene.world.bodies)?;
+        let is_flexible = matches!(target, AttachmentTarget::Flexible(_));
+        let attached = match scene.bodies.attach(builder, &scene.world.bodies) {
+            Err(AttachmentError::TooFar { .. }) if is_flexible => {
+                self.n_refused += 1;
+                return Ok("attach from too far");
+            }
+            attached => attached?,
+        };
         self.ties.push(Tie {
             handle: attached,
             body: handle,

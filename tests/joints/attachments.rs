@@ -359,7 +359,7 @@ fn wrong_descriptions_are_refused() {
             .node(0)
             .to_world()
     };
-    let cases: [(AttachmentBuilder, &str); 12] = [
+    let cases: [(AttachmentBuilder, &str); 14] = [
         (pin(), "no target"),
         (AttachmentBuilder::pin(one).to_world(), "holds no node"),
         (
@@ -384,6 +384,11 @@ fn wrong_descriptions_are_refused() {
             "not in the rigid-body set",
         ),
         (pin().to_flexible(one), "attached to itself"),
+        (pin().to_flexible(pinned), "bring the bodies together"),
+        (
+            pin().to_flexible(pinned).at_point([0.0, 5.0]),
+            "bring the bodies together",
+        ),
         (pin().to_world().at_point([f64::NAN, 0.0]), "not finite"),
         (spring(-1.0), "negative"),
         (
@@ -409,4 +414,66 @@ fn wrong_descriptions_are_refused() {
         .insisting();
     let error = scene.try_step().expect_err("beta0 = 0").to_string();
     assert!(error.contains("beta0"), "{error}");
+}
+
+/// A box on a spring from a beam's end is driven between the beam and the ground. Newton's iterations once ended along gaps
+/// extrapolated from where they had fled to: the box stood 6 cm deep in the beam, which held 16 times the energy there was.
+#[test]
+fn a_box_wedged_between_a_beam_and_the_ground_feeds_no_energy() {
+    for (dt, speed) in [(1.0 / 30.0, 3.0), (1.0 / 240.0, 8.0)] {
+        let mut scene = Scene::new(dt);
+        scene.ground(0.5);
+        let beam = scene.flexible(
+            FlexBodyBuilder::rectangle([2.0, 0.2], [20, 4])
+                .material(
+                    LinearElastic::plane_stress(1e7, 0.3)
+                        .density(1000.0)
+                        .rayleigh(1e-4),
+                )
+                .translation([0.0, 1.0]),
+        );
+        let wall = AttachmentBuilder::weld(beam).where_(|[x, _]| x < 1e-9);
+        attach(&mut scene, wall.to_world());
+        let (hung, _) = scene.rigid(
+            RigidBodyBuilder::dynamic().translation(vec2(2.25, 1.1)),
+            ColliderBuilder::cuboid(0.2, 0.2).density(500.0),
+        );
+        let spring = AttachmentBuilder::spring_damper(beam, 5000.0, 5.0)
+            .where_(|[x, _]| x > 1.999)
+            .to_rigid_body(hung);
+        attach(&mut scene, spring);
+        scene.rigid(
+            RigidBodyBuilder::dynamic()
+                .translation(vec2(1.0, 1.45))
+                .linvel(vec2(0.0, -speed)),
+            ColliderBuilder::ball(0.15).density(1000.0),
+        );
+        let given = energy_of_all(&scene);
+        for step in 0..(2.0 / dt) as usize {
+            scene.try_step().expect("a sound step");
+            // What the spring stores only takes from this. Rounding in single precision is 1e-7 of it.
+            let now = energy_of_all(&scene);
+            let most = given + 1e-5 * given.abs();
+            assert!(now < most, "{now} J of {given} J in step {step}");
+        }
+    }
+}
+
+/// Kinetic, elastic and potential energy of all bodies (J).
+fn energy_of_all(scene: &Scene) -> f64 {
+    let flexible = scene.bodies.iter().map(|(_, body)| {
+        let energy = body.energy();
+        energy.kinetic + energy.elastic + G * body.mass() * body.centre_of_mass()[1]
+    });
+    let is_carrier = |handle| {
+        let mut all = scene.bodies.iter();
+        all.any(|(_, flex)| flex.rigid_body_handle() == handle)
+    };
+    let rigid = scene.world.bodies.iter();
+    let rigid = rigid.filter(|(handle, body)| body.is_dynamic() && !is_carrier(*handle));
+    let rigid = rigid.map(|(_, body)| {
+        let height = f64::from(body.center_of_mass().y);
+        f64::from(body.kinetic_energy()) + G * f64::from(body.mass()) * height
+    });
+    flexible.sum::<f64>() + rigid.sum::<f64>()
 }

@@ -121,7 +121,8 @@ impl AttachmentBuilder {
         self
     }
 
-    /// Attaches to the surface of another flexible body, where it is nearest.
+    /// Attaches to the surface of another flexible body, where it is nearest. Pins and welds ask that it be no farther than half the
+    /// smaller body's size.
     pub fn to_flexible(mut self, body: FlexBodyHandle) -> Self {
         self.0.target = Some(AttachmentTarget::Flexible(body));
         self

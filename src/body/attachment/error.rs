@@ -44,6 +44,16 @@ pub enum AttachmentError {
     /// Both sides are the same body.
     #[error("a body cannot be attached to itself")]
     SameBody,
+    /// A pin or weld would have to pull two flexible bodies together over a distance that only force could close in a few steps.
+    #[error(
+        "nodes are {distance} m from where they are to be held on the other body, beyond {most} m, half the smaller body's size: bring the bodies together first, name a nearer point, or use a spring"
+    )]
+    TooFar {
+        /// Distance of the nodes, or of their mean, from the point on the other body's surface (m).
+        distance: f64,
+        /// Largest distance that is closed (m).
+        most: f64,
+    },
     /// Stiffness, damping or length is negative.
     #[error("{0} is negative: give zero or more")]
     Negative(&'static str),

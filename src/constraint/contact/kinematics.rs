@@ -265,7 +265,7 @@ pub(super) fn rigid_of<'a>(scene: &Scene<'a>, block: usize) -> Option<&'a RigidB
     }
 }
 
-fn flex_of<'a>(scene: &Scene<'a>, block: usize) -> Option<&'a FlexBlock> {
+pub(super) fn flex_of<'a>(scene: &Scene<'a>, block: usize) -> Option<&'a FlexBlock> {
     match &scene.blocks[block] {
         Block::Flex(flex) => Some(flex),
         Block::Rigid(_) => None,

@@ -1,5 +1,6 @@
 //! Contact: candidates, their kinematics (gap, normal, rows of `G`) and their law (friction, restitution).
 
+mod apart;
 mod candidate;
 mod kinematics;
 mod law;
