@@ -173,7 +173,7 @@ impl Island {
             self.measure(round > 0);
             self.add_violated(tolerance, kept, memory);
             if round == 0 {
-                self.refresh_rows();
+                self.refresh_rows(false);
             }
             self.solve_multipliers(settings, round == 0, tolerance, summary)?;
         }

@@ -21,7 +21,10 @@ const GAPS_KEPT_FROM: usize = 12;
 const STRAYED: f64 = 2e5;
 
 /// Rounds of iterations, each with rows of its own: the extrapolated gaps that a round ends with may not be the true ones.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 5;
+
+/// Round from which rows follow the geometry only half the way.
+const EASED_FROM: usize = 2;
 
 /// Iterations after which the stiffness of hinged bodies against turning is found anew.
 const RESTIFFENED_EVERY: usize = 5;
@@ -55,7 +58,7 @@ impl Island {
                 None => return false,
             }
             // What the rows found is near: there they are measured anew.
-            self.refresh_rows();
+            self.refresh_rows(round >= EASED_FROM);
             let solved = self.solve_multipliers(settings, true, tolerance, summary);
             if solved.is_err() {
                 return false;
@@ -119,7 +122,7 @@ impl Island {
             }
             let refreshes = iteration < ROWS_KEPT_FROM && !misleads;
             if refreshes {
-                self.refresh_rows();
+                self.refresh_rows(round > EASED_FROM);
             }
             self.solve_multipliers(settings, refreshes, tolerance, summary)
                 .ok()?;

@@ -197,13 +197,18 @@ impl Island {
         error
     }
 
-    /// Makes the measured geometry the rows that forces act along.
-    pub(super) fn refresh_rows(&mut self) {
+    /// Makes the measured geometry the rows that forces act along; with `is_eased` directions go only half the way, where they have
+    /// turned to and fro.
+    pub(super) fn refresh_rows(&mut self, is_eased: bool) {
         for contact in &mut self.contacts {
             let gap = contact.kinematics.gap;
             contact.applied = contact.kinematics;
             contact.kinematics = contact.measured;
             contact.kinematics.gap = gap;
+            if is_eased {
+                contact.kinematics.normal =
+                    between(contact.applied.normal, contact.measured.normal);
+            }
             contact.known = None;
         }
         self.refresh_joints();
@@ -257,6 +262,14 @@ pub(super) fn slip(kinematics: &Kinematics, blocks: &[Block]) -> f64 {
 /// Motion of the point against the target since the beginning of the step, linear in the dofs of rigid blocks (m).
 fn moved(kinematics: &Kinematics, blocks: &[Block]) -> Vec2 {
     kinematics.relative(blocks, |block, grip| block.displacement(grip))
+}
+
+/// The direction half way between two unit vectors, or the second where they point apart.
+fn between(one: Vec2, other: Vec2) -> Vec2 {
+    if one.dot(&other) <= 0.0 {
+        return other;
+    }
+    (one + other).normalize()
 }
 
 impl ActiveContact {

@@ -93,7 +93,7 @@ impl Island {
             let refreshes = iteration < ROWS_KEPT_FROM || residual < NEARLY && !is_near;
             is_near |= residual < NEARLY;
             if refreshes {
-                self.refresh_rows();
+                self.refresh_rows(false);
             }
             for (now, end) in epsilon.iter_mut().zip(functions.epsilon) {
                 *now = (NARROWER * *now).max(end);
