@@ -171,6 +171,10 @@ impl Island {
         for round in 0..LINEAR_ROUNDS {
             self.correct();
             self.measure(round > 0);
+            // There is no next iteration that a neighbour could take over in.
+            for contact in &mut self.contacts {
+                contact.is_lost = false;
+            }
             self.add_violated(tolerance, kept, memory);
             if round == 0 {
                 self.refresh_rows(false);

@@ -17,8 +17,9 @@ pub(super) const ROWS_KEPT_FROM: usize = 2;
 /// Iteration from which gaps are extrapolated along the rows.
 const GAPS_KEPT_FROM: usize = 12;
 
-/// Multiple of the tolerance by which the true gaps may differ from the extrapolated ones that a round ended with.
-const STRAYED: f64 = 2e5;
+/// Multiple of the tolerance by which the true gaps may differ from the extrapolated ones that a round ended with: some 1e-6 m in
+/// scenes of a metre, where bodies press on an edge that they slide to and fro over.
+pub(super) const STRAYED: f64 = 2e5;
 
 /// Rounds of iterations, each with rows of its own: the extrapolated gaps that a round ends with may not be the true ones.
 const ROUNDS: usize = 5;

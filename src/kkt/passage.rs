@@ -22,22 +22,28 @@ const STIRRED: f64 = 1e-3;
 /// more.
 const THROWN_FAR: f64 = 5.0;
 
-/// Overlap that is no solution, relative to the smaller body.
+/// Depth behind a surface from which a point has come through it, relative to the smaller flexible body.
 const DEEP: f64 = 0.1;
 
 impl Island {
-    /// Whether the step leads through something, or leaves members deep in each other that it should have kept apart: gaps that
-    /// follow the rows instead of the geometry may hide that.
+    /// Whether the step leads through something or throws a body about: where members move by several times their size, gaps hold at
+    /// places that no motion leads to.
     pub(super) fn is_astray(&self) -> bool {
-        let is_deep = |contact: &ActiveContact| {
-            let attachments = contact.kinematics.attachments().iter();
-            let sizes = attachments.map(|grip| match &self.blocks[grip.block] {
-                Block::Flex(block) => block.size(),
-                Block::Rigid(_) => f64::INFINITY,
-            });
-            contact.gap() < -DEEP * sizes.fold(f64::INFINITY, f64::min)
-        };
-        self.contacts.iter().any(is_deep) || self.is_thrown_far() || self.passes_through()
+        let has_left = |contact: &ActiveContact| self.has_left_behind(contact);
+        self.contacts.iter().any(has_left) || self.is_thrown_far() || self.passes_through()
+    }
+
+    /// Whether the point of a contact that geometry has no gap for has gone deep behind what it met, in bodies that move by more than
+    /// their size: then it has not slid to a neighbour but come through.
+    fn has_left_behind(&self, contact: &ActiveContact) -> bool {
+        let attachments = contact.kinematics.attachments().iter();
+        let sizes = attachments.map(|grip| match &self.blocks[grip.block] {
+            Block::Flex(block) => block.size(),
+            Block::Rigid(_) => f64::INFINITY,
+        });
+        let size = sizes.fold(f64::INFINITY, f64::min);
+        let way = contact.known.map_or(0.0, |(_, moved)| moved.norm());
+        contact.is_lost && contact.gap() < -DEEP * size && way > size
     }
 
     /// Whether contact has thrown a flexible member farther than its size and than what hit it went.

@@ -9,7 +9,7 @@ use super::newton::Scale;
 use crate::constraint::contact::ContactMemory;
 use crate::kkt::delassus::assemble;
 use crate::kkt::island::{Island, IslandSummary, SolveSettings};
-use crate::kkt::iterate::{ANGLE_TOLERANCE, ROWS_KEPT_FROM};
+use crate::kkt::iterate::{ANGLE_TOLERANCE, ROWS_KEPT_FROM, STRAYED};
 use crate::kkt::multipliers::prepare;
 use crate::kkt::position::PARTING_RATE;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
@@ -88,7 +88,9 @@ impl Island {
             let is_narrow = epsilon == functions.epsilon || self.contacts.is_empty();
             if is_quiet && is_narrow && residual <= allowed {
                 self.settle_functions(functions);
-                return true;
+                let is_true =
+                    iteration < GAPS_KEPT_FROM || self.measure(false) <= STRAYED * trial.tolerance;
+                return is_true;
             }
             let refreshes = iteration < ROWS_KEPT_FROM || residual < NEARLY && !is_near;
             is_near |= residual < NEARLY;
