@@ -1,5 +1,8 @@
 //! Bad input gives a typed error that names the culprit and the cure and changes nothing; the world goes on after it.
 
+mod common;
+
+use common::{elastic, motion_of, sick_flexible};
 use foil2d::body::{BuildError, FlexBodyError};
 use foil2d::fe::material::MaterialError;
 use foil2d::fe::mesh::MeshError;
@@ -13,9 +16,7 @@ use foil2d::rapier::prelude::*;
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 fn rubber() -> LinearElastic {
-    LinearElastic::plane_stress(1e6, 0.3)
-        .density(1000.0)
-        .rayleigh(2e-3)
+    elastic(1e6, 1000.0, 2e-3)
 }
 
 fn square() -> FlexBodyBuilder {
@@ -94,10 +95,7 @@ impl Scene {
             }
         }
         for (_, body) in self.world.rigid_bodies() {
-            let (at, turn) = (body.translation(), body.rotation());
-            let (linvel, angvel) = (body.linvel(), body.angvel());
-            let motion: [Real; 7] = [at.x, at.y, turn.re, turn.im, linvel.x, linvel.y, angvel];
-            state.extend(motion.map(|x| f64::from(x).to_bits()));
+            state.extend(motion_of(body).map(f64::to_bits));
             state.push(u64::from(body.locked_axes().bits()));
         }
         state
@@ -119,18 +117,7 @@ impl Scene {
 
     #[track_caller]
     fn assert_flexible_state_is_finite(&self) {
-        for (handle, body) in self.flex_bodies.iter() {
-            let state = body.state();
-            let all = [
-                &state.position,
-                &state.velocity,
-                &state.displacement,
-                &state.rate,
-                &state.acceleration,
-            ];
-            let is_finite = all.into_iter().flatten().all(|x| x.is_finite());
-            assert!(is_finite && state.torque.is_finite(), "{handle:?}");
-        }
+        assert_eq!(sick_flexible(&self.flex_bodies), None);
     }
 
     /// Steps for a second without an error and finds the block resting on the floor.

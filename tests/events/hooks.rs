@@ -23,11 +23,7 @@ fn slide(friction: f64) -> [f64; 2] {
     scene.ground(0.5);
     let moving = scene.flexible(block().active_hooks(MODIFY).linvel([2.0, 0.0]));
     let slab = FlexBodyBuilder::rectangle([6.0, 0.3], [24, 2])
-        .material(
-            LinearElastic::plane_stress(1e9, 0.3)
-                .density(1000.0)
-                .rayleigh(1e-3),
-        )
+        .material(elastic(1e9, 1000.0, 1e-3))
         .pin_where(|[_, y]| y == 0.0, Pin::both());
     scene.flexible(slab.translation([10.0, 0.0]));
     let at = RigidBodyBuilder::dynamic()
