@@ -295,21 +295,3 @@ fn hooks_never_see_claimed_bodies_locked() {
     assert!(filtered > 60 && modified > 60, "{filtered} and {modified}");
     assert_eq!(locked, 0);
 }
-
-#[test]
-fn numbers_that_are_no_numbers_left_by_a_hook_are_refused() {
-    let mut scene = Scene::new(DT);
-    scene.ground(0.5);
-    scene.flexible(block().active_hooks(MODIFY));
-    scene.steps(5);
-    let hooks = Material(Real::NAN, 0.0);
-    let refused = scene
-        .flex
-        .step_with_events(&mut scene.world, &mut scene.bodies, &hooks, &());
-    let said = refused
-        .map(|_| ())
-        .expect_err("a friction that is no number")
-        .to_string();
-    assert!(said.contains("modify_solver_contacts"), "{said}");
-    scene.steps(5);
-}
