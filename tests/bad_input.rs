@@ -1,5 +1,8 @@
 //! Bad input gives a typed error that names the culprit and the cure and changes nothing; the world goes on after it.
 
+mod common;
+
+use common::{elastic, motion_of, sick_flexible};
 use foil2d::body::{BuildError, FlexBodyError};
 use foil2d::fe::material::MaterialError;
 use foil2d::fe::mesh::MeshError;
@@ -13,9 +16,7 @@ use foil2d::rapier::prelude::*;
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 fn rubber() -> LinearElastic {
-    LinearElastic::plane_stress(1e6, 0.3)
-        .density(1000.0)
-        .rayleigh(2e-3)
+    elastic(1e6, 1000.0, 2e-3)
 }
 
 fn square() -> FlexBodyBuilder {
@@ -94,10 +95,7 @@ impl Scene {
             }
         }
         for (_, body) in self.world.rigid_bodies() {
-            let (at, turn) = (body.translation(), body.rotation());
-            let (linvel, angvel) = (body.linvel(), body.angvel());
-            let motion: [Real; 7] = [at.x, at.y, turn.re, turn.im, linvel.x, linvel.y, angvel];
-            state.extend(motion.map(|x| f64::from(x).to_bits()));
+            state.extend(motion_of(body).map(f64::to_bits));
             state.push(u64::from(body.locked_axes().bits()));
         }
         state
@@ -119,18 +117,7 @@ impl Scene {
 
     #[track_caller]
     fn assert_flexible_state_is_finite(&self) {
-        for (handle, body) in self.flex_bodies.iter() {
-            let state = body.state();
-            let all = [
-                &state.position,
-                &state.velocity,
-                &state.displacement,
-                &state.rate,
-                &state.acceleration,
-            ];
-            let is_finite = all.into_iter().flatten().all(|x| x.is_finite());
-            assert!(is_finite && state.torque.is_finite(), "{handle:?}");
-        }
+        assert_eq!(sick_flexible(&self.flex_bodies), None);
     }
 
     /// Steps for a second without an error and finds the block resting on the floor.
@@ -1068,18 +1055,66 @@ fn margins_of_a_disabled_collider_stop_nothing() {
 }
 
 #[test]
-fn a_prediction_distance_that_no_box_can_grow_by_is_refused() {
-    for bad in [Real::NAN, Real::INFINITY, -1.0] {
-        let mut scene = Scene::new();
-        scene.step().expect("a sound step");
-        let state = scene.state();
-        scene.world.integration_parameters.length_unit = bad;
-        let error = scene.step().expect_err("the boxes cannot grow");
-        assert!(matches!(error, StepError::Prediction(_)), "{error}");
-        assert_eq!(state, scene.state(), "length unit {bad}");
-        scene.world.integration_parameters.length_unit = 1.0;
-        scene.assert_goes_on();
+fn a_prediction_distance_that_no_box_can_grow_by_is_refused_and_leaves_no_trace() {
+    type Set = fn(&mut IntegrationParameters, Real);
+    let parameters: [(&str, Set); 2] = [
+        ("length unit", |all, value| all.length_unit = value),
+        ("normalised distance", |all, value| {
+            all.normalized_prediction_distance = value;
+        }),
+    ];
+    for (name, set) in parameters {
+        for bad in [
+            Real::NAN,
+            Real::INFINITY,
+            Real::NEG_INFINITY,
+            -1.0,
+            Real::MAX,
+        ] {
+            for warm_up in [0, 1, 30] {
+                let (mut scene, mut never) = (Scene::new(), Scene::new());
+                for _ in 0..warm_up {
+                    scene.step().expect("a sound step");
+                    never.step().expect("a sound step");
+                }
+                let state = scene.state();
+                let sound = scene.world.integration_parameters;
+                set(&mut scene.world.integration_parameters, bad);
+                let told = f64::from(scene.world.integration_parameters.prediction_distance());
+                for _ in 0..2 {
+                    let error = scene.step().expect_err("the boxes cannot grow");
+                    // The number itself, of which NaN is not equal to itself.
+                    let StepError::Prediction(distance) = error else {
+                        panic!("{name} {bad}: {error}");
+                    };
+                    assert!(
+                        distance.to_bits() == told.to_bits(),
+                        "{distance}, not {told}"
+                    );
+                    let said = error.to_string();
+                    assert!(said.contains("normalized_prediction_distance"), "{said}");
+                    assert_eq!(state, scene.state(), "{name} {bad}");
+                }
+                scene.world.integration_parameters = sound;
+                for _ in 0..30 {
+                    scene.step().expect("the world goes on");
+                    never.step().expect("the world goes on");
+                    assert_eq!(scene.state(), never.state(), "{name} {bad}");
+                }
+                scene.assert_goes_on();
+            }
+        }
     }
+}
+
+#[test]
+fn boxes_that_grow_by_nothing_still_collide() {
+    let mut scene = Scene::new();
+    scene
+        .world
+        .integration_parameters
+        .normalized_prediction_distance = 0.0;
+    scene.assert_goes_on();
 }
 
 #[test]

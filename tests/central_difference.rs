@@ -321,12 +321,8 @@ fn a_body_and_a_rigid_box_that_collide_keep_momentum() {
 }
 
 fn rubber(side: usize) -> FlexBodyBuilder {
-    FlexBodyBuilder::rectangle([1.0, 1.0], [side, side]).material(
-        LinearElastic::plane_stress(1e5, 0.3)
-            .density(1000.0)
-            .rayleigh(2e-4)
-            .rayleigh_mass(10.0),
-    )
+    FlexBodyBuilder::rectangle([1.0, 1.0], [side, side])
+        .material(elastic(1e5, 1000.0, 2e-4).rayleigh_mass(10.0))
 }
 
 /// A step well below the critical one of [`rubber`] with 10 cells a side (s).
@@ -371,11 +367,7 @@ fn a_sliding_block_stops_where_friction_stops_it() {
         scene.ground(0.3);
         let body = scene.flexible(
             FlexBodyBuilder::rectangle([1.0, 0.5], [12, 6])
-                .material(
-                    LinearElastic::plane_stress(1e7, 0.3)
-                        .density(1000.0)
-                        .rayleigh(5e-5),
-                )
+                .material(elastic(1e7, 1000.0, 5e-5))
                 .contact_inertia(inertia)
                 .friction(0.3)
                 .linvel([2.0, 0.0]),

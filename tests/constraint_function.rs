@@ -20,11 +20,7 @@ fn scene_with(method: ContactMethod, dt: f64) -> Scene {
 }
 
 fn block(n: usize) -> FlexBodyBuilder {
-    FlexBodyBuilder::rectangle([1.0, 0.5], [2 * n, n]).material(
-        LinearElastic::plane_stress(1e6, 0.3)
-            .density(1000.0)
-            .rayleigh(2e-3),
-    )
+    FlexBodyBuilder::rectangle([1.0, 0.5], [2 * n, n]).material(elastic(1e6, 1000.0, 2e-3))
 }
 
 /// A block that has come to rest weighs what it weighs, whatever the mesh and the step, in some three iterations.

@@ -62,11 +62,7 @@ fn grounds() -> Vec<(&'static str, ColliderBuilder)> {
 
 /// A unit block whose squeezing mode, `ω = π/2 sqrt(E / ρ)`, has a damping ratio of 0.3.
 fn block() -> FlexBodyBuilder {
-    FlexBodyBuilder::rectangle([1.0, 1.0], [8, 8]).material(
-        LinearElastic::plane_stress(1e7, 0.3)
-            .density(1000.0)
-            .rayleigh(3.8e-3),
-    )
+    FlexBodyBuilder::rectangle([1.0, 1.0], [8, 8]).material(elastic(1e7, 1000.0, 3.8e-3))
 }
 
 #[test]
@@ -113,11 +109,7 @@ fn a_flexible_plate_on_two_balls_shares_its_weight() {
     let plate = scene.flexible(
         FlexBodyBuilder::rectangle([1.5, 0.5], [15, 5])
             .translation([-0.25, 0.05])
-            .material(
-                LinearElastic::plane_stress(1e7, 0.3)
-                    .density(1000.0)
-                    .rayleigh(1e-2),
-            ),
+            .material(elastic(1e7, 1000.0, 1e-2)),
     );
     let mut gap = 0.0f64;
     for _ in 0..300 {
@@ -243,11 +235,7 @@ fn a_moving_platform_carries_a_flexible_block() {
             FlexBodyBuilder::rectangle([1.0, 1.0], [8, 8])
                 .friction(0.6)
                 .translation([-0.5, 0.0])
-                .material(
-                    LinearElastic::plane_stress(young, 0.3)
-                        .density(1000.0)
-                        .rayleigh(0.6 / omega),
-                ),
+                .material(elastic(young, 1000.0, 0.6 / omega)),
         );
         // Friction brings the block to 0.8 m/s in 0.14 s; then the platform rises too.
         for velocity in [[0.8, 0.0], [0.8, 0.5]] {

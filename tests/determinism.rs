@@ -1,11 +1,12 @@
 //! The same scene gives the same bits, and the order in which bodies were inserted is not physics.
 
+mod common;
 #[path = "snapshot/scenes.rs"]
 mod scenes;
 
+use common::{Hash, Recorder, elastic, motion_of};
 use foil2d::body::BuildError;
 use foil2d::prelude::*;
-use foil2d::rapier::math::Real;
 use foil2d::rapier::prelude::*;
 
 /// A world with named bodies.
@@ -18,9 +19,7 @@ struct Scene {
 }
 
 fn flexible(name: &str) -> FlexBodyBuilder {
-    let rubber = LinearElastic::plane_stress(2e8, 0.3)
-        .density(1000.0)
-        .rayleigh(2e-3);
+    let rubber = elastic(2e8, 1000.0, 2e-3);
     let builder = match name {
         "beam" => FlexBodyBuilder::rectangle([4.0, 0.3], [24, 3])
             .pin_where(|[x, y]| y == 0.0 && (x == 0.0 || x == 4.0), Pin::both())
@@ -93,23 +92,18 @@ impl Scene {
         }
         for (_, handle) in &self.boxes {
             let body = &self.world.bodies[*handle];
-            let (at, turn) = (body.translation(), body.rotation());
-            let (linvel, angvel) = (body.linvel(), body.angvel());
-            let pose: [Real; 4] = [at.x, at.y, turn.re, turn.im];
-            positions.extend(pose.map(f64::from));
-            velocities.extend([linvel.x, linvel.y, angvel].map(f64::from));
+            let motion = motion_of(body);
+            let (pose, rates) = motion.split_at(4);
+            positions.extend(pose);
+            velocities.extend(rates);
         }
         [positions, velocities]
     }
 
     /// FNV-1a over all bits of the state, of the committed motion in the frames and of the report.
     fn hash(&self) -> u64 {
-        let mut hash = 0xcbf2_9ce4_8422_2325u64;
-        let mut take = |value: f64| {
-            for byte in value.to_bits().to_le_bytes() {
-                hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-            }
-        };
+        let mut hash = Hash::default();
+        let mut take = |value: f64| hash.take(value);
         self.state().into_iter().flatten().for_each(&mut take);
         for (_, handle) in &self.blocks {
             let body = &self.flex_bodies[*handle];
@@ -129,7 +123,7 @@ impl Scene {
             take(contact.tangential_force);
         }
         take(report.energy().total());
-        hash
+        hash.0
     }
 }
 
@@ -183,29 +177,23 @@ fn the_order_of_insertion_changes_no_bit() -> Result<(), BuildError> {
 
 /// FNV-1a over the bits of every body, flexible and rigid, in the order of their handles.
 fn hash_of(run: &scenes::Run) -> u64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325u64;
-    let mut take = |value: f64| {
-        for byte in value.to_bits().to_le_bytes() {
-            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    };
+    let mut hash = Hash::default();
+    let mut take = |value: f64| hash.take(value);
     for (_, body) in run.flex_bodies.iter() {
         body.positions().iter().for_each(|x| take(*x));
         body.velocities().iter().for_each(|v| take(*v));
         body.total_contact_force().into_iter().for_each(&mut take);
     }
     for (_, body) in run.world.bodies.iter() {
-        let (at, turn, v) = (body.translation(), body.rotation(), body.linvel());
-        let numbers: [Real; 7] = [at.x, at.y, turn.re, turn.im, v.x, v.y, body.angvel()];
-        numbers.map(f64::from).into_iter().for_each(&mut take);
+        motion_of(body).into_iter().for_each(&mut take);
     }
-    hash
+    hash.0
 }
 
 #[test]
 fn a_scene_of_everything_comes_to_the_same_bits_and_events_twice() {
     let run = || {
-        let (mut run, log) = (scenes::everything(), scenes::Log::default());
+        let (mut run, log) = (scenes::everything(), Recorder::default());
         (0..200).for_each(|_| run.step(&log));
         (hash_of(&run), log.take())
     };
@@ -218,7 +206,7 @@ fn a_scene_of_everything_comes_to_the_same_bits_and_events_twice() {
 #[test]
 fn a_scene_of_everything_comes_to_the_same_bits_on_every_platform() {
     let mut run = scenes::everything();
-    let log = scenes::Log::default();
+    let log = Recorder::default();
     (0..300).for_each(|_| run.step(&log));
     let found = hash_of(&run);
     assert_eq!(found, 0x6cb5_b26d_d736_9e5c, "found {found:#018x}");
@@ -237,7 +225,7 @@ fn the_number_of_threads_changes_no_bit() {
         }
         let pipeline = &mut run.world.physics_pipeline;
         pipeline.configure_thread_pool(n_threads).expect("threads");
-        let log = scenes::Log::default();
+        let log = Recorder::default();
         (0..60).for_each(|_| run.step(&log));
         (hash_of(&run), log.take())
     };

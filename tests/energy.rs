@@ -172,11 +172,7 @@ fn stiffness_damping_decays_as_its_ratio_says() {
     let beta = 0.02 / omega;
     let mut scene = Scene::in_free_space(dt).with_integrator(Beta2::trapezoidal());
     let builder = FlexBodyBuilder::rectangle([1.0, 0.1], [20, 2])
-        .material(
-            LinearElastic::plane_stress(young, 0.3)
-                .density(1000.0)
-                .rayleigh(beta),
-        )
+        .material(elastic(young, 1000.0, beta))
         .pin_where(|[x, _]| x == 0.0, Pin::both());
     let velocities = first_mode_velocities(&builder, 0.1);
     scene.flexible(builder.velocities(velocities));
@@ -201,11 +197,7 @@ fn a_sliding_block_dissipates_friction_times_the_way() {
     scene.ground(mu);
     let block = scene.flexible(
         FlexBodyBuilder::rectangle([1.0, 0.5], [8, 8])
-            .material(
-                LinearElastic::plane_stress(1e9, 0.3)
-                    .density(1000.0)
-                    .rayleigh(1e-3),
-            )
+            .material(elastic(1e9, 1000.0, 1e-3))
             .friction(mu)
             .linvel([speed, 0.0]),
     );
@@ -257,11 +249,11 @@ fn weight_error(block: FlexBodyBuilder, dt: f64, seconds: f64) -> f64 {
 /// settling is left after `t`, 1e-8 after 4 s for the softest of the tests.
 fn damped_block(young: f64, cells: [usize; 2], kind: CellKind) -> FlexBodyBuilder {
     let omega = std::f64::consts::FRAC_PI_2 * (young / 1000.0).sqrt();
-    FlexBodyBuilder::rectangle_of([1.0, 1.0], cells, kind).material(
-        LinearElastic::plane_stress(young, 0.3)
-            .density(1000.0)
-            .rayleigh(0.6 / omega),
-    )
+    FlexBodyBuilder::rectangle_of([1.0, 1.0], cells, kind).material(elastic(
+        young,
+        1000.0,
+        0.6 / omega,
+    ))
 }
 
 const STEPS: [f64; 4] = [1.0 / 30.0, 1.0 / 60.0, 1.0 / 240.0, 1.0 / 1000.0];

@@ -12,5 +12,7 @@ mod filters;
 mod forces;
 #[path = "events/hooks.rs"]
 mod hooks;
+#[path = "events/refused_hooks.rs"]
+mod refused_hooks;
 #[path = "events/support.rs"]
 mod support;

@@ -13,11 +13,7 @@ fn incline(angle: f64, dt: f64, mu: f64) -> Scene {
 
 fn block(young: f64, mu: f64) -> FlexBodyBuilder {
     FlexBodyBuilder::rectangle([1.0, 0.5], [8, 8])
-        .material(
-            LinearElastic::plane_stress(young, 0.3)
-                .density(1000.0)
-                .rayleigh(1e-3),
-        )
+        .material(elastic(young, 1000.0, 1e-3))
         .friction(mu)
 }
 
@@ -134,11 +130,7 @@ fn a_rigid_box_slides_and_stops_on_a_flexible_beam() {
         let mut scene = Scene::new(1.0 / rate);
         scene.flexible(
             FlexBodyBuilder::rectangle([4.0, 0.2], [40, 4])
-                .material(
-                    LinearElastic::plane_stress(1e10, 0.3)
-                        .density(1000.0)
-                        .rayleigh(1e-3),
-                )
+                .material(elastic(1e10, 1000.0, 1e-3))
                 .friction(mu)
                 .pin_where(|[_, y]| y == 0.0, Pin::both()),
         );
@@ -174,11 +166,7 @@ fn a_disc_rolls_down_a_flexible_slab() {
             let mut scene = Scene::new(1.0 / rate).with_gravity(G * angle.sin(), -G * angle.cos());
             scene.flexible(
                 FlexBodyBuilder::rectangle([10.0, 0.5], [100, 3])
-                    .material(
-                        LinearElastic::plane_stress(2e11, 0.3)
-                            .density(7800.0)
-                            .rayleigh(1e-3),
-                    )
+                    .material(elastic(2e11, 7800.0, 1e-3))
                     .friction(mu)
                     .pin_where(|[_, y]| y == 0.0, Pin::both()),
             );
@@ -217,9 +205,7 @@ fn drop_spinning(young: f64, spin: f64, rate: f64) -> [f64; 2] {
     let (mu, seconds) = (0.5, 3.0);
     let mut scene = Scene::new(1.0 / rate);
     scene.ground(mu);
-    let material = LinearElastic::plane_stress(young, 0.3)
-        .density(1000.0)
-        .rayleigh(1e-4);
+    let material = elastic(young, 1000.0, 1e-4);
     let body = scene.flexible(
         FlexBodyBuilder::rectangle([0.2, 0.2], [8, 8])
             .material(material)

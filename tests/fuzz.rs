@@ -42,14 +42,7 @@ fn play(seed: u64) -> Outcome<()> {
     let scene = &mut play.scene;
     scene.world.gravity = vec2(0.0, -G);
     scene.world.integration_parameters.dt = real(1.0 / 60.0);
-    let block = FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4])
-        .material(
-            LinearElastic::plane_stress(1e6, 0.3)
-                .density(1000.0)
-                .rayleigh(2e-2),
-        )
-        .translation([-0.5, 0.001]);
-    let block = scene.flexible(block);
+    let block = scene.flexible(soft_block(2e-2).translation([-0.5, 0.001]));
     scene.steps(120);
     let body = scene.body(block);
     let ratio = body.total_contact_force()[1] / (G * body.mass());

@@ -14,6 +14,9 @@ mod beside_rapier;
 #[path = "joints/attachments.rs"]
 mod attachments;
 
+#[path = "joints/flung.rs"]
+mod flung;
+
 #[path = "joints/forces.rs"]
 mod forces;
 

@@ -1,5 +1,8 @@
 //! The flexible stage leaves rapier alone: bit for bit without flexible bodies, and in behaviour where they are far away.
 
+mod common;
+
+use common::{motion_of, soft_block};
 use foil2d::body::BuildError;
 use foil2d::prelude::*;
 use foil2d::rapier::math::Real;
@@ -115,23 +118,14 @@ fn add_pairs(world: &mut PhysicsWorld) {
 fn bits(world: &PhysicsWorld) -> Vec<u64> {
     let mut bits = Vec::new();
     for (_, body) in world.rigid_bodies() {
-        let (at, turn) = (body.translation(), body.rotation());
-        let (linvel, angvel) = (body.linvel(), body.angvel());
-        let motion = [at.x, at.y, turn.re, turn.im, linvel.x, linvel.y, angvel];
-        bits.extend(motion.map(|x| f64::from(x).to_bits()));
+        bits.extend(motion_of(body).map(f64::to_bits));
         bits.push(u64::from(body.is_sleeping()));
     }
     bits
 }
 
 fn block_at(x: f64, y: f64) -> FlexBodyBuilder {
-    FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4])
-        .material(
-            LinearElastic::plane_stress(1e6, 0.3)
-                .density(1000.0)
-                .rayleigh(2e-3),
-        )
-        .translation([x, y])
+    soft_block(2e-3).translation([x, y])
 }
 
 #[test]

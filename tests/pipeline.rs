@@ -2,6 +2,7 @@
 
 #[path = "pipeline/coming_and_going.rs"]
 mod coming_and_going;
+mod common;
 #[path = "pipeline/loads.rs"]
 mod loads;
 #[path = "pipeline/rapier_features.rs"]

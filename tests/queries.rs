@@ -8,11 +8,7 @@ use common::*;
 fn sagging() -> (Scene, FlexBodyHandle) {
     let mut scene = Scene::new(1.0 / 60.0);
     let beam = FlexBodyBuilder::rectangle([4.0, 0.2], [32, 2])
-        .material(
-            LinearElastic::plane_stress(1e8, 0.3)
-                .density(1000.0)
-                .rayleigh(1e-2),
-        )
+        .material(elastic(1e8, 1000.0, 1e-2))
         .pin_where(|[x, _]| x == 0.0 || x == 4.0, Pin::both())
         .translation([-2.0, 1.0]);
     let beam = scene.flexible(beam);

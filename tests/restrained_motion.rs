@@ -10,11 +10,7 @@ use foil2d::pipeline::ContactReport;
 const DT: f64 = 1.0 / 240.0;
 
 fn block(size: [f64; 2], cells: [usize; 2]) -> FlexBodyBuilder {
-    FlexBodyBuilder::rectangle(size, cells).material(
-        LinearElastic::plane_stress(1e6, 0.3)
-            .density(1000.0)
-            .rayleigh(1e-2),
-    )
+    FlexBodyBuilder::rectangle(size, cells).material(elastic(1e6, 1000.0, 1e-2))
 }
 
 /// The lowest node of a body (m).
@@ -154,20 +150,12 @@ fn contact_and_friction_are_carried_across_the_ends_of_segments() {
     let dt = 1.0 / 480.0;
     let mut scene = Scene::new(dt).with_integrator(Beta2::default());
     let slab = FlexBodyBuilder::rectangle([4.0, 0.2], [37, 2])
-        .material(
-            LinearElastic::plane_stress(1e9, 0.3)
-                .density(1000.0)
-                .rayleigh(1e-3),
-        )
+        .material(elastic(1e9, 1000.0, 1e-3))
         .friction(friction)
         .pin_where(|[_, y]| y == 0.0, Pin::both());
     scene.flexible(slab);
     let slider = FlexBodyBuilder::rectangle([0.2, 0.1], [4, 2])
-        .material(
-            LinearElastic::plane_stress(1e8, 0.3)
-                .density(1000.0)
-                .rayleigh(1e-3),
-        )
+        .material(elastic(1e8, 1000.0, 1e-3))
         .friction(friction)
         .translation([0.3, 0.2])
         .linvel([speed, 0.0]);

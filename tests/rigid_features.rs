@@ -368,11 +368,7 @@ fn dominant_bodies_are_not_moved_by_those_they_dominate() {
 fn a_dominated_box_rests_on_a_flexible_block_without_weighing_on_it() {
     let mut scene = Scene::new(DT);
     scene.ground(0.5);
-    let block = FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4]).material(
-        LinearElastic::plane_stress(1e6, 0.3)
-            .density(1000.0)
-            .rayleigh(2e-2),
-    );
+    let block = FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4]).material(elastic(1e6, 1000.0, 2e-2));
     let block = scene.flexible(block);
     let (heavy, _) = scene.rigid(at(0.5, 1.25).dominance_group(-1), crate_of(4000.0));
     scene.steps(480);

@@ -113,11 +113,11 @@ fn fall(view: View, seconds: f64) -> Vec<[f64; 2]> {
         .collect();
     let block = scene.flexible(
         FlexBodyBuilder::cells(nodes, CellKind::Quad4, &cells)
-            .material(
-                LinearElastic::plane_stress(1e6 * mass / length / time / time, 0.3)
-                    .density(density)
-                    .rayleigh(1e-3 * time),
-            )
+            .material(elastic(
+                1e6 * mass / length / time / time,
+                density,
+                1e-3 * time,
+            ))
             .thickness(length)
             .linvel(view.velocity([0.5, -1.0]))
             .angvel(view.spin(-0.5)),
@@ -203,11 +203,7 @@ fn meet(is_swapped: bool, rate: f64) -> [[f64; 3]; 2] {
     let block = |is_left: bool| {
         let builder = FlexBodyBuilder::rectangle([1.0, 1.0], [8, 8])
             .friction(0.5)
-            .material(
-                LinearElastic::plane_stress(1e6, 0.3)
-                    .density(1000.0)
-                    .rayleigh(1e-4),
-            );
+            .material(elastic(1e6, 1000.0, 1e-4));
         if is_left {
             builder.linvel([1.0, 0.0])
         } else {

@@ -5,11 +5,7 @@ mod common;
 use common::*;
 
 fn block(young: f64) -> FlexBodyBuilder {
-    FlexBodyBuilder::rectangle([0.5, 0.25], [6, 3]).material(
-        LinearElastic::plane_stress(young, 0.3)
-            .density(1000.0)
-            .rayleigh(1e-3),
-    )
+    FlexBodyBuilder::rectangle([0.5, 0.25], [6, 3]).material(elastic(young, 1000.0, 1e-3))
 }
 
 fn sleeps(scene: &Scene, body: FlexBodyHandle) -> bool {

@@ -1,5 +1,6 @@
 //! Snapshots: a run that was saved and restored goes on bit for bit, and data that is not ours or damaged is refused.
 
+mod common;
 #[path = "snapshot/laws.rs"]
 mod laws;
 #[path = "snapshot/rapier_alone.rs"]

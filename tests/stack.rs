@@ -45,11 +45,7 @@ fn three_boxes(masses: [f64; 3], x: f64, dt: f64) -> f64 {
     let mut scene = Scene::new(dt);
     let beam = scene.flexible(
         FlexBodyBuilder::rectangle([4.0, 0.2], [40, 4])
-            .material(
-                LinearElastic::plane_stress(1e10, 0.3)
-                    .density(1000.0)
-                    .rayleigh(0.02),
-            )
+            .material(elastic(1e10, 1000.0, 0.02))
             .pin_where(|[x, y]| y == 0.0 && (x == 0.0 || x == 4.0), Pin::both()),
     );
     let boxes: Vec<_> = (0..3)
@@ -143,11 +139,7 @@ fn a_box_on_four_points_presses_evenly() {
     let mut scene = Scene::new(1.0 / 60.0);
     scene.ground(0.5);
     let block = scene.flexible(
-        FlexBodyBuilder::rectangle([2.0, 0.5], [16, 4]).material(
-            LinearElastic::plane_stress(1e8, 0.3)
-                .density(1000.0)
-                .rayleigh(5e-3),
-        ),
+        FlexBodyBuilder::rectangle([2.0, 0.5], [16, 4]).material(elastic(1e8, 1000.0, 5e-3)),
     );
     let body = RigidBodyBuilder::dynamic()
         .translation(vec2(1.0, 0.7))
@@ -212,11 +204,7 @@ fn four_supports_under_a_rigid_box_share_its_weight_equally() {
         scene.flexible(
             FlexBodyBuilder::rectangle([0.2, 0.4], [4, 8])
                 .translation([x, 0.0])
-                .material(
-                    LinearElastic::plane_stress(1e8, 0.3)
-                        .density(1000.0)
-                        .rayleigh(5e-3),
-                )
+                .material(elastic(1e8, 1000.0, 5e-3))
                 .pin_where(|[_, y]| y == 0.0, Pin::both()),
         )
     });
@@ -243,11 +231,7 @@ fn edge_on_edge(rate: f64) -> [f64; 2] {
         if layer % 2 == 0 {
             scene.flexible(
                 FlexBodyBuilder::rectangle([0.5, 0.25], [6, 3])
-                    .material(
-                        LinearElastic::plane_stress(1e6, 0.3)
-                            .density(1000.0)
-                            .rayleigh(1e-3),
-                    )
+                    .material(elastic(1e6, 1000.0, 1e-3))
                     .translation([-0.25, bottom]),
             );
         } else {
@@ -288,11 +272,7 @@ fn a_tower_on_a_soft_block_does_not_rock_itself_up() {
         scene.ground(0.5);
         scene.flexible(
             FlexBodyBuilder::rectangle([0.5, 0.3], [6, 4])
-                .material(
-                    LinearElastic::plane_stress(1e7, 0.3)
-                        .density(1000.0)
-                        .rayleigh(1e-3),
-                )
+                .material(elastic(1e7, 1000.0, 1e-3))
                 .friction(0.5)
                 .translation([-0.25, 0.0]),
         );

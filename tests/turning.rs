@@ -64,11 +64,7 @@ fn a_turning_box_does_not_end_up_inside_the_plank_it_lands_on() {
         let mut scene = Scene::new(1.0 / 60.0);
         scene.flexible(
             FlexBodyBuilder::rectangle([6.0, 0.3], [60, 3])
-                .material(
-                    LinearElastic::plane_stress(1e10, 0.3)
-                        .density(2000.0)
-                        .rayleigh(1e-4),
-                )
+                .material(elastic(1e10, 2000.0, 1e-4))
                 .pin_where(|[_, y]| y == 0.0, Pin::both())
                 .translation([-3.0, 0.0]),
         );

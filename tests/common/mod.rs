@@ -2,13 +2,21 @@
 
 #![allow(
     dead_code,
+    unused_imports,
     reason = "every test binary uses its own part of this module"
 )]
+
+mod motion;
+mod parts;
+mod recorder;
 
 use foil2d::pipeline::{Participant, StepError};
 pub use foil2d::prelude::*;
 use foil2d::rapier::math::Real;
 pub use foil2d::rapier::prelude::*;
+pub use motion::*;
+pub use parts::*;
+pub use recorder::*;
 
 /// Gravity of all scenes that have one (m/s²): near 9.81, and exact in both of rapier's precisions.
 pub const G: f64 = 9.8125;
@@ -32,6 +40,21 @@ pub fn by_precision(single: f64, double: f64) -> f64 {
     }
 }
 
+/// An empty world with gravity `[0, -G]`, stepped by `dt` (s).
+pub fn empty_world(dt: f64) -> PhysicsWorld {
+    let mut world = PhysicsWorld::new();
+    world.integration_parameters.dt = real(dt);
+    world.gravity = vec2(0.0, -G);
+    world
+}
+
+/// A cuboid whose upper face is `y = 0`, with this friction (-).
+pub fn floor(friction: f64) -> ColliderBuilder {
+    ColliderBuilder::cuboid(50.0, 0.5)
+        .translation(vec2(0.0, -0.5))
+        .friction(real(friction))
+}
+
 /// A world, its flexible bodies and their pipeline.
 pub struct Scene {
     pub world: PhysicsWorld,
@@ -42,11 +65,8 @@ pub struct Scene {
 impl Scene {
     /// An empty world with gravity `[0, -G]`, stepped by `dt` (s).
     pub fn new(dt: f64) -> Self {
-        let mut world = PhysicsWorld::new();
-        world.integration_parameters.dt = real(dt);
-        world.gravity = vec2(0.0, -G);
         Self {
-            world,
+            world: empty_world(dt),
             bodies: FlexBodySet::new(),
             flex: FlexPipeline::new(),
         }
@@ -71,11 +91,7 @@ impl Scene {
 
     /// A fixed cuboid whose upper face is `y = 0`, with this friction (-).
     pub fn ground(&mut self, friction: f64) -> ColliderHandle {
-        self.fixed(
-            ColliderBuilder::cuboid(50.0, 0.5)
-                .translation(vec2(0.0, -0.5))
-                .friction(real(friction)),
-        )
+        self.fixed(floor(friction))
     }
 
     pub fn fixed(&mut self, collider: ColliderBuilder) -> ColliderHandle {

@@ -154,11 +154,7 @@ fn a_pair_that_rapier_takes_over_goes_on_and_does_not_start_again() {
         .active_events(ALL);
     let at = RigidBodyBuilder::dynamic().translation(vec2(0.0, 0.25));
     let (_, surface) = scene.rigid(at, shape);
-    let small = FlexBodyBuilder::rectangle([0.4, 0.2], [4, 2]).material(
-        LinearElastic::plane_stress(1e6, 0.3)
-            .density(500.0)
-            .rayleigh(2e-2),
-    );
+    let small = FlexBodyBuilder::rectangle([0.4, 0.2], [4, 2]).material(elastic(1e6, 500.0, 2e-2));
     let small = scene.flexible(small.translation([-0.2, 0.5]));
     let floor_of = |event: &&ContactForceEvent, surface| {
         let known = [event.collider1, event.collider2];

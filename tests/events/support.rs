@@ -102,13 +102,7 @@ impl Touching {
 
 /// A block of 1 m and 1000 kg that comes to rest within a second.
 pub fn block() -> FlexBodyBuilder {
-    FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4])
-        .material(
-            LinearElastic::plane_stress(1e6, 0.3)
-                .density(1000.0)
-                .rayleigh(2e-2),
-        )
-        .active_events(ALL)
+    soft_block(2e-2).active_events(ALL)
 }
 
 pub const DT: f64 = 1.0 / 60.0;

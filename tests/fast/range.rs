@@ -1,9 +1,7 @@
 //! The range: a target, a projectile aimed at it, and what became of them.
 
-use crate::common::{Dice, Scene, real, vec2};
+use crate::common::*;
 use crate::crossing::{Frame, P, mix, net_crossings, side};
-use foil2d::prelude::*;
-use foil2d::rapier::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// What is shot at.
@@ -166,11 +164,7 @@ impl Range {
                 let corner = shot.out([-half, -0.5 * shot.thickness]);
                 let mut sheet =
                     FlexBodyBuilder::rectangle([shot.length, shot.thickness], [shot.n_cells, 1])
-                        .material(
-                            LinearElastic::plane_stress(shot.sheet_young, 0.3)
-                                .density(shot.sheet_density)
-                                .rayleigh(shot.rayleigh),
-                        )
+                        .material(elastic(shot.sheet_young, shot.sheet_density, shot.rayleigh))
                         .friction(shot.friction)
                         .rotation(shot.turn)
                         .translation(corner);
@@ -219,11 +213,7 @@ impl Range {
         if shot.projectile == Projectile::Flexible {
             let corner = shot.out([-0.5 * size, -0.5 * size]);
             let bullet = FlexBodyBuilder::rectangle([size, size], [shot.n_bullet; 2])
-                .material(
-                    LinearElastic::plane_stress(shot.young, 0.3)
-                        .density(shot.density)
-                        .rayleigh(shot.rayleigh),
-                )
+                .material(elastic(shot.young, shot.density, shot.rayleigh))
                 .friction(shot.friction)
                 .rotation(shot.turn)
                 .translation([start[0] + corner[0], start[1] + corner[1]])
@@ -288,17 +278,7 @@ impl Range {
     }
 
     fn is_finite(&self) -> bool {
-        let flexible = self.scene.bodies.iter().all(|(_, body)| {
-            let mut all = body.positions().iter().chain(body.velocities());
-            all.all(|x| x.is_finite())
-        });
-        let rigid = self.scene.world.rigid_bodies().all(|(_, body)| {
-            let (at, speed) = (body.translation(), body.linvel());
-            [at.x, at.y, speed.x, speed.y, body.angvel()]
-                .iter()
-                .all(|x| x.is_finite())
-        });
-        flexible && rigid
+        sick_flexible(&self.scene.bodies).is_none() && sick_rigid(&self.scene.world).is_none()
     }
 
     /// Steps until the shot must have arrived and been turned back.

@@ -12,18 +12,7 @@ const FASTEST: f64 = 4e3;
 impl Play {
     /// All bits of the motion of all bodies.
     pub fn bits(&self) -> Vec<u64> {
-        let mut bits = Vec::new();
-        for (_, body) in self.scene.bodies.iter() {
-            let all = body.positions().iter().chain(body.velocities());
-            bits.extend(all.map(|x| x.to_bits()));
-        }
-        for (_, body) in self.scene.world.rigid_bodies() {
-            let (at, turn) = (body.translation(), body.rotation());
-            let (linvel, angvel) = (body.linvel(), body.angvel());
-            let motion = [at.x, at.y, turn.re, turn.im, linvel.x, linvel.y, angvel];
-            bits.extend(motion.map(|x| f64::from(x).to_bits()));
-        }
-        bits
+        motion_bits(&self.scene.world, &self.scene.bodies)
     }
 
     /// Rapier holds a carrier for every flexible body and a surface on it, and nothing else of ours.
@@ -70,27 +59,13 @@ impl Play {
     pub fn assert_finite(&mut self) {
         let context = &self.context;
         let mut fastest = 0.0f64;
+        assert_eq!(sick_flexible(&self.scene.bodies), None, "{context}");
+        assert_eq!(sick_rigid(&self.scene.world), None, "{context}");
         for (handle, body) in self.scene.bodies.iter() {
-            let state = body.state();
-            let all = [
-                &state.position,
-                &state.velocity,
-                &state.displacement,
-                &state.rate,
-                &state.acceleration,
-            ];
-            let is_finite = all.into_iter().flatten().all(|x| x.is_finite());
-            assert!(is_finite, "{context}: {handle:?}");
             let speeds = body.velocities().iter().map(|v| v.abs());
             let speed = speeds.fold(0.0, f64::max);
             assert!(speed < FASTEST, "{context}: {handle:?} at {speed:e} m/s");
             fastest = fastest.max(speed);
-        }
-        for (handle, body) in self.scene.world.rigid_bodies() {
-            let is_finite = body.translation().is_finite()
-                && body.linvel().is_finite()
-                && body.angvel().is_finite();
-            assert!(is_finite, "{context}: {handle:?}");
         }
         self.fastest = self.fastest.max(fastest);
     }

@@ -7,9 +7,7 @@ use foil2d::body::{AttachmentTarget, ContactSettings, FlexBodyError};
 use foil2d::rapier::math::Real;
 
 fn builder(chance: &mut Chance) -> FlexBodyBuilder {
-    let material = LinearElastic::plane_stress(chance.within(1e6, 1e8), 0.3)
-        .density(1000.0)
-        .rayleigh(2e-3);
+    let material = elastic(chance.within(1e6, 1e8), 1000.0, 2e-3);
     let builder = match chance.below(5) {
         0 => FlexBodyBuilder::rectangle([0.6, 0.4], [3, 3]),
         1 => FlexBodyBuilder::disc(0.3, 0.2),

@@ -12,44 +12,23 @@ fn joint(chance: &mut Chance) -> GenericJoint {
     let axis = vec2(0.6, 0.8);
     let speed = real(chance.within(-5.0, 5.0));
     let mut joint: GenericJoint = match chance.below(8) {
-        0 => RevoluteJointBuilder::new()
-            .local_anchor1(one)
-            .local_anchor2(other)
-            .into(),
+        0 => RevoluteJointBuilder::new().into(),
         1 => RevoluteJointBuilder::new()
-            .local_anchor1(one)
-            .local_anchor2(other)
             .motor_velocity(speed, 100.0)
             .limits([-1.0, 1.5])
             .into(),
-        2 => FixedJointBuilder::new()
-            .local_anchor1(one)
-            .local_anchor2(other)
-            .into(),
-        3 => PrismaticJointBuilder::new(axis)
-            .local_anchor1(one)
-            .local_anchor2(other)
-            .limits([-0.5, 0.5])
-            .into(),
+        2 => FixedJointBuilder::new().into(),
+        3 => PrismaticJointBuilder::new(axis).limits([-0.5, 0.5]).into(),
         4 => PrismaticJointBuilder::new(axis)
-            .local_anchor1(one)
-            .local_anchor2(other)
             .motor_position(0.3, 500.0, 50.0)
             .motor_max_force(1e4)
             .into(),
-        5 => RopeJointBuilder::new(1.0)
-            .local_anchor1(one)
-            .local_anchor2(other)
-            .into(),
-        6 => SpringJointBuilder::new(0.5, 1000.0, 20.0)
-            .local_anchor1(one)
-            .local_anchor2(other)
-            .into(),
-        _ => PinSlotJointBuilder::new(axis)
-            .local_anchor1(one)
-            .local_anchor2(other)
-            .into(),
+        5 => RopeJointBuilder::new(1.0).into(),
+        6 => SpringJointBuilder::new(0.5, 1000.0, 20.0).into(),
+        _ => PinSlotJointBuilder::new(axis).into(),
     };
+    joint.set_local_anchor1(one);
+    joint.set_local_anchor2(other);
     joint.set_contacts_enabled(chance.one_in(2));
     joint
 }

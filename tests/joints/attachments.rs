@@ -7,11 +7,7 @@ use foil2d::pipeline::Held;
 
 /// A beam of 2 m along x, its left end at the origin.
 fn beam() -> FlexBodyBuilder {
-    FlexBodyBuilder::rectangle([2.0, 0.2], [20, 2]).material(
-        LinearElastic::plane_stress(2e8, 0.3)
-            .density(1000.0)
-            .rayleigh(2e-2),
-    )
+    FlexBodyBuilder::rectangle([2.0, 0.2], [20, 2]).material(elastic(2e8, 1000.0, 2e-2))
 }
 
 fn is_left_end([x, _]: [f64; 2]) -> bool {
@@ -92,11 +88,7 @@ fn a_plate_hung_from_a_pin_swings_about_it() {
     let (width, height) = (1.0, 0.5);
     let plate = scene.flexible(
         FlexBodyBuilder::rectangle([width, height], [8, 4])
-            .material(
-                LinearElastic::plane_stress(1e8, 0.3)
-                    .density(1000.0)
-                    .rayleigh(1e-4),
-            )
+            .material(elastic(1e8, 1000.0, 1e-4))
             .rotation(-std::f64::consts::FRAC_PI_2 + 0.1)
             .translation([-0.25 * 0.1f64.cos(), -0.25 * 0.1f64.sin()]),
     );
@@ -134,11 +126,7 @@ fn a_block_on_a_spring_sags_and_swings_as_it_must() {
     // m = 62.5 kg on k = 5000 N/m: sag m g / k, frequency √(k/m).
     let mut scene = Scene::new(DT).with_integrator(Beta2::trapezoidal());
     let block = scene.flexible(
-        FlexBodyBuilder::rectangle([0.25, 0.25], [2, 2]).material(
-            LinearElastic::plane_stress(1e8, 0.3)
-                .density(1000.0)
-                .rayleigh(1e-4),
-        ),
+        FlexBodyBuilder::rectangle([0.25, 0.25], [2, 2]).material(elastic(1e8, 1000.0, 1e-4)),
     );
     let (k, m) = (5000.0, scene.body(block).mass());
     let spring = AttachmentBuilder::spring_damper(block, k, 0.0)

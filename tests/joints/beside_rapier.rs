@@ -13,25 +13,17 @@ type Build = fn(&mut PhysicsWorld, RigidBodyHandle) -> Vec<RigidBodyHandle>;
 
 /// A locked body at the origin, as [`claimed_anchor`], without anything flexible.
 fn plain_world(dt: f64) -> (PhysicsWorld, RigidBodyHandle) {
-    let mut world = PhysicsWorld::new();
-    world.integration_parameters.dt = real(dt);
+    let mut world = empty_world(dt);
     world.integration_parameters.num_solver_iterations = 8;
-    world.gravity = vec2(0.0, -G);
-    let anchor = world.insert_body(
-        RigidBodyBuilder::dynamic()
-            .locked_axes(LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED),
-    );
+    let anchor = world.insert_body(locked_body());
     (world, anchor)
 }
 
 fn places(world: &PhysicsWorld, bodies: &[RigidBodyHandle]) -> Vec<[f64; 3]> {
     let place = |&body: &RigidBodyHandle| {
-        let (at, turn) = (
-            world.bodies[body].translation(),
-            world.bodies[body].rotation(),
-        );
-        let angle = f64::from(turn.im).atan2(f64::from(turn.re));
-        [f64::from(at.x), f64::from(at.y), angle]
+        let body = &world.bodies[body];
+        let [x, y] = place_of(body);
+        [x, y, turn_of(body)]
     };
     bodies.iter().map(place).collect()
 }
@@ -72,19 +64,6 @@ fn difference(build: Build) -> f64 {
     worst / moved
 }
 
-fn body(world: &mut PhysicsWorld, at: [f64; 2], mass: f64, inertia: f64) -> RigidBodyHandle {
-    world.insert_body(
-        RigidBodyBuilder::dynamic()
-            .translation(vec2(at[0], at[1]))
-            .can_sleep(false)
-            .additional_mass_properties(MassProperties::new(
-                vec2(0.0, 0.0),
-                real(mass),
-                real(inertia),
-            )),
-    )
-}
-
 fn joined(
     world: &mut PhysicsWorld,
     one: RigidBodyHandle,
@@ -94,28 +73,29 @@ fn joined(
     world.impulse_joints.insert(one, other, joint, true);
 }
 
+/// An arm of 1 kg that begins level, on this joint.
+fn an_arm(
+    world: &mut PhysicsWorld,
+    anchor: RigidBodyHandle,
+    joint: RevoluteJointBuilder,
+) -> Vec<RigidBodyHandle> {
+    let arm = add_free_body(world, [0.5, 0.0], 1.0, 0.1);
+    joined(world, anchor, arm, joint);
+    vec![arm]
+}
+
 fn double_pendulum(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let first = body(world, [0.5, 0.0], 1.0, 0.1);
-    let second = body(world, [1.5, 0.0], 2.0, 0.2);
-    let hinge = |a: f64, b: f64| {
-        RevoluteJointBuilder::new()
-            .local_anchor1(vec2(a, 0.0))
-            .local_anchor2(vec2(b, 0.0))
-    };
-    joined(world, anchor, first, hinge(0.0, -0.5));
-    joined(world, first, second, hinge(0.5, -0.5));
+    let first = add_free_body(world, [0.5, 0.0], 1.0, 0.1);
+    let second = add_free_body(world, [1.5, 0.0], 2.0, 0.2);
+    joined(world, anchor, first, hinge([0.0, 0.0], [-0.5, 0.0]));
+    joined(world, first, second, hinge([0.5, 0.0], [-0.5, 0.0]));
     vec![first, second]
 }
 
 fn welded_pair(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let first = body(world, [0.5, 0.0], 1.0, 0.1);
-    let second = body(world, [1.0, 0.5], 2.0, 0.2);
-    joined(
-        world,
-        anchor,
-        first,
-        RevoluteJointBuilder::new().local_anchor2(vec2(-0.5, 0.0)),
-    );
+    let first = add_free_body(world, [0.5, 0.0], 1.0, 0.1);
+    let second = add_free_body(world, [1.0, 0.5], 2.0, 0.2);
+    joined(world, anchor, first, hinge([0.0, 0.0], [-0.5, 0.0]));
     joined(
         world,
         first,
@@ -128,14 +108,9 @@ fn welded_pair(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBo
 }
 
 fn slider_on_pendulum(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let first = body(world, [0.5, 0.0], 2.0, 0.4);
-    let bead = body(world, [0.2, 0.0], 1.0, 0.1);
-    joined(
-        world,
-        anchor,
-        first,
-        RevoluteJointBuilder::new().local_anchor2(vec2(-0.5, 0.0)),
-    );
+    let first = add_free_body(world, [0.5, 0.0], 2.0, 0.4);
+    let bead = add_free_body(world, [0.2, 0.0], 1.0, 0.1);
+    joined(world, anchor, first, hinge([0.0, 0.0], [-0.5, 0.0]));
     joined(
         world,
         first,
@@ -146,7 +121,7 @@ fn slider_on_pendulum(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<
 }
 
 fn slider_with_limits(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let bead = body(world, [0.0, 0.0], 1.0, 0.1);
+    let bead = add_free_body(world, [0.0, 0.0], 1.0, 0.1);
     joined(
         world,
         anchor,
@@ -157,20 +132,12 @@ fn slider_with_limits(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<
 }
 
 fn hinge_with_limits(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let arm = body(world, [0.5, 0.0], 1.0, 0.1);
-    joined(
-        world,
-        anchor,
-        arm,
-        RevoluteJointBuilder::new()
-            .local_anchor2(vec2(-0.5, 0.0))
-            .limits([-0.8, 0.5]),
-    );
-    vec![arm]
+    let joint = hinge([0.0, 0.0], [-0.5, 0.0]).limits([-0.8, 0.5]);
+    an_arm(world, anchor, joint)
 }
 
 fn pin_in_slot(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let slider = body(world, [0.3, -0.4], 1.0, 0.1);
+    let slider = add_free_body(world, [0.3, -0.4], 1.0, 0.1);
     joined(
         world,
         anchor,
@@ -182,16 +149,9 @@ fn pin_in_slot(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBo
 
 fn guided_turn(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
     // Only the turn is locked: a generic mask.
-    let first = body(world, [0.5, 0.0], 1.0, 0.1);
-    let second = body(world, [1.0, 0.0], 1.0, 0.1);
-    joined(
-        world,
-        anchor,
-        first,
-        RevoluteJointBuilder::new()
-            .local_anchor1(vec2(0.0, 0.2))
-            .local_anchor2(vec2(-0.5, 0.2)),
-    );
+    let first = add_free_body(world, [0.5, 0.0], 1.0, 0.1);
+    let second = add_free_body(world, [1.0, 0.0], 1.0, 0.1);
+    joined(world, anchor, first, hinge([0.0, 0.2], [-0.5, 0.2]));
     joined(
         world,
         first,
@@ -203,60 +163,38 @@ fn guided_turn(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBo
 
 fn rope(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
     // Slack at first: it falls 0.39 m before the rope is taut.
-    let ball = body(world, [0.6, 0.0], 1.0, 0.1);
+    let ball = add_free_body(world, [0.6, 0.0], 1.0, 0.1);
     joined(world, anchor, ball, RopeJointBuilder::new(0.7));
     vec![ball]
 }
 
 fn spring(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let ball = body(world, [0.6, 0.0], 1.0, 0.1);
+    let ball = add_free_body(world, [0.6, 0.0], 1.0, 0.1);
     joined(world, anchor, ball, SpringJointBuilder::new(0.5, 80.0, 0.5));
     vec![ball]
 }
 
 fn velocity_motor(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let arm = body(world, [0.5, 0.0], 1.0, 0.1);
-    joined(
-        world,
-        anchor,
-        arm,
-        RevoluteJointBuilder::new()
-            .local_anchor2(vec2(-0.5, 0.0))
-            .motor_model(MotorModel::ForceBased)
-            .motor_velocity(4.0, 6.0),
-    );
-    vec![arm]
+    let joint = hinge([0.0, 0.0], [-0.5, 0.0])
+        .motor_model(MotorModel::ForceBased)
+        .motor_velocity(4.0, 6.0);
+    an_arm(world, anchor, joint)
 }
 
 fn bounded_motor(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let arm = body(world, [0.5, 0.0], 1.0, 0.1);
-    joined(
-        world,
-        anchor,
-        arm,
-        RevoluteJointBuilder::new()
-            .local_anchor2(vec2(-0.5, 0.0))
-            .motor_velocity(4.0, 100.0)
-            .motor_max_force(7.0),
-    );
-    vec![arm]
+    let joint = hinge([0.0, 0.0], [-0.5, 0.0])
+        .motor_velocity(4.0, 100.0)
+        .motor_max_force(7.0);
+    an_arm(world, anchor, joint)
 }
 
 fn position_motor(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let arm = body(world, [0.5, 0.0], 1.0, 0.1);
-    joined(
-        world,
-        anchor,
-        arm,
-        RevoluteJointBuilder::new()
-            .local_anchor2(vec2(-0.5, 0.0))
-            .motor_position(1.0, 60.0, 4.0),
-    );
-    vec![arm]
+    let joint = hinge([0.0, 0.0], [-0.5, 0.0]).motor_position(1.0, 60.0, 4.0);
+    an_arm(world, anchor, joint)
 }
 
 fn servo_slider(world: &mut PhysicsWorld, anchor: RigidBodyHandle) -> Vec<RigidBodyHandle> {
-    let bead = body(world, [0.0, 0.0], 2.0, 0.1);
+    let bead = add_free_body(world, [0.0, 0.0], 2.0, 0.1);
     joined(
         world,
         anchor,

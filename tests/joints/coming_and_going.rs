@@ -4,12 +4,6 @@ use crate::common::*;
 use crate::support::*;
 use foil2d::pipeline::StepError;
 
-fn hinge(a: [f64; 2], b: [f64; 2]) -> RevoluteJointBuilder {
-    RevoluteJointBuilder::new()
-        .local_anchor1(vec2(a[0], a[1]))
-        .local_anchor2(vec2(b[0], b[1]))
-}
-
 #[test]
 fn joints_can_be_removed_disabled_and_lose_their_bodies_between_steps() {
     let mut scene = Scene::new(DT);
@@ -205,11 +199,7 @@ fn a_sleeper_that_hangs_on_a_body_without_colliders_falls_when_that_is_removed()
     let mut scene = Scene::new(DT);
     let hook = scene.world.insert_body(RigidBodyBuilder::fixed());
     let block = scene.flexible(
-        FlexBodyBuilder::rectangle([0.25, 0.25], [2, 2]).material(
-            LinearElastic::plane_stress(1e7, 0.3)
-                .density(1000.0)
-                .rayleigh(2e-2),
-        ),
+        FlexBodyBuilder::rectangle([0.25, 0.25], [2, 2]).material(elastic(1e7, 1000.0, 2e-2)),
     );
     let weld = AttachmentBuilder::weld(block).where_(|[_, y]| y > 0.24);
     let weld = weld.to_rigid_body(hook);

@@ -213,12 +213,7 @@ fn a_chain_bridge_of_100_links_carries_a_flexible_plank() {
             scene.rigid(link(i), shape).0
         })
         .collect();
-    let hinge = |a: f64, b: f64| {
-        RevoluteJointBuilder::new()
-            .local_anchor1(vec2(a, 0.0))
-            .local_anchor2(vec2(b, 0.0))
-            .contacts_enabled(false)
-    };
+    let hinge = |a: f64, b: f64| hinge([a, 0.0], [b, 0.0]).contacts_enabled(false);
     let supports = [ends[0], ends[100]].map(|at| {
         let body = RigidBodyBuilder::fixed().translation(vec2(at[0], at[1]));
         scene.world.insert_body(body)
@@ -234,11 +229,7 @@ fn a_chain_bridge_of_100_links_carries_a_flexible_plank() {
     );
     let plank = scene.flexible(
         FlexBodyBuilder::rectangle([2.0, 0.1], [20, 2])
-            .material(
-                LinearElastic::plane_stress(1e8, 0.3)
-                    .density(200.0)
-                    .rayleigh(1e-2),
-            )
+            .material(elastic(1e8, 200.0, 1e-2))
             .translation([lowest[0] - 1.0, lowest[1] + 0.05])
             .friction(0.8),
     );

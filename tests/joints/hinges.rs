@@ -71,11 +71,6 @@ fn a_four_bar_linkage_stays_closed_and_keeps_its_energy() {
     let ends = [(a, b), (b, c), (c, d)];
     let bars = ends.map(|(from, to)| bar(&mut scene, from, to));
     let lengths = ends.map(|(from, to)| (to[0] - from[0]).hypot(to[1] - from[1]));
-    let hinge = |from: [f64; 2], to: [f64; 2]| {
-        RevoluteJointBuilder::new()
-            .local_anchor1(vec2(from[0], from[1]))
-            .local_anchor2(vec2(to[0], to[1]))
-    };
     join(
         &mut scene,
         anchor,

@@ -8,39 +8,15 @@ pub const DT: f64 = 1.0 / 120.0;
 
 /// A locked body at the origin with a soft block lying on it, 100 m from the scene.
 pub fn claimed_anchor(scene: &mut Scene) -> RigidBodyHandle {
-    let anchor = scene.world.insert_body(
-        RigidBodyBuilder::dynamic()
-            .can_sleep(false)
-            .locked_axes(LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED),
-    );
-    scene.world.insert_collider(
-        ColliderBuilder::cuboid(1.0, 0.5).translation(vec2(100.0, -0.5)),
-        Some(anchor),
-    );
-    scene.flexible(
-        FlexBodyBuilder::rectangle([0.25, 0.25], [1, 1])
-            .material(
-                LinearElastic::plane_stress(1e6, 0.3)
-                    .density(100.0)
-                    .rayleigh(1e-3),
-            )
-            .translation([99.875, 0.0]),
-    );
+    let anchor = scene.world.insert_body(locked_body().can_sleep(false));
+    let (world, bodies) = (&mut scene.world, &mut scene.bodies);
+    lay_block_on(world, bodies, anchor, [100.0, -0.5], 1e-3);
     anchor
 }
 
 /// A dynamic body of this mass and inertia at a place, without colliders.
 pub fn free_body(scene: &mut Scene, at: [f64; 2], mass: f64, inertia: f64) -> RigidBodyHandle {
-    scene.world.insert_body(
-        RigidBodyBuilder::dynamic()
-            .can_sleep(false)
-            .translation(vec2(at[0], at[1]))
-            .additional_mass_properties(MassProperties::new(
-                vec2(0.0, 0.0),
-                real(mass),
-                real(inertia),
-            )),
-    )
+    add_free_body(&mut scene.world, at, mass, inertia)
 }
 
 /// Joins two bodies.
@@ -54,13 +30,11 @@ pub fn join(
 }
 
 pub fn position(scene: &Scene, body: RigidBodyHandle) -> [f64; 2] {
-    let at = scene.world.bodies[body].translation();
-    [f64::from(at.x), f64::from(at.y)]
+    place_of(&scene.world.bodies[body])
 }
 
 pub fn angle(scene: &Scene, body: RigidBodyHandle) -> f64 {
-    let turn = scene.world.bodies[body].rotation();
-    f64::from(turn.im).atan2(f64::from(turn.re))
+    turn_of(&scene.world.bodies[body])
 }
 
 /// Distance of a joint's anchors (m).

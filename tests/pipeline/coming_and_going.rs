@@ -78,12 +78,12 @@ fn a_box_in_contact_may_change_its_shape_or_lose_its_collider() -> Outcome {
     let twelve: Vec<Vector> = (0..12)
         .map(|corner| {
             let (sin, cos) = (0.3 + f64::from(corner) * std::f64::consts::FRAC_PI_6).sin_cos();
-            vector(0.25 * cos, 0.25 * sin)
+            vec2(0.25 * cos, 0.25 * sin)
         })
         .collect();
     let shapes = [
         SharedShape::convex_hull(&twelve).ok_or("a dodecagon")?,
-        SharedShape::triangle(vector(-0.25, -0.25), vector(0.25, -0.25), vector(0.0, 0.2)),
+        SharedShape::triangle(vec2(-0.25, -0.25), vec2(0.25, -0.25), vec2(0.0, 0.2)),
         SharedShape::ball(0.25),
         SharedShape::capsule_x(0.1, 0.2),
         SharedShape::round_cuboid(0.2, 0.2, 0.05),

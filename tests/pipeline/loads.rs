@@ -5,11 +5,7 @@ use crate::support::*;
 /// A cantilever of 2 m × 0.4 m × 0.1 m along x, clamped at `x = 0`, 80 kg.
 fn cantilever() -> FlexBodyBuilder {
     FlexBodyBuilder::rectangle([2.0, 0.4], [16, 4])
-        .material(
-            LinearElastic::plane_stress(1e7, 0.3)
-                .density(1000.0)
-                .rayleigh(2e-2),
-        )
+        .material(elastic(1e7, 1000.0, 2e-2))
         .thickness(0.1)
         .pin_where(|[x, _]| x == 0.0, Pin::both())
 }

@@ -2,48 +2,6 @@
 
 use crate::support::*;
 use foil2d::pipeline::Participant;
-use std::sync::Mutex;
-
-#[derive(Default)]
-struct Listener {
-    events: Mutex<Vec<CollisionEvent>>,
-}
-
-impl EventHandler for Listener {
-    fn handle_collision_event(
-        &self,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        event: CollisionEvent,
-        _: Option<&ContactPair>,
-    ) {
-        if let Ok(mut events) = self.events.lock() {
-            events.push(event);
-        }
-    }
-
-    fn handle_contact_force_event(
-        &self,
-        _: Real,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        _: &ContactPair,
-        _: Real,
-    ) {
-    }
-
-    fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
-}
-
-impl Listener {
-    fn count(&self, started: bool) -> usize {
-        let events = self.events.lock().expect("no handler panicked");
-        events
-            .iter()
-            .filter(|event| event.started() == started)
-            .count()
-    }
-}
 
 #[test]
 fn a_block_that_lands_starts_a_collision_and_none_starts_or_stops_while_it_rests() -> Outcome {
@@ -53,7 +11,7 @@ fn a_block_that_lands_starts_a_collision_and_none_starts_or_stops_while_it_rests
             .active_events(ActiveEvents::COLLISION_EVENTS)
             .translation([0.0, 0.2]),
     )?;
-    let listener = Listener::default();
+    let listener = Recorder::default();
     let mut landed_at = None;
     let mut counts = Vec::new();
     for step in 0..480 {
@@ -62,7 +20,7 @@ fn a_block_that_lands_starts_a_collision_and_none_starts_or_stops_while_it_rests
             .step_with_events(&mut scene.world, &mut scene.flex_bodies, &(), &listener)?;
         let touches = !scene.flex.report().contacts().is_empty();
         landed_at = landed_at.or(touches.then_some(step));
-        counts.push((listener.count(true), listener.count(false)));
+        counts.push(listener.starts_and_stops());
     }
     // 0.2 m of fall take 12.1 steps; rapier starts a collision when its detection sees it coming.
     let landed_at = landed_at.ok_or("the block lands")?;
@@ -79,19 +37,15 @@ fn a_block_that_lands_starts_a_collision_and_none_starts_or_stops_while_it_rests
         .find(|(_, collider)| collider.parent().is_none())
         .map(|(handle, _)| handle);
     let surface = scene.flex_bodies[block].collider_handle();
-    let events = listener.events.lock().map_err(|_| "a handler panicked")?;
+    let events = listener.collisions();
     let pair = [events[0].collider1(), events[0].collider2()];
     assert!(pair.contains(&surface) && pair.contains(&floor.ok_or("the floor")?));
-    drop(events);
     // Taken away while it touches, it stops the collision.
     scene.flex_bodies.remove(block, &mut scene.world)?;
     scene
         .flex
         .step_with_events(&mut scene.world, &mut scene.flex_bodies, &(), &listener)?;
-    assert_eq!(
-        (listener.count(true), listener.count(false)),
-        (started, started)
-    );
+    assert_eq!(listener.starts_and_stops(), (started, started));
     Ok(())
 }
 
@@ -103,7 +57,7 @@ fn a_sensor_feels_a_flexible_body_and_does_not_push_it() -> Outcome {
         .sensor(true)
         .active_events(ActiveEvents::COLLISION_EVENTS);
     scene.world.insert_collider(sensor, None);
-    let listener = Listener::default();
+    let listener = Recorder::default();
     for _ in 0..60 {
         scene
             .flex
@@ -112,7 +66,7 @@ fn a_sensor_feels_a_flexible_body_and_does_not_push_it() -> Outcome {
     let t = 60.0 * scene.dt();
     let fallen = 2.5 - scene.flex_bodies[block].centre_of_mass()[1];
     assert!((fallen - 0.5 * GRAVITY * t * t).abs() < 1e-5, "{fallen} m");
-    assert_eq!((listener.count(true), listener.count(false)), (1, 1));
+    assert_eq!(listener.starts_and_stops(), (1, 1));
     Ok(())
 }
 
@@ -124,7 +78,7 @@ fn group(own: Group, others: Group) -> InteractionGroups {
 fn collision_groups_let_bodies_pass_that_must_not_meet() -> Outcome {
     let mut scene = Scene::default();
     let floor = ColliderBuilder::cuboid(50.0, 0.5)
-        .translation(vector(0.0, -0.5))
+        .translation(vec2(0.0, -0.5))
         .collision_groups(group(Group::GROUP_1, Group::GROUP_1));
     scene.world.insert_collider(floor, None);
     let one = group(Group::GROUP_1, Group::ALL);
@@ -149,7 +103,7 @@ fn rigid_bodies_of_one_claim_keep_their_collision_groups() -> Outcome {
     let mut scene = Scene::default();
     scene.insert(beam().can_sleep(false))?;
     let boxes = [Group::GROUP_1, Group::GROUP_2].map(|own| {
-        let body = RigidBodyBuilder::dynamic().translation(vector(0.0, 1.501));
+        let body = RigidBodyBuilder::dynamic().translation(vec2(0.0, 1.501));
         let shape = ColliderBuilder::cuboid(0.2, 0.2)
             .density(300.0)
             .collision_groups(group(own, Group::ALL ^ (Group::GROUP_1 | Group::GROUP_2)));
@@ -182,7 +136,7 @@ fn the_users_hook_lets_a_box_fall_through_a_beam() -> Outcome {
     let mut scene = Scene::default();
     scene.insert(beam())?;
     let drop_at = |scene: &mut Scene, x: f64| {
-        let body = RigidBodyBuilder::dynamic().translation(vector(x, 2.0));
+        let body = RigidBodyBuilder::dynamic().translation(vec2(x, 2.0));
         let shape = ColliderBuilder::cuboid(0.2, 0.2)
             .density(300.0)
             .active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS);
@@ -225,7 +179,7 @@ fn a_disabled_rigid_body_is_not_there() -> Outcome {
     let mut scene = Scene::default();
     let block = scene.insert(square().translation([-0.5, 2.0]))?;
     let shelf = RigidBodyBuilder::dynamic()
-        .translation(vector(0.0, 0.5))
+        .translation(vec2(0.0, 0.5))
         .gravity_scale(0.0)
         .enabled(false);
     let (shelf, _) = scene.world.insert(shelf, ColliderBuilder::cuboid(1.0, 0.2));
@@ -300,9 +254,9 @@ fn a_moving_platform_carries_a_flexible_block_with_it() -> Outcome {
             y += speed[1] * scene.dt();
             let body = &mut scene.world.bodies[platform];
             if is_position_based {
-                body.set_next_kinematic_translation(vector(x, y));
+                body.set_next_kinematic_translation(vec2(x, y));
             } else {
-                body.set_linvel(vector(speed[0], speed[1]), true);
+                body.set_linvel(vec2(speed[0], speed[1]), true);
             }
             scene.step()?;
         }
@@ -340,14 +294,14 @@ fn a_fixed_body_that_comes_moves_or_goes_is_met_in_the_same_step() -> Outcome {
     scene.steps(10)?;
     // A table under it, a little below.
     let top = bottom(&scene) - 1e-3;
-    let table = RigidBodyBuilder::fixed().translation(vector(0.0, top - 0.25));
+    let table = RigidBodyBuilder::fixed().translation(vec2(0.0, top - 0.25));
     let (table, surface) = scene
         .world
         .insert(table, ColliderBuilder::cuboid(2.0, 0.25));
     scene.steps(120)?;
     assert!((bottom(&scene) - top).abs() < 1e-5, "it rests on the table");
     // Moved down by a metre, the table lets it fall and catches it again.
-    scene.world.bodies[table].set_translation(vector(0.0, top - 1.25), true);
+    scene.world.bodies[table].set_translation(vec2(0.0, top - 1.25), true);
     scene.step()?;
     assert!(
         scene.flex.report().contacts().is_empty(),
@@ -365,7 +319,7 @@ fn a_fixed_body_that_comes_moves_or_goes_is_met_in_the_same_step() -> Outcome {
         scene.flex.report().contacts().is_empty(),
         "the table is disabled"
     );
-    scene.world.bodies[table].set_translation(vector(0.0, top - 2.25), true);
+    scene.world.bodies[table].set_translation(vec2(0.0, top - 2.25), true);
     scene.world.bodies[table].set_enabled(true);
     scene.steps(240)?;
     assert!(
@@ -401,10 +355,10 @@ fn a_box_inserted_or_teleported_onto_a_block_is_claimed_in_the_same_step() -> Ou
         "it has mass from its first step on"
     );
     scene.steps(60)?;
-    scene.world.bodies[crate_body].set_translation(vector(8.0, 0.25), true);
+    scene.world.bodies[crate_body].set_translation(vec2(8.0, 0.25), true);
     assert_eq!(scene.step()?.n_claimed(), 0);
     scene.steps(10)?;
-    scene.world.bodies[crate_body].set_translation(vector(0.0, 1.2505), true);
+    scene.world.bodies[crate_body].set_translation(vec2(0.0, 1.2505), true);
     assert_eq!(scene.step()?.n_claimed(), 1);
     scene.steps(120)?;
     assert!(

@@ -8,8 +8,8 @@ fn a_fast_rigid_ball_does_not_pass_through_a_thin_beam() -> Outcome {
         let mut scene = Scene::without_gravity();
         scene.insert(beam())?;
         let body = RigidBodyBuilder::dynamic()
-            .translation(vector(0.0, 6.0))
-            .linvel(vector(0.0, -speed));
+            .translation(vec2(0.0, 6.0))
+            .linvel(vec2(0.0, -speed));
         let (ball, _) = scene
             .world
             .insert(body, ColliderBuilder::ball(0.1).density(10.0));
@@ -24,13 +24,13 @@ fn a_fast_rigid_ball_does_not_pass_through_a_thin_beam() -> Outcome {
 fn a_ball_teleported_near_a_beam_at_high_speed_does_not_pass_through_it() -> Outcome {
     let mut scene = Scene::without_gravity();
     scene.insert(beam())?;
-    let body = RigidBodyBuilder::dynamic().translation(vector(30.0, 30.0));
+    let body = RigidBodyBuilder::dynamic().translation(vec2(30.0, 30.0));
     let (ball, _) = scene
         .world
         .insert(body, ColliderBuilder::ball(0.1).density(10.0));
     scene.steps(5)?;
-    scene.world.bodies[ball].set_translation(vector(0.0, 2.3), true);
-    scene.world.bodies[ball].set_linvel(vector(0.0, -120.0), true);
+    scene.world.bodies[ball].set_translation(vec2(0.0, 2.3), true);
+    scene.world.bodies[ball].set_linvel(vec2(0.0, -120.0), true);
     scene.steps(10)?;
     assert!(scene.height(ball) > 1.0, "{}", scene.height(ball));
     Ok(())
@@ -103,9 +103,7 @@ fn a_dropped_body_never_has_more_energy_than_it_was_dropped_with() -> Outcome {
             (1e8, 0.5, 1.0),
         ] {
             let (name, builder) = dropped(index);
-            let material = LinearElastic::plane_stress(young, 0.3)
-                .density(1000.0)
-                .rayleigh(2e-3);
+            let material = elastic(young, 1000.0, 2e-3);
             let mut scene = Scene::with_floor();
             let body = scene.insert(
                 builder

@@ -1,5 +1,6 @@
 //! Scenes and materials that the tests share.
 
+pub use crate::common::{Recorder, elastic, motion_bits, vec2};
 pub use foil2d::body::BuildError;
 pub use foil2d::pipeline::StepError;
 pub use foil2d::prelude::*;
@@ -14,14 +15,8 @@ pub const GRAVITY: f64 = 9.81;
 /// Relative rounding of rapier's numbers.
 pub const REAL_EPSILON: f64 = Real::EPSILON as f64;
 
-pub fn vector(x: f64, y: f64) -> Vector {
-    Vector::new(x as Real, y as Real)
-}
-
 pub fn rubber() -> LinearElastic {
-    LinearElastic::plane_stress(1e6, 0.3)
-        .density(1000.0)
-        .rayleigh(2e-2)
+    elastic(1e6, 1000.0, 2e-2)
 }
 
 /// A square of 1 m and 1000 kg.
@@ -32,11 +27,7 @@ pub fn square() -> FlexBodyBuilder {
 /// A beam of 4 m from `x = -2 m`, held at both lower corners, its top at `y = 1.3 m`.
 pub fn beam() -> FlexBodyBuilder {
     FlexBodyBuilder::rectangle([4.0, 0.3], [24, 2])
-        .material(
-            LinearElastic::plane_stress(1e9, 0.3)
-                .density(1000.0)
-                .rayleigh(1e-2),
-        )
+        .material(elastic(1e9, 1000.0, 1e-2))
         .pin_where(|[x, y]| y == 0.0 && (x == 0.0 || x == 4.0), Pin::both())
         .translation([-2.0, 1.0])
 }
@@ -51,7 +42,7 @@ pub struct Scene {
 impl Scene {
     pub fn with_floor() -> Self {
         let mut scene = Self::default();
-        let floor = ColliderBuilder::cuboid(50.0, 0.5).translation(vector(0.0, -0.5));
+        let floor = ColliderBuilder::cuboid(50.0, 0.5).translation(vec2(0.0, -0.5));
         scene.world.insert_collider(floor, None);
         scene
     }
@@ -67,7 +58,7 @@ impl Scene {
     }
 
     pub fn insert_box(&mut self, half: f64, at: [f64; 2], density: f64) -> RigidBodyHandle {
-        let body = RigidBodyBuilder::dynamic().translation(vector(at[0], at[1]));
+        let body = RigidBodyBuilder::dynamic().translation(vec2(at[0], at[1]));
         let shape = ColliderBuilder::cuboid(half as Real, half as Real).density(density as Real);
         self.world.insert(body, shape).0
     }
@@ -97,23 +88,12 @@ impl Scene {
 
     /// All bits of the motion of all bodies.
     pub fn bits(&self) -> Vec<u64> {
-        let mut bits = Vec::new();
-        for (_, body) in self.flex_bodies.iter() {
-            let all = body.positions().iter().chain(body.velocities());
-            bits.extend(all.map(|x| x.to_bits()));
-        }
-        for (_, body) in self.world.rigid_bodies() {
-            let (at, turn) = (body.translation(), body.rotation());
-            let (linvel, angvel) = (body.linvel(), body.angvel());
-            let motion: [Real; 7] = [at.x, at.y, turn.re, turn.im, linvel.x, linvel.y, angvel];
-            bits.extend(motion.map(|x| f64::from(x).to_bits()));
-        }
-        bits
+        motion_bits(&self.world, &self.flex_bodies)
     }
 
     /// What a ray straight down from `y = 20 m` hits, and at which height.
     pub fn look_down(&self, x: f64) -> Option<(ColliderHandle, f64)> {
-        let ray = Ray::new(vector(x, 20.0), vector(0.0, -1.0));
+        let ray = Ray::new(vec2(x, 20.0), vec2(0.0, -1.0));
         let hit = self
             .world
             .cast_ray(&ray, 100.0, true, QueryFilter::default())?;

@@ -35,7 +35,7 @@ fn queries_work_after_a_step_of_no_length() -> Outcome {
     let mut scene = Scene::with_floor();
     let block = scene.insert(square().translation([0.0, 0.001]))?;
     scene.steps(10)?;
-    let ball = ColliderBuilder::ball(0.5).translation(vector(4.0, 3.0));
+    let ball = ColliderBuilder::ball(0.5).translation(vec2(4.0, 3.0));
     let ball = scene.world.insert_collider(ball, None);
     scene.set_dt(0.0);
     scene.step()?;

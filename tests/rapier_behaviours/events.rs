@@ -8,10 +8,10 @@ fn a_collision_starts_and_stops(stage: &mut Stage) -> Verdict {
     let shape = square(0.2).active_events(ActiveEvents::COLLISION_EVENTS);
     let body = stage.dynamic(0.0, 0.5, shape);
     stage.steps(60);
-    let landed = stage.heard.collisions();
+    let landed = stage.heard.starts_and_stops();
     stage.world.bodies[body].set_translation(vec2(0.0, 50.0), true);
     stage.steps(2);
-    let gone = stage.heard.collisions();
+    let gone = stage.heard.starts_and_stops();
     all([
         verdict(landed.0 == landed.1 + 1, format!("{landed:?}")),
         verdict(gone.0 == gone.1, format!("{gone:?}")),
@@ -23,39 +23,36 @@ fn a_removed_body_stops_its_collision(stage: &mut Stage) -> Verdict {
     let shape = square(0.2).active_events(ActiveEvents::COLLISION_EVENTS);
     let body = stage.dynamic(0.0, 0.2, shape);
     stage.steps(30);
-    let before = stage.heard.collisions();
+    let before = stage.heard.starts_and_stops();
     stage.world.remove_body(body);
     stage.steps(2);
-    let after = stage.heard.collisions();
+    let after = stage.heard.starts_and_stops();
     verdict(
         before == (1, 0) && after == (1, 1),
         format!("{before:?}, then {after:?}"),
     )
 }
 
-fn forces_above_the_threshold_are_told(stage: &mut Stage) -> Verdict {
+/// Forces told of a box of 10 kg, 98 N at rest, that stands on the floor for so many steps.
+fn forces_of_a_standing_box(stage: &mut Stage, threshold: f64, n_steps: usize) -> Vec<f64> {
     stage.floor(0.5);
-    // A box of 10 kg: 98 N at rest.
     let shape = square(0.5)
         .density(real(10.0))
         .active_events(ActiveEvents::CONTACT_FORCE_EVENTS)
-        .contact_force_event_threshold(real(50.0));
+        .contact_force_event_threshold(real(threshold));
     stage.dynamic(0.0, 0.5, shape);
-    stage.steps(20);
-    let told = stage.heard.forces();
+    stage.steps(n_steps);
+    stage.heard.forces()
+}
+
+fn forces_above_the_threshold_are_told(stage: &mut Stage) -> Verdict {
+    let told = forces_of_a_standing_box(stage, 50.0, 20);
     let last = told.last().copied().unwrap_or(0.0);
     is_near(last, 10.0 * G, 1.0)
 }
 
 fn forces_below_the_threshold_are_not_told(stage: &mut Stage) -> Verdict {
-    stage.floor(0.5);
-    let shape = square(0.5)
-        .density(real(10.0))
-        .active_events(ActiveEvents::CONTACT_FORCE_EVENTS)
-        .contact_force_event_threshold(real(1000.0));
-    stage.dynamic(0.0, 0.5, shape);
-    stage.steps(30);
-    let n = stage.heard.forces().len();
+    let n = forces_of_a_standing_box(stage, 1000.0, 30).len();
     verdict(n == 0, format!("{n} events"))
 }
 
@@ -66,7 +63,7 @@ fn a_sensor_tells_and_does_not_push(stage: &mut Stage) -> Verdict {
     stage.fixed(sensor);
     let body = stage.dynamic(0.0, 2.0, square(0.2));
     stage.steps(60);
-    let heard = stage.heard.collisions();
+    let heard = stage.heard.starts_and_stops();
     all([
         verdict(heard == (1, 1), format!("{heard:?}")),
         is_near(stage.at(body)[1], 2.0 - 0.5 * G, 0.2),
@@ -85,7 +82,7 @@ fn a_fast_body_is_seen_by_a_thin_sensor(stage: &mut Stage) -> Verdict {
         .ccd_enabled(true);
     stage.add(body, ColliderBuilder::ball(real(0.05)));
     stage.steps(10);
-    let heard = stage.heard.collisions();
+    let heard = stage.heard.starts_and_stops();
     verdict(heard == (1, 1), format!("{heard:?}"))
 }
 

@@ -2,8 +2,6 @@
 
 use crate::common::*;
 use foil2d::coupling::RapierSets;
-use foil2d::rapier::math::Real;
-use std::sync::Mutex;
 
 /// A step of 1/60 s.
 pub const DT: f64 = 1.0 / 60.0;
@@ -50,61 +48,10 @@ pub fn all<const N: usize>(verdicts: [Verdict; N]) -> Verdict {
     verdict(verdicts.iter().all(|one| one.holds), measured.join("; "))
 }
 
-/// What the handler was told.
-#[derive(Default)]
-pub struct Heard {
-    collisions: Mutex<Vec<CollisionEvent>>,
-    forces: Mutex<Vec<f64>>,
-}
-
-impl Heard {
-    /// Collisions that started and that stopped.
-    pub fn collisions(&self) -> (usize, usize) {
-        let all = self.collisions.lock().expect("no handler panicked");
-        let started = all.iter().filter(|event| event.started()).count();
-        (started, all.len() - started)
-    }
-
-    pub fn forces(&self) -> Vec<f64> {
-        self.forces.lock().expect("no handler panicked").clone()
-    }
-}
-
-impl EventHandler for Heard {
-    fn handle_collision_event(
-        &self,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        event: CollisionEvent,
-        _: Option<&ContactPair>,
-    ) {
-        self.collisions
-            .lock()
-            .expect("no handler panicked")
-            .push(event);
-    }
-
-    fn handle_contact_force_event(
-        &self,
-        _: Real,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        _: &ContactPair,
-        force: Real,
-    ) {
-        self.forces
-            .lock()
-            .expect("no handler panicked")
-            .push(f64::from(force));
-    }
-
-    fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
-}
-
 /// A world, stepped one way or the other.
 pub struct Stage {
     pub world: PhysicsWorld,
-    pub heard: Heard,
+    pub heard: Recorder,
     flex_bodies: FlexBodySet,
     flex: FlexPipeline,
     anchor: Option<RigidBodyHandle>,
@@ -115,12 +62,9 @@ pub struct Stage {
 impl Stage {
     /// With rapier alone.
     pub fn alone() -> Self {
-        let mut world = PhysicsWorld::new();
-        world.integration_parameters.dt = real(DT);
-        world.gravity = vec2(0.0, -G);
         Self {
-            world,
-            heard: Heard::default(),
+            world: empty_world(DT),
+            heard: Recorder::default(),
             flex_bodies: FlexBodySet::new(),
             flex: FlexPipeline::new(),
             anchor: None,
@@ -131,23 +75,10 @@ impl Stage {
     /// With a flexible block on a body that cannot move.
     pub fn claimed() -> Self {
         let mut stage = Self::alone();
-        let anchor = stage.world.insert_body(
-            RigidBodyBuilder::dynamic()
-                .translation(vec2(1000.0, 0.0))
-                .locked_axes(LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED),
-        );
-        let slab = ColliderBuilder::cuboid(real(1.0), real(0.5));
-        stage.world.insert_collider(slab, Some(anchor));
-        let material = LinearElastic::plane_stress(1e6, 0.3)
-            .density(100.0)
-            .rayleigh(1e-2);
-        let block = FlexBodyBuilder::rectangle([0.25, 0.25], [1, 1])
-            .material(material)
-            .translation([999.875, 0.5]);
-        stage
-            .flex_bodies
-            .insert(block, &mut stage.world)
-            .expect("the description is right");
+        let anchor = locked_body().translation(vec2(1000.0, 0.0));
+        let anchor = stage.world.insert_body(anchor);
+        let (world, bodies) = (&mut stage.world, &mut stage.flex_bodies);
+        lay_block_on(world, bodies, anchor, [0.0, 0.0], 1e-2);
         stage.anchor = Some(anchor);
         stage
     }
@@ -178,11 +109,7 @@ impl Stage {
 
     /// A floor at `y = 0`.
     pub fn floor(&mut self, friction: f64) -> ColliderHandle {
-        self.fixed(
-            ColliderBuilder::cuboid(real(50.0), real(0.5))
-                .translation(vec2(0.0, -0.5))
-                .friction(real(friction)),
-        )
+        self.fixed(floor(friction))
     }
 
     pub fn no_gravity(&mut self) {
@@ -225,13 +152,11 @@ impl Stage {
     }
 
     pub fn at(&self, body: RigidBodyHandle) -> [f64; 2] {
-        let at = self.world.bodies[body].translation();
-        [f64::from(at.x), f64::from(at.y)]
+        place_of(&self.world.bodies[body])
     }
 
     pub fn velocity(&self, body: RigidBodyHandle) -> [f64; 2] {
-        let v = self.world.bodies[body].linvel();
-        [f64::from(v.x), f64::from(v.y)]
+        velocity_of(&self.world.bodies[body])
     }
 
     pub fn spin(&self, body: RigidBodyHandle) -> f64 {
@@ -239,8 +164,7 @@ impl Stage {
     }
 
     pub fn angle(&self, body: RigidBodyHandle) -> f64 {
-        let turn = self.world.bodies[body].rotation();
-        f64::from(turn.im).atan2(f64::from(turn.re))
+        turn_of(&self.world.bodies[body])
     }
 
     pub fn sleeps(&self, body: RigidBodyHandle) -> bool {

@@ -106,7 +106,7 @@ fn run(material: Own, element: OwnTriangle) -> (Run, FlexBodyHandle) {
         .material(material)
         .translation([0.0, 0.01]);
     let body = run.flexible(body);
-    (0..20).for_each(|_| run.step(&Log::default()));
+    (0..20).for_each(|_| run.step(&Recorder::default()));
     (run, body)
 }
 

@@ -1,8 +1,7 @@
 //! Rapier alone resumes bit for bit: what a snapshot of ours relies on.
 
-use super::scenes::at;
+use crate::common::*;
 use foil2d::rapier::math::Real;
-use foil2d::rapier::prelude::*;
 
 fn world() -> PhysicsWorld {
     let mut world = PhysicsWorld::new();
@@ -12,7 +11,7 @@ fn world() -> PhysicsWorld {
     for index in 0..12_u8 {
         let (column, row) = (f64::from(index % 3), f64::from(index / 3));
         let body = RigidBodyBuilder::dynamic()
-            .translation(at(0.3 * column, 0.5 + 0.9 * row))
+            .translation(vec2(0.3 * column, 0.5 + 0.9 * row))
             .rotation(0.1 * Real::from(index))
             .ccd_enabled(index == 5);
         let (body, _) = world.insert(body, ColliderBuilder::cuboid(0.2, 0.15).restitution(0.3));
@@ -34,12 +33,7 @@ fn world() -> PhysicsWorld {
 }
 
 fn poses(world: &PhysicsWorld) -> Vec<u64> {
-    let all = world.bodies.iter();
-    all.flat_map(|(_, body)| {
-        let (at, turn, v) = (body.translation(), body.rotation(), body.linvel());
-        [at.x, at.y, turn.re, turn.im, v.x, v.y, body.angvel()].map(|x| f64::from(x).to_bits())
-    })
-    .collect()
+    motion_bits(world, &FlexBodySet::new())
 }
 
 #[test]

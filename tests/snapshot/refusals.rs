@@ -7,7 +7,7 @@ const MAGIC: u64 = 0x0000_666f_696c_3264;
 const FORMAT: u32 = 1;
 
 fn small() -> Run {
-    let log = Log::default();
+    let log = Recorder::default();
     let mut run = Run::new();
     let block = FlexBodyBuilder::rectangle([0.5, 0.25], [4, 2]).translation([0.0, 0.001]);
     run.flexible(block.material(rubber()));

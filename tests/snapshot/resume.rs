@@ -5,7 +5,7 @@ use foil2d::kkt::ConstraintFunction;
 
 #[test]
 fn three_hundred_steps_saved_and_three_hundred_more_are_six_hundred() {
-    let log = Log::default();
+    let log = Recorder::default();
     let mut straight = everything();
     (0..300).for_each(|_| straight.step(&log));
     let heard = log.take();
@@ -23,7 +23,7 @@ fn three_hundred_steps_saved_and_three_hundred_more_are_six_hundred() {
 
 #[test]
 fn a_copy_in_memory_goes_on_like_one_of_bytes() {
-    let log = Log::default();
+    let log = Recorder::default();
     let mut straight = everything();
     (0..100).for_each(|_| straight.step(&log));
     let (world, flex_bodies, flex) = straight.snapshot().restore().expect("a sound one");
@@ -42,7 +42,7 @@ fn step_by_step(mut straight: Run, n_steps: usize) {
     let mut resumed = straight.resumed();
     let mut n_contacts = 0;
     for step in 0..n_steps {
-        let (one, other) = (Log::default(), Log::default());
+        let (one, other) = (Recorder::default(), Recorder::default());
         straight.step(&one);
         resumed.step(&other);
         assert_eq!(one.take(), other.take(), "events of step {step}");
@@ -97,11 +97,9 @@ fn an_explicit_run_restored_after_every_step_never_differs() {
 
 #[test]
 fn a_world_saved_asleep_wakes_as_it_would_have() {
-    let log = Log::default();
+    let log = Recorder::default();
     let mut straight = Run::new();
-    let stiff = LinearElastic::plane_stress(1e8, 0.3)
-        .density(1000.0)
-        .rayleigh(5e-3);
+    let stiff = elastic(1e8, 1000.0, 5e-3);
     let block = FlexBodyBuilder::rectangle([0.5, 0.25], [4, 2]).translation([-10.0, 0.001]);
     let block = straight.flexible(block.material(stiff).friction(0.5));
     straight.rigid([-9.75, 0.46], ColliderBuilder::cuboid(0.2, 0.2));
@@ -127,7 +125,7 @@ fn a_world_saved_asleep_wakes_as_it_would_have() {
 /// Bodies come and go: vacant slots, and handles that were given before.
 #[test]
 fn handles_are_valid_after_a_restore_and_new_ones_are_those_of_the_straight_run() {
-    let log = Log::default();
+    let log = Recorder::default();
     let mut straight = everything();
     (0..10).for_each(|_| straight.step(&log));
     let handles: Vec<_> = straight
@@ -157,7 +155,7 @@ fn handles_are_valid_after_a_restore_and_new_ones_are_those_of_the_straight_run(
 
 #[test]
 fn changes_that_wait_for_the_next_step_are_saved_too() {
-    let log = Log::default();
+    let log = Recorder::default();
     let mut straight = everything();
     (0..120).for_each(|_| straight.step(&log));
     let added = FlexBodyBuilder::rectangle([0.4, 0.4], [4, 4]).translation([-6.0, 3.0]);
@@ -180,7 +178,7 @@ fn changes_that_wait_for_the_next_step_are_saved_too() {
         .iter_mut()
         .find(|(_, body)| body.is_dynamic() && !body.is_sleeping() && body.mass() > 0.0);
     let (_, moved) = moved.expect("something moves");
-    moved.set_linvel(at(0.3, 1.0), true);
+    moved.set_linvel(vec2(0.3, 1.0), true);
     let mut resumed = straight.resumed();
     compare(&mut straight, &mut resumed, 200);
 }

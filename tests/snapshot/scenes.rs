@@ -1,55 +1,7 @@
 //! Scenes with something of everything, and what a handler hears of them.
 
-pub use foil2d::prelude::*;
+pub use crate::common::*;
 use foil2d::rapier::math::Real;
-pub use foil2d::rapier::prelude::*;
-use std::sync::Mutex;
-
-pub fn at(x: f64, y: f64) -> Vector {
-    Vector::new(x as Real, y as Real)
-}
-
-/// What the handler heard.
-#[derive(Default)]
-pub struct Log(pub Mutex<Vec<String>>);
-
-impl EventHandler for Log {
-    fn handle_collision_event(
-        &self,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        event: CollisionEvent,
-        _: Option<&ContactPair>,
-    ) {
-        self.note(format!("{event:?}"));
-    }
-
-    fn handle_contact_force_event(
-        &self,
-        _: Real,
-        _: &RigidBodySet,
-        _: &ColliderSet,
-        pair: &ContactPair,
-        force: Real,
-    ) {
-        self.note(format!(
-            "{:?} {:?} {force:?}",
-            pair.collider1, pair.collider2
-        ));
-    }
-
-    fn handle_soft_body_tear_event(&self, _: &SoftBodySet, _: &SoftBodyTearEvent) {}
-}
-
-impl Log {
-    fn note(&self, line: String) {
-        self.0.lock().expect("nobody panics").push(line);
-    }
-
-    pub fn take(&self) -> Vec<String> {
-        std::mem::take(&mut *self.0.lock().expect("nobody panics"))
-    }
-}
 
 /// Counts in the user data of every contact how often it was shown, and lets friction depend on it.
 pub struct Ageing;
@@ -76,7 +28,7 @@ pub struct Run {
 impl Run {
     pub fn new() -> Self {
         let mut world = PhysicsWorld::new();
-        let floor = ColliderBuilder::cuboid(30.0, 0.5).translation(at(0.0, -0.5));
+        let floor = ColliderBuilder::cuboid(30.0, 0.5).translation(vec2(0.0, -0.5));
         world.insert_collider(floor, None);
         Self {
             world,
@@ -96,12 +48,12 @@ impl Run {
     }
 
     pub fn rigid(&mut self, [x, y]: [f64; 2], shape: ColliderBuilder) -> RigidBodyHandle {
-        let body = RigidBodyBuilder::dynamic().translation(at(x, y));
+        let body = RigidBodyBuilder::dynamic().translation(vec2(x, y));
         let shape = shape.density(400.0).friction(0.4);
         self.world.insert(body, shape).0
     }
 
-    pub fn step(&mut self, log: &Log) {
+    pub fn step(&mut self, log: &Recorder) {
         if let Some(held) = self.held {
             let time = self.n_steps as f64 / 60.0;
             // To and fro in three seconds, by arithmetic that is the same everywhere.
@@ -120,9 +72,7 @@ impl Run {
 }
 
 pub fn rubber() -> LinearElastic {
-    LinearElastic::plane_stress(2e7, 0.3)
-        .density(1000.0)
-        .rayleigh(2e-3)
+    elastic(2e7, 1000.0, 2e-3)
 }
 
 /// Contact with friction, joints, attachments of every kind, hooks, things that rapier solves alone, and a pile that sleeps.
@@ -162,8 +112,8 @@ pub fn everything() -> Run {
     run.rigid([0.55, 2.904], ColliderBuilder::cuboid(0.15, 0.2));
     let partner = run.rigid([1.2, 2.6], ColliderBuilder::cuboid(0.2, 0.2));
     let hinge = RevoluteJointBuilder::new()
-        .local_anchor1(at(0.35, 0.1))
-        .local_anchor2(at(-0.35, 0.0))
+        .local_anchor1(vec2(0.35, 0.1))
+        .local_anchor2(vec2(-0.35, 0.0))
         .motor_velocity(0.5, 0.1);
     run.world
         .impulse_joints
@@ -183,18 +133,16 @@ pub fn everything() -> Run {
         run.rigid([15.6, 2.0], ColliderBuilder::ball(0.2)),
     );
     let chain = RevoluteJointBuilder::new()
-        .local_anchor1(at(0.3, 0.0))
-        .local_anchor2(at(-0.3, 0.0));
+        .local_anchor1(vec2(0.3, 0.0))
+        .local_anchor2(vec2(-0.3, 0.0));
     run.world.multibody_joints.insert(one, other, chain, true);
     let bullet = RigidBodyBuilder::dynamic()
-        .translation(at(-25.0, 3.0))
-        .linvel(at(40.0, 0.0))
+        .translation(vec2(-25.0, 3.0))
+        .linvel(vec2(40.0, 0.0))
         .ccd_enabled(true);
     run.world.insert(bullet, ColliderBuilder::ball(0.1));
     // What comes to rest sleeps beside all that.
-    let stiff = LinearElastic::plane_stress(1e8, 0.3)
-        .density(1000.0)
-        .rayleigh(5e-3);
+    let stiff = elastic(1e8, 1000.0, 5e-3);
     let sleeper = FlexBodyBuilder::rectangle([0.5, 0.25], [4, 2]).translation([-10.0, 0.001]);
     run.flexible(sleeper.material(stiff));
     run.rigid([-9.75, 0.46], ColliderBuilder::cuboid(0.2, 0.2));

@@ -53,7 +53,7 @@ pub fn assert_same(one: &Run, other: &Run, when: &str) {
 /// Steps both and compares them: every bit that is saved, and what was heard.
 #[track_caller]
 pub fn compare(straight: &mut Run, resumed: &mut Run, n_steps: usize) {
-    let (one, other) = (Log::default(), Log::default());
+    let (one, other) = (Recorder::default(), Recorder::default());
     for step in 0..n_steps {
         straight.step(&one);
         resumed.step(&other);
