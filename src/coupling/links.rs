@@ -7,8 +7,10 @@
 //! next step, too large a one would throw the lighter side away. Forces that last are known for all links, so at rest nothing is
 //! scaled.
 
+use super::claim::Claims;
 use super::filter::is_free_body;
 use super::gather::{GatherSettings, Gatherer};
+use super::link_gate::Borrowed;
 use super::multibody::{Pace, Tree};
 use super::reading::{GatherError, is_held_motion, prescribed_block};
 use super::sets::RapierSets;
@@ -54,6 +56,8 @@ pub(crate) struct LinkBook {
     pub pushes: Vec<Push>,
     /// Forces of the user's, to be put back.
     lent: Vec<(RigidBodyHandle, Vector, Real)>,
+    /// Contacts and joints that rapier is not to solve.
+    pub(super) borrowed: Borrowed,
 }
 
 impl LinkBook {
@@ -72,12 +76,13 @@ impl LinkBook {
         }
     }
 
-    /// Adds the pushes to the forces of the user's, for rapier's full step.
-    pub fn lend(&mut self, step: Step, sets: &mut RapierSets<'_>) {
+    /// Adds the pushes to the forces of the user's, for rapier's full step, and takes over what they stand for.
+    pub fn lend(&mut self, step: Step, claims: &Claims, sets: &mut RapierSets<'_>) {
         self.lent.clear();
         if self.last.is_empty() && self.pushes.is_empty() {
             return;
         }
+        self.borrowed.take(claims, &self.pushes, sets);
         self.push_left_ones(sets);
         let late = step.dt - step.weights.b1;
         for push in &self.pushes {
@@ -126,6 +131,7 @@ impl LinkBook {
                 body.add_torque(torque, false);
             }
         }
+        self.borrowed.give_back(sets);
         // What sleeps is not stepped, and waits.
         let sleeps = |handle| sets.bodies.get(handle).is_some_and(RigidBody::is_sleeping);
         self.last.retain(|handle, _| sleeps(*handle));
@@ -186,7 +192,8 @@ impl Gatherer {
         }
         for link in &self.links {
             if let Block::Rigid(block) = &island.blocks[link.block]
-                && !is_held_motion(&block.drift())
+                && !(is_held_motion(&block.drift())
+                    && block.smooth_end.into_iter().all(f64::is_finite))
             {
                 return Err(GatherError::RigidBody(link.handle));
             }

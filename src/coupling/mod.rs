@@ -17,6 +17,7 @@ mod gather_joints;
 mod hand_back;
 mod hooks;
 mod joints;
+mod link_gate;
 mod links;
 mod masters;
 mod multibody;

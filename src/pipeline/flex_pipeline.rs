@@ -270,7 +270,7 @@ impl FlexPipeline {
         }
         self.keep_awake(sets, flex_bodies);
         hand_back(&mut self.landings, sets);
-        self.links.lend(step, sets);
+        self.links.lend(step, &self.claims, sets);
         clock.lap(&mut self.report.times.hand_back);
         let gate = self.hook_gate(hooks, true);
         sets.step_through(&gate, &self.events.gate(user, Some(&self.claims)));
@@ -302,6 +302,7 @@ impl FlexPipeline {
             user,
             book: &self.gatherer.hooks,
             claims: &self.claims,
+            links: &self.links,
             is_full,
         }
     }
