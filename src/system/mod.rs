@@ -18,6 +18,7 @@ mod link_response;
 mod massless_surface;
 mod moments;
 mod rigid_block;
+mod rigid_energy;
 mod rigid_motion;
 mod step;
 

@@ -10,19 +10,19 @@ use crate::math::{Mat2, Vec2, perp};
 /// mass of its whole multibody and by no law of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidBlock {
-    start: RigidMotion,
-    current: RigidMotion,
+    pub(super) start: RigidMotion,
+    pub(super) current: RigidMotion,
     free: RigidMotion,
     /// Acceleration without hard contact forces, `[a_x, a_y, α]`, at the beginning and at the end of the step.
     pub smooth_start: [f64; 3],
     /// See [`RigidBlock::smooth_start`].
     pub smooth_end: [f64; 3],
     inverse_mass: [f64; 3],
-    mass: [f64; 3],
+    pub(super) mass: [f64; 3],
     inverse_effective: [f64; 3],
-    force: [f64; 3],
+    pub(super) force: [f64; 3],
     weights: Weights,
-    dt: f64,
+    pub(super) dt: f64,
     is_prescribed: bool,
     /// How a link of a multibody answers; such a block has no mass of its own.
     link: Option<LinkResponse>,
@@ -252,20 +252,6 @@ impl RigidBlock {
         [velocity.x, velocity.y, spin]
     }
 
-    /// Work of an impulse that acted over the step, at the mean velocity (J).
-    pub fn work_of(&self, impulse: [f64; 3]) -> f64 {
-        let start = [
-            self.start.velocity.x,
-            self.start.velocity.y,
-            self.start.spin,
-        ];
-        let means = start
-            .iter()
-            .zip(self.rates())
-            .map(|(v, end)| 0.5 * (v + end));
-        means.zip(impulse).map(|(v, p)| v * p).sum()
-    }
-
     /// Velocity at the end of a lever (m/s).
     pub fn velocity(&self, lever: Vec2) -> Vec2 {
         self.current.velocity + self.current.spin * perp(lever)
@@ -425,30 +411,6 @@ impl RigidBlock {
     /// Acceleration that the applied forces give to the body alone (m/s², rad/s²).
     pub fn drive(&self) -> [f64; 3] {
         std::array::from_fn(|i| self.inverse_mass[i] * self.force[i])
-    }
-
-    /// Work of the applied forces over the step (J).
-    pub fn applied_work(&self) -> f64 {
-        let moved = self.current.centre - self.start.centre;
-        self.force[0] * moved.x
-            + self.force[1] * moved.y
-            + self.force[2] * (self.current.angle - self.start.angle)
-    }
-
-    /// See [`super::Block::swing`].
-    pub(super) fn swing(&self) -> [f64; 2] {
-        [&self.smooth_start, &self.smooth_end].map(|acceleration| {
-            let terms = self.mass.iter().zip(acceleration);
-            let squared: f64 = terms.map(|(mass, a)| mass * a * a).sum();
-            0.125 * self.dt * self.dt * squared
-        })
-    }
-
-    /// Kinetic energy of a motion of this body (J).
-    pub fn kinetic_energy(&self, motion: &RigidMotion) -> f64 {
-        0.5 * (self.mass[0] * motion.velocity.x * motion.velocity.x
-            + self.mass[1] * motion.velocity.y * motion.velocity.y
-            + self.mass[2] * motion.spin * motion.spin)
     }
 
     /// Mobility of the body as if it were alone, `n·M⁻¹·n` at a lever (1/kg).
