@@ -300,8 +300,10 @@ impl RigidBlock {
         } else {
             self.dt * self.dt
         };
-        let reach = self.link.map_or(1.0, |link| link.reach);
-        let step = self.answer(wrench).map(|change| reach * b0 * change);
+        let step: [f64; 3] = match &self.link {
+            None => std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]),
+            Some(link) => link.answer(wrench).map(|change| b0 * link.reach * change),
+        };
         self.current = self.free;
         self.current.centre += Vec2::new(step[0], step[1]);
         self.current.angle += step[2];
