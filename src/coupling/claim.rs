@@ -1,7 +1,8 @@
 //! Claiming: which bodies are solved in one system, and which pairs of them may touch.
 //!
 //! From every flexible body the contact graph is walked through dynamic rigid bodies; all that are reached belong to the
-//! flexible stage for this step. Fixed and kinematic bodies are met but not passed through.
+//! flexible stage for this step. Fixed and kinematic bodies and links of multibodies are met but
+//! not passed through; what meets links of one multibody is solved together.
 
 use super::changes::Changes;
 use super::claim_attachments::ClaimedAttachment;

@@ -137,7 +137,7 @@ impl RigidBlock {
         }
     }
 
-    /// A link of a multibody, until [`RigidBlock::set_link_response`] says how it answers one that keeps its velocity.
+    /// A link of a multibody. It keeps its velocity and gives way to nothing until [`RigidBlock::set_link_response`] tells it more.
     pub fn link(start: RigidMotion, weights: Weights, dt: f64) -> Self {
         Self {
             weights,
