@@ -23,5 +23,8 @@ mod forces;
 #[path = "joints/multibody.rs"]
 mod multibody;
 
+#[path = "joints/multibody_rest.rs"]
+mod multibody_rest;
+
 #[path = "joints/coming_and_going.rs"]
 mod coming_and_going;

@@ -1,7 +1,8 @@
 //! Claiming: which bodies are solved in one system, and which pairs of them may touch.
 //!
 //! From every flexible body the contact graph is walked through dynamic rigid bodies; all that are reached belong to the
-//! flexible stage for this step. Fixed and kinematic bodies are met but not passed through.
+//! flexible stage for this step. Fixed and kinematic bodies and links of multibodies are met but
+//! not passed through; what meets links of one multibody is solved together.
 
 use super::changes::Changes;
 use super::claim_attachments::ClaimedAttachment;
@@ -62,6 +63,8 @@ pub(crate) struct Claims {
     pub(super) partners: Vec<(RigidBodyHandle, ImpulseJointHandle)>,
     /// Component of every member: flexible bodies first, then rigid ones.
     parent: Vec<usize>,
+    /// Multibodies that are met, with one of the members that meet them.
+    multibodies: Vec<(MultibodyIndex, usize)>,
     pub(super) rigid_index: HashMap<RigidBodyHandle, usize>,
     pub(super) flex_of_collider: HashMap<ColliderHandle, usize>,
     seen: HashSet<(ColliderHandle, ColliderHandle)>,
@@ -188,6 +191,7 @@ impl Claims {
     pub fn walk(&mut self, sets: &RapierSets<'_>) {
         self.rigid.clear();
         self.rigid_index.clear();
+        self.multibodies.clear();
         self.pairs.clear();
         self.joints.clear();
         self.seen_joints.clear();
@@ -276,6 +280,8 @@ impl Claims {
         if let Some(parent) = claimable_parent(sets, collider) {
             let member = self.claim(parent);
             self.unite(flex, member);
+        } else {
+            self.meet_link(sets, collider.parent(), flex);
         }
     }
 
@@ -336,6 +342,9 @@ impl Claims {
                 let other_member = self.claim(parent);
                 let own_member = self.claim(body);
                 self.unite(own_member, other_member);
+            } else {
+                let own_member = self.claim(body);
+                self.meet_link(sets, collider.parent(), own_member);
             }
         }
     }
@@ -351,6 +360,24 @@ impl Claims {
         self.rigid_index.insert(handle, index);
         self.parent.push(n_flex + index);
         n_flex + index
+    }
+
+    /// Unites a member with all others that meet links of the same multibody.
+    pub(super) fn meet_link(
+        &mut self,
+        sets: &RapierSets<'_>,
+        body: Option<RigidBodyHandle>,
+        member: usize,
+    ) {
+        let link = body.and_then(|body| sets.multibody_joints.rigid_body_link(body));
+        let Some(index) = link.map(|link| link.multibody) else {
+            return;
+        };
+        let met = self.multibodies.iter().find(|(one, _)| *one == index);
+        match met.map(|(_, other)| *other) {
+            Some(other) => self.unite(member, other),
+            None => self.multibodies.push((index, member)),
+        }
     }
 
     fn root(&mut self, mut member: usize) -> usize {

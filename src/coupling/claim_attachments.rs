@@ -77,6 +77,8 @@ impl Claims {
             if let Some(handle) = rigid.filter(|&handle| claimable_body(sets, handle)) {
                 let member = self.claim(handle);
                 self.unite(flex, member);
+            } else {
+                self.meet_link(sets, rigid, flex);
             }
         }
     }

@@ -32,6 +32,9 @@ impl Claims {
                 let other = self.claim(partner);
                 let own = self.claim(body);
                 self.unite(own, other);
+            } else {
+                let own = self.claim(body);
+                self.meet_link(sets, Some(partner), own);
             }
         }
     }

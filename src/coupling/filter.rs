@@ -19,14 +19,18 @@ pub(crate) fn claimable_parent(
 
 /// Whether the flexible stage can solve for a rigid body.
 pub(super) fn claimable_body(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bool {
-    let Some(body) = sets.bodies.get(handle) else {
-        return false;
-    };
-    let is_free = body.is_dynamic()
-        && body.is_enabled()
-        && !body.is_soft_frame()
-        && body.dominance_group() <= 0;
-    is_free && sets.multibody_joints.rigid_body_link(handle).is_none()
+    is_free_body(sets, handle) && sets.multibody_joints.rigid_body_link(handle).is_none()
+}
+
+/// Whether forces of flexible bodies move a rigid one.
+pub(super) fn is_free_body(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bool {
+    let body = sets.bodies.get(handle);
+    body.is_some_and(|body| {
+        body.is_dynamic()
+            && body.is_enabled()
+            && !body.is_soft_frame()
+            && body.dominance_group() <= 0
+    })
 }
 
 /// Whether two colliders may push each other: what rapier's narrow phase asks of a pair, the user's hook included.

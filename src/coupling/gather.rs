@@ -4,10 +4,10 @@ use super::candidates::{self, Names};
 use super::claim::{ClaimedPair, Claims};
 use super::filter::claimable_parent;
 use super::hooks::{HookBook, HookedPair};
+use super::links::{LinkBlock, LinkBook};
 use super::masters::{Masters, cap_speed};
 use super::reading::{
     GatherError, at_rest, is_held_load, is_held_motion, law_of, load_of, offset_of, owner_of,
-    prescribed_block,
 };
 use super::references::References;
 use super::rigid_pairs::{Agitation, RigidPair};
@@ -49,6 +49,8 @@ pub(crate) struct Gatherer {
     pub hooks: HookBook,
     /// Claimed bodies of the island, by block.
     pub bodies: Vec<(usize, RigidBodyHandle)>,
+    /// Links of multibodies in the island.
+    pub links: Vec<LinkBlock>,
 }
 
 /// What all islands of a step have in common.
@@ -120,7 +122,7 @@ impl Gatherer {
         sets: &RapierSets<'_>,
         flex_bodies: &mut FlexBodySet,
         claims: &mut Claims,
-        masters: &Masters,
+        (masters, book): (&Masters, &LinkBook),
         island: &mut Island,
     ) -> Result<(), GatherError> {
         let component = settings.component;
@@ -129,6 +131,7 @@ impl Gatherer {
         self.block_of_body.clear();
         self.flex_blocks.clear();
         self.bodies.clear();
+        self.links.clear();
         for flex in 0..claims.flex.len() {
             if claims.component_of_flex(flex) == component {
                 self.add_flex(flex, settings, sets, flex_bodies, claims, island)?;
@@ -146,7 +149,7 @@ impl Gatherer {
             self.add_pair(pair, settings, sets, claims, island)?;
         }
         self.add_joints(settings, sets, flex_bodies, claims, island)?;
-        Ok(())
+        self.finish_links(settings, book, sets, island)
     }
 
     /// Puts the flexible blocks of a solved island back into the pool.
@@ -270,11 +273,18 @@ impl Gatherer {
         handle: Option<RigidBodyHandle>,
         island: &mut Island,
     ) -> usize {
+        let is_link = block.link_response().is_some();
         island.blocks.push(Block::Rigid(block));
         island.flex_index.push(None);
         let index = island.blocks.len() - 1;
         if let Some(handle) = handle {
             self.block_of_body.insert(handle, index);
+            if is_link {
+                self.links.push(LinkBlock {
+                    block: index,
+                    handle,
+                });
+            }
         }
         index
     }
@@ -420,11 +430,7 @@ impl Gatherer {
                 )
             }
             Some((parent, body)) => {
-                let known = self.block_of_body.get(&parent).copied();
-                let block = known.unwrap_or_else(|| {
-                    let block = prescribed_block(body, settings.step.dt);
-                    self.push_rigid(block, Some(parent), island)
-                });
+                let block = self.block_of(parent, settings, sets, island)?;
                 (block, offset_of(collider, body))
             }
         };

@@ -4,7 +4,7 @@ use super::claim::Claims;
 use super::gather::{GatherSettings, Gatherer};
 use super::joints::{self, RowWriter, Side, is_held_joint};
 use super::masters::local_centre;
-use super::reading::{GatherError, prescribed_block};
+use super::reading::GatherError;
 use super::sets::RapierSets;
 use crate::body::{Anchor, Attachment, AttachmentKind, AttachmentTarget, FlexBodySet, Shift};
 use crate::constraint::joint::{
@@ -88,7 +88,7 @@ impl Gatherer {
     }
 
     /// The block of a rigid body: its own if it is claimed, or one that moves as rapier says.
-    fn block_of(
+    pub(super) fn block_of(
         &mut self,
         handle: RigidBodyHandle,
         settings: &GatherSettings,
@@ -98,7 +98,7 @@ impl Gatherer {
         if let Some(block) = self.known_block(handle) {
             return Some(block);
         }
-        let block = prescribed_block(sets.bodies.get(handle)?, settings.step.dt);
+        let block = self.foreign_block(handle, settings, sets)?;
         Some(self.push_rigid(block, Some(handle), island))
     }
 

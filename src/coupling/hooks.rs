@@ -6,6 +6,7 @@
 
 use super::claim::Claims;
 use super::events::{PairName, pair_name};
+use super::links::LinkBook;
 use super::reading::GatherError;
 use super::sets::RapierSets;
 use crate::constraint::contact::{
@@ -288,6 +289,8 @@ pub(crate) struct HookGate<'a> {
     pub book: &'a HookBook,
     /// Carriers and claimed bodies.
     pub claims: &'a Claims,
+    /// Links of multibodies, whose pairs with claimed bodies are ours.
+    pub links: &'a LinkBook,
     /// Whether this is the full step, in which claimed bodies are locked.
     pub is_full: bool,
 }
@@ -304,11 +307,20 @@ impl HookGate<'_> {
 impl PhysicsHooks for HookGate<'_> {
     fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
         let [one, other] = [context.collider1, context.collider2];
-        let answered = self.claims.answer(pair_name(one, other));
-        match answered.filter(|_| self.is_full) {
+        let name = pair_name(one, other);
+        let answered = self.claims.answer(name);
+        let borrowed = &self.links.borrowed;
+        let flags = match answered.filter(|_| self.is_full) {
             Some(answer) => answer,
-            None => self.user.filter_contact_pair(context),
+            None if borrowed.asks_user(name, context.colliders) => {
+                self.user.filter_contact_pair(context)
+            }
+            None => Some(SolverFlags::default()),
+        };
+        if borrowed.holds(name) {
+            return flags.map(|flags| flags - SolverFlags::COMPUTE_RIGID_IMPULSES);
         }
+        flags
     }
 
     fn filter_intersection_pair(&self, context: &PairFilterContext) -> bool {

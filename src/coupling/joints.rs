@@ -2,8 +2,8 @@
 //!
 //! Locked axes become bilateral rows, limits one row a side, motors and soft axes springs, coupled axes (ropes, springs) rows of
 //! the distance. Softness is natural frequency and damping ratio per mass that the row moves; where it vibrates much faster than
-//! steps follow each other, as by default, the axis is rigid. A joint to a fixed or kinematic body, or to a link of a multibody, holds
-//! on to its prescribed motion.
+//! steps follow each other, as by default, the axis is rigid. A joint to a fixed or kinematic body holds on to its prescribed motion, one
+//! to a link of a multibody on the motion foreseen for it, which the joint's forces change.
 
 use super::masters::local_centre;
 use super::sets::RapierSets;

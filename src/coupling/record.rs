@@ -5,6 +5,7 @@ use super::claim::Claims;
 use super::events::{EventBook, PairName};
 use super::gather::Gatherer;
 use super::hooks::HookBook;
+use super::links::LinkBook;
 use super::masters::{Master, Masters};
 use super::references::References;
 use super::sleep::Sleeper;
@@ -169,6 +170,7 @@ pub(crate) struct CouplingRecord {
     events: EventRecord,
     hooks: HookRecord,
     masters: Vec<(RigidBodyHandle, Master)>,
+    links: Vec<(RigidBodyHandle, [f64; 3])>,
     references: References,
     joint_memory: JointMemory,
     explicit: Vec<(u32, ExplicitRecord)>,
@@ -176,7 +178,12 @@ pub(crate) struct CouplingRecord {
 
 impl CouplingRecord {
     /// The record of what a pipeline holds.
-    pub fn of(claims: &Claims, events: &EventBook, masters: &Masters, gatherer: &Gatherer) -> Self {
+    pub fn of(
+        claims: &Claims,
+        events: &EventBook,
+        (masters, links): (&Masters, &LinkBook),
+        gatherer: &Gatherer,
+    ) -> Self {
         let pool = gatherer.pool.iter().enumerate();
         let explicit = pool.filter_map(|(index, block)| {
             let record = block.as_ref()?.explicit_record()?;
@@ -187,6 +194,7 @@ impl CouplingRecord {
             events: EventRecord::of(events),
             hooks: HookRecord::of(&gatherer.hooks),
             masters: listed(&masters.last),
+            links: listed(&links.last),
             references: gatherer.references.clone(),
             joint_memory: gatherer.joint_memory.clone(),
             explicit: explicit.collect(),
@@ -197,7 +205,7 @@ impl CouplingRecord {
     pub fn build(
         self,
         flex_bodies: &FlexBodySet,
-    ) -> Option<(Claims, EventBook, Masters, Gatherer)> {
+    ) -> Option<(Claims, EventBook, (Masters, LinkBook), Gatherer)> {
         let mut gatherer = Gatherer::default();
         gatherer.references = self.references;
         gatherer.joint_memory = self.joint_memory;
@@ -217,6 +225,9 @@ impl CouplingRecord {
         }
         let mut masters = Masters::default();
         masters.last = self.masters.into_iter().collect();
-        Some((self.claims.build(), self.events.build(), masters, gatherer))
+        let mut links = LinkBook::default();
+        links.last = self.links.into_iter().collect();
+        let kept = (masters, links);
+        Some((self.claims.build(), self.events.build(), kept, gatherer))
     }
 }

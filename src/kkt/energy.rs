@@ -38,7 +38,7 @@ impl Island {
         sum
     }
 
-    /// Work of applied forces and of the contact forces of prescribed bodies (J).
+    /// Work of applied forces and of the contact forces of driven bodies, prescribed ones and links of multibodies (J).
     pub(super) fn actual_work(&self, settings: &SolveSettings) -> f64 {
         let mut work = 0.0;
         for block in &self.blocks {
@@ -53,7 +53,7 @@ impl Island {
             let force = normal * kinematics.normal + tangent * kinematics.tangent();
             for a in kinematics.attachments() {
                 let block = &self.blocks[a.block];
-                if matches!(block, Block::Rigid(block) if block.is_prescribed()) {
+                if matches!(block, Block::Rigid(block) if block.is_driven()) {
                     let moved = block.position(a.grip.point) - block.start_position(a.grip.point);
                     work -= a.weight * force.dot(&moved);
                 }
@@ -62,7 +62,7 @@ impl Island {
         work
     }
 
-    /// Work done on the island by applied forces and, at most, by moving prescribed bodies (J).
+    /// Work done on the island by applied forces and, at most, by moving driven bodies (J).
     pub(super) fn external_work(&self) -> f64 {
         let mut work = 0.0;
         for block in &self.blocks {
@@ -76,7 +76,9 @@ impl Island {
                 .kinematics
                 .attachments()
                 .iter()
-                .filter(|a| matches!(&self.blocks[a.block], Block::Rigid(block) if block.is_prescribed()))
+                .filter(
+                    |a| matches!(&self.blocks[a.block], Block::Rigid(block) if block.is_driven()),
+                )
                 .map(|a| {
                     let block = &self.blocks[a.block];
                     block.position(a.grip.point) - block.start_position(a.grip.point)

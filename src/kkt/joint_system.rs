@@ -168,7 +168,7 @@ impl Island {
                 sum += a.weight
                     * match &self.blocks[block] {
                         Block::Rigid(rigid) => {
-                            rigid.respond(a.grip.lever, unit_wrench(from, push, is_turn))
+                            rigid.respond(a.grip.lever, unit_wrench(from, push, is_turn), of)
                         }
                         Block::Flex(_) => {
                             let compliance = self.blocks[block].compliance(a.grip, from.grip(), of);

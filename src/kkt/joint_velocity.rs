@@ -364,7 +364,7 @@ impl Island {
         }
     }
 
-    /// Work of the joints on what is not prescribed (J): nothing but for motors, springs and driven bodies.
+    /// Work of the joints on what is not driven from outside (J): nothing but for motors, springs and driven bodies.
     pub(super) fn joint_work(&self, settings: &SolveSettings) -> f64 {
         let mut work = 0.0;
         for tie in &self.ties {
@@ -373,7 +373,7 @@ impl Island {
             for at in first..last {
                 let grip = &self.joint_grips[at];
                 match &self.blocks[grip.block] {
-                    Block::Rigid(block) if block.is_prescribed() => {}
+                    Block::Rigid(block) if block.is_driven() => {}
                     Block::Rigid(block) if tie.is_hard => {
                         let mut impulse = [0.0; 3];
                         let kept = unit_wrench(grip, tie.direction, is_turn);

@@ -350,7 +350,12 @@ impl Island {
                 kinematics.relative(&self.blocks, |block, grip| block.smooth_acceleration(grip));
             for a in kinematics.attachments() {
                 if let Block::Rigid(block) = &self.blocks[a.block] {
-                    acceleration += a.weight * block.respond(a.grip.lever, self.wrenches[a.block]);
+                    acceleration += a.weight
+                        * block.respond(
+                            a.grip.lever,
+                            self.wrenches[a.block],
+                            Response::Acceleration,
+                        );
                 }
             }
             let normal = self.rows.len();

@@ -25,6 +25,7 @@ impl FlexPipeline {
                 self.landings.push(Landing::new(handle, block));
             }
         }
+        self.links.note(&self.gatherer.links, &self.island);
         let n_flex = self.island.flex_index.iter().flatten().count().max(1);
         for &index in self.island.flex_index.iter().flatten() {
             self.reserves.push((index, reserve / n_flex as f64));

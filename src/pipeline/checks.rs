@@ -154,6 +154,7 @@ impl FlexPipeline {
     /// Leaves no trace of a step that failed, before which energy of `dissipated` was lost (J).
     pub(super) fn undo(&mut self, flex_bodies: &mut FlexBodySet, dissipated: f64) {
         self.landings.clear();
+        self.links.pushes.clear();
         self.reserves.clear();
         self.joint_impulses.clear();
         self.memory.discard_notes();

@@ -7,9 +7,9 @@ use super::report::StepReport;
 use crate::body::{FlexBodyHandle, FlexBodySet};
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
-    Claims, EventBook, GatherSettings, Gatherer, HookGate, JointImpulse, Landing, Masters,
-    RapierSets, WorldChange, hand_back, land, rests, stop_if_asleep, sync_settings, wake_disturbed,
-    write_impulses, write_surface,
+    Claims, EventBook, GatherSettings, Gatherer, HookGate, JointImpulse, Landing, LinkBook,
+    Masters, RapierSets, WorldChange, hand_back, land, rests, stop_if_asleep, sync_settings,
+    wake_disturbed, write_impulses, write_surface,
 };
 use crate::integrator::Beta2;
 use crate::kkt::{ContactMethod, ImpactTreatment, Island, SolveSettings};
@@ -53,6 +53,7 @@ pub struct FlexPipeline {
     pub(super) claims: Claims,
     pub(super) gatherer: Gatherer,
     pub(super) masters: Masters,
+    pub(super) links: LinkBook,
     pub(super) memory: ContactMemory,
     pub(super) island: Island,
     pub(super) landings: Vec<Landing>,
@@ -85,6 +86,7 @@ impl FlexPipeline {
             claims: Claims::default(),
             gatherer: Gatherer::default(),
             masters: Masters::default(),
+            links: LinkBook::default(),
             memory: ContactMemory::default(),
             island: Island::default(),
             landings: Vec::new(),
@@ -268,6 +270,7 @@ impl FlexPipeline {
         }
         self.keep_awake(sets, flex_bodies);
         hand_back(&mut self.landings, sets);
+        self.links.lend(step, &self.claims, sets);
         clock.lap(&mut self.report.times.hand_back);
         let gate = self.hook_gate(hooks, true);
         sets.step_through(&gate, &self.events.gate(user, Some(&self.claims)));
@@ -275,6 +278,7 @@ impl FlexPipeline {
         clock.lap(&mut self.report.times.rapier);
         self.wake_moving(sets, flex_bodies);
         land(&self.landings, sets, &mut self.masters);
+        self.links.take_back(sets);
         write_impulses(&self.joint_impulses, sets);
         self.commit_attachments(flex_bodies);
         self.commit(sets, flex_bodies);
@@ -298,6 +302,7 @@ impl FlexPipeline {
             user,
             book: &self.gatherer.hooks,
             claims: &self.claims,
+            links: &self.links,
             is_full,
         }
     }
@@ -311,6 +316,7 @@ impl FlexPipeline {
         clock: &mut Clock,
     ) -> Result<(), StepError> {
         self.landings.clear();
+        self.links.pushes.clear();
         self.reserves.clear();
         self.joint_impulses.clear();
         self.memory.discard_notes();
@@ -355,9 +361,10 @@ impl FlexPipeline {
             step,
             prediction: f64::from(sets.integration_parameters.prediction_distance()),
         };
-        let (claims, masters, island) = (&mut self.claims, &self.masters, &mut self.island);
+        let (claims, island) = (&mut self.claims, &mut self.island);
+        let kept = (&self.masters, &self.links);
         self.gatherer
-            .gather(&gather, sets, flex_bodies, claims, masters, island)?;
+            .gather(&gather, sets, flex_bodies, claims, kept, island)?;
         clock.lap(&mut self.report.times.gather);
         let settings = SolveSettings {
             dt: step.dt,

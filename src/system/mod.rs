@@ -14,17 +14,22 @@ mod flex_momentum;
 mod flex_motion;
 mod flex_restart;
 mod flex_solve;
+mod link_response;
 mod massless_surface;
 mod moments;
 mod rigid_block;
+mod rigid_energy;
+mod rigid_motion;
 mod step;
 
 #[cfg(feature = "serde-serialize")]
 pub(crate) use explicit_record::ExplicitRecord;
 pub use flex_block::FlexBlock;
 pub use flex_motion::Balance;
+pub use link_response::LinkResponse;
 pub use moments::Moments;
-pub use rigid_block::{RigidBlock, RigidLoad, RigidMotion};
+pub use rigid_block::{RigidBlock, RigidLoad};
+pub use rigid_motion::RigidMotion;
 pub use step::{FlexLoad, Response, Step};
 
 use crate::math::{Mat2, Vec2};
@@ -59,7 +64,7 @@ pub struct Grip {
 pub enum Block {
     /// A flexible body.
     Flex(Box<FlexBlock>),
-    /// A rigid body, free or prescribed.
+    /// A rigid body: free, prescribed, or a link of a multibody.
     Rigid(RigidBlock),
 }
 
@@ -121,7 +126,7 @@ impl Block {
                 block.compliance((node, at.lever), (source, from.lever), of)
             }
             (Self::Rigid(block), Point::Arm(_), Point::Arm(_)) => {
-                block.compliance(at.lever, from.lever)
+                block.compliance(at.lever, from.lever, of)
             }
             _ => mismatch(),
         }

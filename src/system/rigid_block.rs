@@ -1,59 +1,31 @@
 //! A rigid body as a block: `[x, y, θ]` of the centre of mass, `A = b2 M + b1 C` with constant diagonal `M` and `C`.
 
+use super::Response;
+use super::link_response::LinkResponse;
+use super::rigid_motion::RigidMotion;
 use crate::integrator::Weights;
-use crate::math::{Mat2, Vec2, perp, rotation};
+use crate::math::{Mat2, Vec2, perp};
 
-/// Position and velocity of a rigid body about its centre of mass.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(
-    feature = "serde-serialize",
-    derive(serde::Serialize, serde::Deserialize)
-)]
-pub struct RigidMotion {
-    /// Centre of mass (m).
-    pub centre: Vec2,
-    /// Angle (rad).
-    pub angle: f64,
-    /// Velocity of the centre of mass (m/s).
-    pub velocity: Vec2,
-    /// Angular velocity (rad/s).
-    pub spin: f64,
-}
-
-impl RigidMotion {
-    /// World position of the material point at `arm` (body axes, m).
-    pub fn point(&self, arm: Vec2) -> Vec2 {
-        self.centre + rotation(self.angle) * arm
-    }
-
-    /// World velocity of the material point at `arm` (body axes, m).
-    pub fn point_velocity(&self, arm: Vec2) -> Vec2 {
-        self.velocity + self.spin * perp(rotation(self.angle) * arm)
-    }
-
-    /// `arm` (body axes, m) of a world point.
-    pub fn arm(&self, point: Vec2) -> Vec2 {
-        rotation(-self.angle) * (point - self.centre)
-    }
-}
-
-/// A rigid body of an island, free (dynamic) or prescribed (fixed and kinematic).
+/// A rigid body of an island: free (dynamic), prescribed (fixed and kinematic), or a link of a multibody, which moves by an inverse
+/// mass of its whole multibody and by no law of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidBlock {
-    start: RigidMotion,
-    current: RigidMotion,
+    pub(super) start: RigidMotion,
+    pub(super) current: RigidMotion,
     free: RigidMotion,
     /// Acceleration without hard contact forces, `[a_x, a_y, α]`, at the beginning and at the end of the step.
     pub smooth_start: [f64; 3],
     /// See [`RigidBlock::smooth_start`].
     pub smooth_end: [f64; 3],
     inverse_mass: [f64; 3],
-    mass: [f64; 3],
+    pub(super) mass: [f64; 3],
     inverse_effective: [f64; 3],
-    force: [f64; 3],
+    pub(super) force: [f64; 3],
     weights: Weights,
-    dt: f64,
+    pub(super) dt: f64,
     is_prescribed: bool,
+    /// How a link of a multibody answers; such a block has no mass of its own.
+    link: Option<LinkResponse>,
     /// Stiffness against turning within the step (N m/rad), and the free angle and inverse inertia without it.
     twist: f64,
     untwisted: [f64; 2],
@@ -95,6 +67,7 @@ impl RigidBlock {
             weights: Weights::default(),
             dt: 0.0,
             is_prescribed: true,
+            link: None,
             twist: 0.0,
             untwisted: [0.0; 2],
             damped_velocity: [0.0; 3],
@@ -157,9 +130,53 @@ impl RigidBlock {
             weights,
             dt,
             is_prescribed: false,
+            link: None,
             twist: 0.0,
             untwisted: [0.0; 2],
             damped_velocity: v,
+        }
+    }
+
+    /// A link of a multibody. It keeps its velocity and gives way to nothing until [`RigidBlock::set_link_response`] tells it more.
+    pub fn link(start: RigidMotion, weights: Weights, dt: f64) -> Self {
+        Self {
+            weights,
+            dt,
+            is_prescribed: false,
+            link: Some(LinkResponse::default()),
+            ..Self::prescribed(start, start)
+        }
+    }
+
+    /// Tells a link where it goes without forces of this step, its acceleration meanwhile, and how it answers forces.
+    pub fn set_link_response(
+        &mut self,
+        free: RigidMotion,
+        acceleration: [f64; 3],
+        response: LinkResponse,
+    ) {
+        self.free = free;
+        self.smooth_start = acceleration;
+        self.smooth_end = acceleration;
+        self.link = Some(response);
+    }
+
+    /// How a link answers and what it has been given, if this is one.
+    pub fn link_response(&self) -> Option<&LinkResponse> {
+        self.link.as_ref()
+    }
+
+    /// Whether its energy is not that of the island: its motion is given, or another solver's joints drive it.
+    pub fn is_driven(&self) -> bool {
+        self.is_prescribed || self.link.is_some()
+    }
+
+    /// What a wrench does, `A⁻¹ f` (m/s², rad/s²).
+    #[inline]
+    fn answer(&self, wrench: [f64; 3]) -> [f64; 3] {
+        match &self.link {
+            None => std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]),
+            Some(link) => link.answer(wrench),
         }
     }
 
@@ -207,39 +224,32 @@ impl RigidBlock {
     }
 
     /// See [`super::Block::compliance`], for two levers.
-    pub fn compliance(&self, at: Vec2, from: Vec2) -> Mat2 {
-        mobility(&self.inverse_effective, at, from)
+    pub fn compliance(&self, at: Vec2, from: Vec2, of: Response) -> Mat2 {
+        match &self.link {
+            None => mobility(&self.inverse_effective, at, from),
+            Some(link) => link.compliance(at, from, of),
+        }
     }
 
     /// How the unit wrench `at` moves along under the unit wrench `from`, `G A⁻¹ Gᵀ` (1/kg).
-    pub fn mobility_between(&self, at: [f64; 3], from: [f64; 3]) -> f64 {
+    pub fn mobility_between(&self, at: [f64; 3], from: [f64; 3], of: Response) -> f64 {
+        if let Some(link) = &self.link {
+            return link.mobility_between(at, from, of);
+        }
         let terms = at.iter().zip(from).zip(&self.inverse_effective);
         terms.map(|((at, from), inverse)| at * inverse * from).sum()
     }
 
     /// Smooth acceleration at the end of the step, and what a wrench adds (m/s², rad/s²).
     pub fn acceleration_under(&self, wrench: [f64; 3]) -> [f64; 3] {
-        std::array::from_fn(|i| self.smooth_end[i] + self.inverse_effective[i] * wrench[i])
+        let change = self.answer(wrench);
+        std::array::from_fn(|i| self.smooth_end[i] + change[i])
     }
 
     /// Velocity and spin at the current iterate (m/s, rad/s).
     pub fn rates(&self) -> [f64; 3] {
         let RigidMotion { velocity, spin, .. } = self.current;
         [velocity.x, velocity.y, spin]
-    }
-
-    /// Work of an impulse that acted over the step, at the mean velocity (J).
-    pub fn work_of(&self, impulse: [f64; 3]) -> f64 {
-        let start = [
-            self.start.velocity.x,
-            self.start.velocity.y,
-            self.start.spin,
-        ];
-        let means = start
-            .iter()
-            .zip(self.rates())
-            .map(|(v, end)| 0.5 * (v + end));
-        means.zip(impulse).map(|(v, p)| v * p).sum()
     }
 
     /// Velocity at the end of a lever (m/s).
@@ -290,7 +300,10 @@ impl RigidBlock {
         } else {
             self.dt * self.dt
         };
-        let step: [f64; 3] = std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]);
+        let step: [f64; 3] = match &self.link {
+            None => std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]),
+            Some(link) => link.answer(wrench).map(|change| b0 * link.reach * change),
+        };
         self.current = self.free;
         self.current.centre += Vec2::new(step[0], step[1]);
         self.current.angle += step[2];
@@ -306,6 +319,9 @@ impl RigidBlock {
             };
             self.free = self.current;
             self.smooth_end = [0.0; 3];
+            if let Some(link) = &mut self.link {
+                link.take_back();
+            }
         }
     }
 
@@ -317,8 +333,11 @@ impl RigidBlock {
 
     /// Sets velocity and smooth acceleration for the part of the contact forces that acts as (C.5) says.
     pub fn set_soft_force(&mut self, wrench: [f64; 3]) {
-        let change: [f64; 3] = std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]);
+        let change = self.answer(wrench);
         let b1 = self.weights.b1;
+        if let Some(link) = &mut self.link {
+            link.begin(wrench, b1);
+        }
         self.current.velocity = self.free.velocity + b1 * Vec2::new(change[0], change[1]);
         self.current.spin = self.free.spin + b1 * change[2];
         for (sum, change) in self.smooth_end.iter_mut().zip(change) {
@@ -329,7 +348,7 @@ impl RigidBlock {
 
     /// Lets damping act on the end velocity as it has become, instead of what it would have been without joints.
     pub fn settle_damping(&mut self) {
-        if self.is_prescribed || self.inverse_effective == self.inverse_mass {
+        if self.is_driven() || self.inverse_effective == self.inverse_mass {
             return;
         }
         for (i, end) in self.rates().into_iter().enumerate() {
@@ -362,29 +381,33 @@ impl RigidBlock {
 
     /// Adds an impulse (N s, N s, N m s) to the end velocity.
     pub fn add_impulse(&mut self, impulse: [f64; 3]) {
-        self.current.velocity += Vec2::new(
-            self.inverse_effective[0] * impulse[0],
-            self.inverse_effective[1] * impulse[1],
-        );
-        self.current.spin += self.inverse_effective[2] * impulse[2];
+        let change = self.answer(impulse);
+        self.current.velocity += Vec2::new(change[0], change[1]);
+        self.current.spin += change[2];
+        if let Some(link) = &mut self.link {
+            link.add_impulse(impulse);
+        }
     }
 
     /// Adds to the smooth end acceleration the response to a wrench.
     pub fn add_smooth_acceleration(&mut self, wrench: [f64; 3]) {
-        let change = self
-            .inverse_effective
-            .iter()
-            .zip(wrench)
-            .map(|(inverse, value)| inverse * value);
+        let change = self.answer(wrench);
+        if let Some(link) = &mut self.link {
+            link.add_lasting(wrench);
+        }
         for (sum, change) in self.smooth_end.iter_mut().zip(change) {
             *sum += change;
         }
     }
 
     /// Acceleration at the end of a lever under a wrench (m/s²).
-    pub fn respond(&self, lever: Vec2, wrench: [f64; 3]) -> Vec2 {
-        let change: [f64; 3] = std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]);
-        Vec2::new(change[0], change[1]) + change[2] * perp(lever)
+    pub fn respond(&self, lever: Vec2, wrench: [f64; 3], of: Response) -> Vec2 {
+        let change = self.answer(wrench);
+        let along = Vec2::new(change[0], change[1]) + change[2] * perp(lever);
+        match &self.link {
+            Some(link) if of == Response::Position => link.reach * along,
+            _ => along,
+        }
     }
 
     /// Acceleration that the applied forces give to the body alone (m/s², rad/s²).
@@ -392,32 +415,12 @@ impl RigidBlock {
         std::array::from_fn(|i| self.inverse_mass[i] * self.force[i])
     }
 
-    /// Work of the applied forces over the step (J).
-    pub fn applied_work(&self) -> f64 {
-        let moved = self.current.centre - self.start.centre;
-        self.force[0] * moved.x
-            + self.force[1] * moved.y
-            + self.force[2] * (self.current.angle - self.start.angle)
-    }
-
-    /// See [`super::Block::swing`].
-    pub(super) fn swing(&self) -> [f64; 2] {
-        [&self.smooth_start, &self.smooth_end].map(|acceleration| {
-            let terms = self.mass.iter().zip(acceleration);
-            let squared: f64 = terms.map(|(mass, a)| mass * a * a).sum();
-            0.125 * self.dt * self.dt * squared
-        })
-    }
-
-    /// Kinetic energy of a motion of this body (J).
-    pub fn kinetic_energy(&self, motion: &RigidMotion) -> f64 {
-        0.5 * (self.mass[0] * motion.velocity.x * motion.velocity.x
-            + self.mass[1] * motion.velocity.y * motion.velocity.y
-            + self.mass[2] * motion.spin * motion.spin)
-    }
-
     /// Mobility of the body as if it were alone, `n·M⁻¹·n` at a lever (1/kg).
     pub fn rigid_mobility(&self, lever: Vec2, direction: Vec2) -> f64 {
+        if let Some(link) = &self.link {
+            let between = link.compliance(lever, lever, Response::Velocity);
+            return direction.dot(&(between * direction));
+        }
         direction.dot(&(mobility(&self.inverse_mass, lever, lever) * direction))
     }
 }

@@ -74,6 +74,27 @@ fn a_run_by_constraint_functions_restored_after_every_step_never_differs() {
     step_by_step(run, 100);
 }
 
+/// Links of a multibody are given in the next step what the forces of this one have left.
+#[test]
+fn a_run_on_links_of_a_multibody_restored_after_every_step_never_differs() {
+    let mut run = Run::new();
+    let base = run
+        .world
+        .insert_body(RigidBodyBuilder::fixed().translation(at(0.0, 1.0)));
+    let link = run.rigid([0.5, 1.0], ColliderBuilder::cuboid(0.5, 0.05));
+    let hinge = RevoluteJointBuilder::new()
+        .local_anchor2(at(-0.5, 0.0))
+        .contacts_enabled(false);
+    run.world.multibody_joints.insert(base, link, hinge, true);
+    let soft = LinearElastic::plane_stress(1e6, 0.3)
+        .density(300.0)
+        .rayleigh(1e-3);
+    let block = FlexBodyBuilder::rectangle([0.3, 0.3], [3, 3]).translation([0.1, 1.051]);
+    run.flexible(block.material(soft));
+    run.rigid([0.3, 1.46], ColliderBuilder::cuboid(0.1, 0.1));
+    step_by_step(run, 120);
+}
+
 /// An explicit block remembers internal forces, late forces and half kicks of the step before.
 #[test]
 fn an_explicit_run_restored_after_every_step_never_differs() {

@@ -32,7 +32,7 @@ pub(super) fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
 }
 
 /// Overwrites the lower triangle of `a` with `L`, `A = L Lᵀ`; false if `A` is singular or indefinite.
-pub(super) fn factorize_cholesky(a: &mut [f64], n: usize, tolerance: f64) -> bool {
+pub(crate) fn factorize_cholesky(a: &mut [f64], n: usize, tolerance: f64) -> bool {
     Arch::new().dispatch(Factorize { a, n, tolerance })
 }
 
@@ -91,7 +91,7 @@ fn factorize_rows(own: &mut [f64], n: usize, first: usize, tolerance: f64) -> bo
 }
 
 /// Overwrites the right-hand side `x` with the solution, from the factor of [`factorize_cholesky`].
-pub(super) fn solve_cholesky_in_place(a: &[f64], n: usize, x: &mut [f64]) {
+pub(crate) fn solve_cholesky_in_place(a: &[f64], n: usize, x: &mut [f64]) {
     for row in 0..n {
         let line = &a[row * n..row * n + row + 1];
         x[row] = (x[row] - dot(&line[..row], &x[..row])) / line[row];

@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Raised with every change of what is written, rapier's own structures included.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// Bits of rapier's numbers.
 const PRECISION: u8 = 8 * size_of::<Real>() as u8;
@@ -228,14 +228,19 @@ impl PipelineRecord {
             max_newton: flex.max_newton,
             insists: flex.insists,
             memory: flex.memory.clone(),
-            coupling: CouplingRecord::of(&flex.claims, &flex.events, &flex.masters, &flex.gatherer),
+            coupling: CouplingRecord::of(
+                &flex.claims,
+                &flex.events,
+                (&flex.masters, &flex.links),
+                &flex.gatherer,
+            ),
             report: flex.report.clone(),
         }
     }
 
     fn build(self, flex_bodies: &FlexBodySet) -> Result<FlexPipeline, SnapshotError> {
         let coupling = self.coupling.build(flex_bodies);
-        let (claims, events, masters, gatherer) =
+        let (claims, events, (masters, links), gatherer) =
             coupling.ok_or(SnapshotError::Inconsistent("explicit bodies"))?;
         let mut flex = FlexPipeline::new();
         flex.integrator = self.integrator;
@@ -249,6 +254,7 @@ impl PipelineRecord {
         flex.claims = claims;
         flex.events = events;
         flex.masters = masters;
+        flex.links = links;
         flex.gatherer = gatherer;
         flex.report = self.report;
         Ok(flex)

@@ -1,0 +1,332 @@
+//! Links of multibodies: solved with as bodies that answer forces by the inverse mass of their multibody, moved by rapier.
+//!
+//! The coupling is staggered. The flexible stage foresees where a link goes, finds the forces, and leaves the motion to rapier's full
+//! step, which is told of them as one force for this step: so momentum is kept, and rapier sees to joints, limits, motors and whatever
+//! else the links touch. As every block, a link stores the force at the end of a step, of which `dt - b1` acts in the next: that too is
+//! handed on, even if nothing touches the link any more. Links of one multibody answer each other in the next step only. Where `k` of them are met at once each answers
+//! with `k` times its inverse mass, which is never less than they do together (mass splitting): too small a force is corrected in the
+//! next step, too large a one would throw the lighter side away. Forces that last are known for all links, so at rest nothing is
+//! scaled.
+
+use super::claim::Claims;
+use super::filter::is_free_body;
+use super::gather::{GatherSettings, Gatherer};
+use super::link_gate::Borrowed;
+use super::multibody::{Pace, Tree};
+use super::reading::{GatherError, is_held_motion, prescribed_block};
+use super::sets::RapierSets;
+use crate::kkt::Island;
+use crate::math::{Vec2, to_rapier};
+use crate::rapier::math::{Real, Vector};
+use crate::rapier::prelude::*;
+use crate::system::{Block, LinkResponse, RigidBlock, RigidMotion, Step};
+use nalgebra::{Matrix3, Vector3};
+use std::collections::HashMap;
+
+/// Whether a body is a link that forces move.
+pub(super) fn is_moving_link(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bool {
+    is_free_body(sets, handle) && sets.multibody_joints.rigid_body_link(handle).is_some()
+}
+
+/// A block that stands for a link.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LinkBlock {
+    /// Its index in the island.
+    pub block: usize,
+    /// The link.
+    pub handle: RigidBodyHandle,
+}
+
+/// What the flexible stage does to a link in a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Push {
+    /// The link.
+    pub handle: RigidBodyHandle,
+    /// Impulse of this step's forces (N s, N s, N m s).
+    pub impulse: [f64; 3],
+    /// Forces that act on in the first part of the next step (N, N, N m).
+    pub lasting: [f64; 3],
+}
+
+/// Pushes of this step, and what those of the last have left to do.
+#[derive(Debug, Default)]
+pub(crate) struct LinkBook {
+    /// Forces at the end of the last step.
+    pub(super) last: HashMap<RigidBodyHandle, [f64; 3]>,
+    /// This step's.
+    pub pushes: Vec<Push>,
+    /// Forces of the user's, to be put back.
+    lent: Vec<(RigidBodyHandle, Vector, Real)>,
+    /// Contacts and joints that rapier is not to solve.
+    pub(super) borrowed: Borrowed,
+}
+
+impl LinkBook {
+    /// Notes what the island did to its links.
+    pub fn note(&mut self, links: &[LinkBlock], island: &Island) {
+        for &LinkBlock { block, handle } in links {
+            if let Block::Rigid(block) = &island.blocks[block]
+                && let Some(response) = block.link_response()
+            {
+                self.pushes.push(Push {
+                    handle,
+                    impulse: response.impulse(),
+                    lasting: response.lasting(),
+                });
+            }
+        }
+    }
+
+    /// Adds the pushes to the forces of the user's, for rapier's full step, and takes over what they stand for.
+    pub fn lend(&mut self, step: Step, claims: &Claims, sets: &mut RapierSets<'_>) {
+        self.lent.clear();
+        if self.last.is_empty() && self.pushes.is_empty() {
+            return;
+        }
+        self.borrowed.take(claims, &self.pushes, sets);
+        self.push_left_ones(sets);
+        let late = step.dt - step.weights.b1;
+        for push in &self.pushes {
+            let before = self.last.get(&push.handle).copied().unwrap_or_default();
+            let force: [f64; 3] =
+                std::array::from_fn(|i| (push.impulse[i] + late * before[i]) / step.dt);
+            if let Some(body) = sets.bodies.get_mut(push.handle) {
+                self.lent
+                    .push((push.handle, body.user_force(), body.user_torque()));
+                body.add_force(to_rapier(Vec2::new(force[0], force[1])), false);
+                body.add_torque(force[2] as Real, false);
+            }
+        }
+    }
+
+    /// Links that nothing touches any more still get what the last forces have left.
+    fn push_left_ones(&mut self, sets: &RapierSets<'_>) {
+        let is_met = |handle: &RigidBodyHandle| {
+            let mut pushes = self.pushes.iter();
+            pushes.any(|push| push.handle == *handle)
+        };
+        let is_awake = |handle| {
+            let body = sets.bodies.get(handle);
+            body.is_some_and(|body| !body.is_sleeping())
+        };
+        let left = self.last.keys().filter(|handle| !is_met(handle));
+        let mut left: Vec<RigidBodyHandle> = left
+            .copied()
+            .filter(|&handle| is_moving_link(sets, handle) && is_awake(handle))
+            .collect();
+        left.sort_unstable_by_key(|handle| handle.into_raw_parts());
+        self.pushes.extend(left.into_iter().map(|handle| Push {
+            handle,
+            impulse: [0.0; 3],
+            lasting: [0.0; 3],
+        }));
+    }
+
+    /// Puts the user's forces back, to the last bit, and keeps what this step leaves to the next.
+    pub fn take_back(&mut self, sets: &mut RapierSets<'_>) {
+        for (handle, force, torque) in self.lent.drain(..) {
+            if let Some(body) = sets.bodies.get_mut(handle) {
+                body.reset_forces(false);
+                body.reset_torques(false);
+                body.add_force(force, false);
+                body.add_torque(torque, false);
+            }
+        }
+        self.borrowed.give_back(sets);
+        // What sleeps is not stepped, and waits.
+        let sleeps = |handle| sets.bodies.get(handle).is_some_and(RigidBody::is_sleeping);
+        self.last.retain(|handle, _| sleeps(*handle));
+        for push in self.pushes.drain(..) {
+            self.last.remove(&push.handle);
+            if push.lasting != [0.0; 3] {
+                self.last.insert(push.handle, push.lasting);
+            }
+        }
+    }
+}
+
+impl Gatherer {
+    /// A block that moves as rapier says: given its motion, or for a link answering forces.
+    pub(super) fn foreign_block(
+        &self,
+        handle: RigidBodyHandle,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+    ) -> Option<RigidBlock> {
+        let Step { dt, weights } = settings.step;
+        let block = prescribed_block(sets.bodies.get(handle)?, dt);
+        if is_moving_link(sets, handle) {
+            let start = link_motion(handle, *block.start(), sets);
+            Some(RigidBlock::link(start, weights, dt))
+        } else {
+            Some(block)
+        }
+    }
+
+    /// Finds how the links of the island answer forces, all of them being known.
+    ///
+    /// # Errors
+    /// If the motion foreseen is not finite.
+    pub(super) fn finish_links(
+        &mut self,
+        settings: &GatherSettings,
+        book: &LinkBook,
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) -> Result<(), GatherError> {
+        for slot in 0..self.links.len() {
+            let index = multibody_of(self.links[slot].handle, sets);
+            let is_first = !self.links[..slot]
+                .iter()
+                .any(|link| multibody_of(link.handle, sets) == index);
+            if let Some(index) = index.filter(|_| is_first) {
+                let members: Vec<LinkBlock> = self.links[slot..]
+                    .iter()
+                    .copied()
+                    .filter(|link| multibody_of(link.handle, sets) == Some(index))
+                    .collect();
+                let foreseen = foresee(index, &members, settings.step, book, sets, island);
+                if foreseen.is_none() {
+                    prescribe(&members, settings.step.dt, sets, island);
+                }
+            }
+        }
+        for link in &self.links {
+            if let Block::Rigid(block) = &island.blocks[link.block]
+                && !(is_held_motion(&block.drift())
+                    && block.smooth_end.into_iter().all(f64::is_finite))
+            {
+                return Err(GatherError::RigidBody(link.handle));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A link's motion with the velocity that its joints have: rapier's copy in the body is one substep old.
+fn link_motion(handle: RigidBodyHandle, motion: RigidMotion, sets: &RapierSets<'_>) -> RigidMotion {
+    let link = sets.multibody_joints.rigid_body_link(handle);
+    let multibody =
+        link.and_then(|link| Some((link, sets.multibody_joints.get_multibody(link.multibody)?)));
+    let Some((link, multibody)) = multibody else {
+        return motion;
+    };
+    let (jacobian, rates) = (
+        multibody.body_jacobian(link.id),
+        multibody.generalized_velocity(),
+    );
+    if jacobian.ncols() != rates.len() {
+        // Nothing has been stepped yet.
+        return motion;
+    }
+    let along = |axis: usize| {
+        let row = jacobian.row(axis);
+        let terms = row.iter().zip(rates.iter());
+        terms.map(|(j, v)| f64::from(*j) * f64::from(*v)).sum()
+    };
+    RigidMotion {
+        velocity: Vec2::new(along(0), along(1)),
+        spin: along(2),
+        ..motion
+    }
+}
+
+fn multibody_of(handle: RigidBodyHandle, sets: &RapierSets<'_>) -> Option<MultibodyIndex> {
+    let link = sets.multibody_joints.rigid_body_link(handle);
+    link.map(|link| link.multibody)
+}
+
+/// Sets the free motion and the answer of one multibody's links; `None` if it has no equations of motion.
+fn foresee(
+    index: MultibodyIndex,
+    members: &[LinkBlock],
+    step: Step,
+    book: &LinkBook,
+    sets: &RapierSets<'_>,
+    island: &mut Island,
+) -> Option<()> {
+    let multibody = sets.multibody_joints.get_multibody(index)?;
+    let tree = Tree::read(multibody, sets)?;
+    let bodies = sets.islands.active_bodies();
+    let additional = bodies.filter_map(|handle| sets.bodies.get(handle));
+    let additional = additional.map(RigidBody::additional_solver_iterations);
+    let pace = Pace::new(
+        step.dt,
+        sets.integration_parameters,
+        additional.max().unwrap_or(0),
+    );
+    let place = |handle| tree.links.iter().position(|link| link.handle == handle);
+    let mut reactions = tree.pull_back(0, [0.0; 3]);
+    let lasting = |handle| book.last.get(&handle).copied().unwrap_or_default();
+    for member in members {
+        let pulled = tree.pull_back(place(member.handle)?, lasting(member.handle));
+        reactions
+            .iter_mut()
+            .zip(pulled)
+            .for_each(|(sum, part)| *sum += part);
+    }
+    let solved = tree.solve(multibody, sets, pace, &reactions)?;
+    let split = members.len() as f64;
+    for member in members {
+        let link = place(member.handle)?;
+        let mobility = split * solved.mobility(&tree, link);
+        let own = mobility * Vector3::from(lasting(member.handle));
+        let acceleration = Vector3::from(solved.acceleration(&tree, link)) - own;
+        let Block::Rigid(block) = &mut island.blocks[member.block] else {
+            continue;
+        };
+        let (velocity, spin) = tree.velocity(link);
+        let start = Vector3::new(velocity.x, velocity.y, spin);
+        let foreseen = Foreseen {
+            start,
+            acceleration,
+            own,
+            mobility,
+        };
+        foreseen.write(block, step, pace);
+    }
+    Some(())
+}
+
+/// A link's motion to come.
+struct Foreseen {
+    /// Velocity and spin when the step begins.
+    start: Vector3<f64>,
+    /// Acceleration without what presses the link itself.
+    acceleration: Vector3<f64>,
+    /// Acceleration by what pressed it at the end of the last step.
+    own: Vector3<f64>,
+    mobility: Matrix3<f64>,
+}
+
+impl Foreseen {
+    fn write(&self, block: &mut RigidBlock, step: Step, pace: Pace) {
+        let Step { dt, weights } = step;
+        let gained = dt * self.acceleration + (dt - weights.b1) * self.own;
+        let moved = dt * (self.start + pace.share * gained);
+        let end = self.start + gained;
+        let start = block.start();
+        let free = RigidMotion {
+            centre: start.centre + Vec2::new(moved.x, moved.y),
+            angle: start.angle + moved.z,
+            velocity: Vec2::new(end.x, end.y),
+            spin: end.z,
+        };
+        let reach = if step.is_explicit() {
+            pace.share
+        } else {
+            pace.share * dt * weights.b1 / weights.b0
+        };
+        let response = LinkResponse::new(self.mobility, reach);
+        block.set_link_response(free, self.acceleration.into(), response);
+    }
+}
+
+/// Lets links move as their velocities say.
+fn prescribe(members: &[LinkBlock], dt: f64, sets: &RapierSets<'_>, island: &mut Island) {
+    for member in members {
+        if let Some(body) = sets.bodies.get(member.handle) {
+            island.blocks[member.block] = Block::Rigid(prescribed_block(body, dt));
+        }
+    }
+}
