@@ -80,10 +80,10 @@ fn a_run_on_links_of_a_multibody_restored_after_every_step_never_differs() {
     let mut run = Run::new();
     let base = run
         .world
-        .insert_body(RigidBodyBuilder::fixed().translation(at(0.0, 1.0)));
+        .insert_body(RigidBodyBuilder::fixed().translation(vec2(0.0, 1.0)));
     let link = run.rigid([0.5, 1.0], ColliderBuilder::cuboid(0.5, 0.05));
     let hinge = RevoluteJointBuilder::new()
-        .local_anchor2(at(-0.5, 0.0))
+        .local_anchor2(vec2(-0.5, 0.0))
         .contacts_enabled(false);
     run.world.multibody_joints.insert(base, link, hinge, true);
     let soft = LinearElastic::plane_stress(1e6, 0.3)
