@@ -1,0 +1,145 @@
+//! What the report says of overlaps, against overlaps measured in the world that the step left.
+
+mod common;
+
+use common::*;
+
+/// Positions that rapier holds in `f32` differ from the flexible stage's by their rounding (m).
+const ROUNDING: f64 = 2e-6;
+
+/// Signed distance of a point from the outline of a flexible body, negative inside (m).
+fn from_outline(body: &FlexBody, point: [f64; 2]) -> f64 {
+    let (mut nearest, mut is_inside) = (f64::INFINITY, false);
+    for &[a, b] in body.mesh().boundary().segments() {
+        let ([x0, y0], [x1, y1]) = (body.position(a), body.position(b));
+        let (along, off) = ([x1 - x0, y1 - y0], [point[0] - x0, point[1] - y0]);
+        let length = along[0].hypot(along[1]);
+        let share = ((off[0] * along[0] + off[1] * along[1]) / length.powi(2)).clamp(0.0, 1.0);
+        nearest = nearest.min((off[0] - share * along[0]).hypot(off[1] - share * along[1]));
+        if (y0 > point[1]) != (y1 > point[1]) && off[0] < along[0] * off[1] / along[1] {
+            is_inside = !is_inside;
+        }
+    }
+    if is_inside { -nearest } else { nearest }
+}
+
+/// How deep a flexible body and a collider are in each other (m): its boundary nodes in the shape, and the corners in its outline.
+fn overlap(scene: &Scene, body: &FlexBody, collider: ColliderHandle) -> f64 {
+    let collider = &scene.world.colliders[collider];
+    let pose = collider.position();
+    let nodes = body.mesh().boundary().nodes().iter();
+    let of_nodes = nodes.map(|&node| {
+        let [x, y] = body.position(node);
+        let found = collider.shape().project_point(pose, vec2(x, y), false);
+        let depth = f64::from((found.point - vec2(x, y)).length());
+        if found.is_inside { depth } else { 0.0 }
+    });
+    let (corners, radius) = match (collider.shape().as_cuboid(), collider.shape().as_capsule()) {
+        (Some(cuboid), _) => {
+            let [x, y] = [cuboid.half_extents.x, cuboid.half_extents.y];
+            let corners = [[x, y], [-x, y], [-x, -y], [x, -y]];
+            (corners.map(|[x, y]| pose * Vector::new(x, y)).to_vec(), 0.0)
+        }
+        (_, Some(capsule)) => {
+            let ends = [capsule.segment.a, capsule.segment.b];
+            (
+                ends.map(|end| pose * end).to_vec(),
+                f64::from(capsule.radius),
+            )
+        }
+        _ => (Vec::new(), 0.0),
+    };
+    let of_corners = corners.into_iter().map(|corner| {
+        let [x, y] = [f64::from(corner.x), f64::from(corner.y)];
+        radius - from_outline(body, [x, y])
+    });
+    of_nodes.chain(of_corners).fold(0.0, f64::max)
+}
+
+/// Steps a scene; whatever the way out, the report tells the overlap, and steps that were solved leave none. Returns how many were not.
+fn watch(scene: &mut Scene, seconds: f64, pairs: &[(FlexBodyHandle, ColliderHandle)]) -> usize {
+    let n_steps = (seconds / scene.dt()).round() as usize;
+    let mut n_other = 0;
+    for step in 0..n_steps {
+        let report = scene.try_step().expect("the step can be taken");
+        let told = report.gap_violation();
+        let is_solved = report.n_linearized() + report.n_held() == 0;
+        n_other += usize::from(!is_solved);
+        for &(flexible, collider) in pairs {
+            let there = overlap(scene, scene.body(flexible), collider);
+            assert!(
+                there <= told + ROUNDING,
+                "step {step}: {there:e} m, {told:e} told"
+            );
+            assert!(!is_solved || there <= 1e-5, "step {step}: {there:e} m");
+        }
+    }
+    n_other
+}
+
+fn slab(scene: &mut Scene, young: f64) -> FlexBodyHandle {
+    scene.flexible(
+        FlexBodyBuilder::rectangle([4.0, 0.5], [32, 4])
+            .material(elastic(young, 1000.0, 1e-4))
+            .translation([-2.0, -0.5])
+            .friction(0.5)
+            .pin_where(|[_, y]| y < 1e-9, Pin::both()),
+    )
+}
+
+#[test]
+fn what_spins_down_on_a_slab_is_never_deeper_in_it_than_the_report_says() {
+    let shapes = [
+        (ColliderBuilder::cuboid(0.3, 0.1), 16.5),
+        (ColliderBuilder::capsule_x(0.2, 0.1), 16.5),
+        (ColliderBuilder::capsule_x(0.2, 0.1), -28.5),
+    ];
+    let (mut n_other, mut n_runs) = (0, 0);
+    for young in [1e6, 1e7, 1e9] {
+        for (shape, spin) in &shapes {
+            for rate in [60.0, 240.0] {
+                let mut scene = Scene::new(1.0 / rate);
+                let slab = slab(&mut scene, young);
+                let (_, collider) = scene.rigid(
+                    RigidBodyBuilder::dynamic()
+                        .translation(vec2(0.0, 0.6))
+                        .angvel(real(*spin)),
+                    shape.clone().density(1000.0).friction(0.5),
+                );
+                n_other += watch(&mut scene, 1.5, &[(slab, collider)]);
+                n_runs += 1;
+            }
+        }
+    }
+    // Bodies that turn by half a radian in a step may ask for a way out once.
+    assert!(n_other <= n_runs / 3, "{n_other} steps of {n_runs} runs");
+}
+
+#[test]
+fn heavy_boxes_flush_with_the_edges_of_light_flexible_ones_are_solved_at_any_step() {
+    for rate in [30.0, 60.0, 120.0] {
+        let mut scene = Scene::new(1.0 / rate);
+        scene.ground(0.5);
+        let mut pairs = Vec::new();
+        let mut height = 0.0;
+        for level in 0..2 {
+            let flexible = scene.flexible(
+                FlexBodyBuilder::rectangle([0.5, 0.2], [6, 3])
+                    .material(elastic(1e9, 100.0, 1e-4))
+                    .translation([-0.25, height]),
+            );
+            // A hundred times as heavy as what carries it, and as wide: corners lie on corners.
+            let (_, collider) = scene.rigid(
+                RigidBodyBuilder::dynamic().translation(vec2(0.0, height + 0.3)),
+                ColliderBuilder::cuboid(0.25, 0.1).density(if level == 1 { 1e4 } else { 100.0 }),
+            );
+            pairs.push((flexible, collider));
+            height += 0.4;
+        }
+        assert_eq!(
+            watch(&mut scene, 1.5, &pairs),
+            0,
+            "steps with a way out at 1/{rate} s"
+        );
+    }
+}
