@@ -153,46 +153,7 @@ impl Island {
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
-            let at = moved(&contact.kinematics, &self.blocks);
-            let is_asked = !(extrapolates && contact.known.is_some());
-            let found = is_asked.then(|| candidate.evaluate(&scene, &contact.remembered));
-            let mut gap = contact.extrapolated(at);
-            match found {
-                Some(Some(found)) => {
-                    gap = found.gap - contact.allowance;
-                    contact.measured = found;
-                    contact.is_lost = false;
-                    contact.apart = 0.0;
-                }
-                Some(None) => {
-                    contact.note_loss(candidate.distance(&scene));
-                    if !contact.is_lost {
-                        gap = contact.apart;
-                    }
-                }
-                None => {}
-            }
-            contact.kinematics.gap = gap;
-            contact.known = Some((gap, at));
-            let kinematics = contact.kinematics;
-            if !contact.is_lost {
-                error = error.max(-gap);
-            }
-            if contact.multiplier[0] <= 0.0 {
-                continue;
-            }
-            error = error.max(gap.abs());
-            if is_asked {
-                error = error.max(contact.apart);
-            }
-            contact.slip = slip(&kinematics, &self.blocks);
-            if candidate.law.friction > 0.0 {
-                error = error.max(match contact.status[1] {
-                    Status::SlipPositive => contact.slip,
-                    Status::SlipNegative => -contact.slip,
-                    Status::Stick | Status::Open => contact.slip.abs(),
-                });
-            }
+            error = error.max(contact.measure(candidate, &scene, extrapolates));
         }
         error
     }
@@ -312,6 +273,51 @@ impl ActiveContact {
             [moved(&self.kinematics, blocks), travelled].map(|path| normal.dot(&path));
         let is_clear = (linear - travelled).abs() <= slop;
         (gap - linear.min(travelled), is_clear)
+    }
+
+    /// Measures gap and slip; returns how far the laws are from holding (m).
+    fn measure(&mut self, candidate: &Candidate, scene: &Scene<'_>, extrapolates: bool) -> f64 {
+        let at = moved(&self.kinematics, scene.blocks);
+        let is_asked = !(extrapolates && self.known.is_some());
+        let gap = if is_asked {
+            self.true_gap(candidate, scene, at)
+        } else {
+            self.extrapolated(at)
+        };
+        self.kinematics.gap = gap;
+        self.known = Some((gap, at));
+        let mut error = if self.is_lost { 0.0 } else { -gap };
+        if self.multiplier[0] <= 0.0 {
+            return error;
+        }
+        error = error.max(gap.abs());
+        if is_asked {
+            error = error.max(self.apart);
+        }
+        self.slip = slip(&self.kinematics, scene.blocks);
+        if candidate.law.friction > 0.0 {
+            error = error.max(match self.status[1] {
+                Status::SlipPositive => self.slip,
+                Status::SlipNegative => -self.slip,
+                Status::Stick | Status::Open => self.slip.abs(),
+            });
+        }
+        error
+    }
+
+    /// The gap beyond the allowance where the blocks are, with the points moved to `at` (m).
+    fn true_gap(&mut self, candidate: &Candidate, scene: &Scene<'_>, at: Vec2) -> f64 {
+        let Some(found) = candidate.evaluate(scene, &self.remembered) else {
+            self.note_loss(candidate.distance(scene));
+            return if self.is_lost {
+                self.extrapolated(at)
+            } else {
+                self.apart
+            };
+        };
+        self.measured = found;
+        (self.is_lost, self.apart) = (false, 0.0);
+        found.gap - self.allowance
     }
 
     /// The gap that follows the row from where it was measured last, to where the points have moved `at` (m).
