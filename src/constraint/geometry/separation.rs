@@ -12,8 +12,9 @@ use crate::math::{Vec2, cross, perp};
 /// Relative to the part's size: a point this near to a vertex has no direction from it.
 pub(super) const AT_VERTEX: f64 = 1e-12;
 
-/// Relative to the part's size: features whose distances differ by less than this tie.
-pub(super) const TIE: f64 = 1e-9;
+/// Relative to the part's size: features whose distances differ by less than this tie. A node flush with an edge breathes over it by some
+/// 1e-8 as forces change, and keeps its face: where node and vertex took turns, towers never came to rest.
+pub(super) const TIE: f64 = 1e-6;
 
 /// A point seen from a rounded convex part, in the part's local coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
