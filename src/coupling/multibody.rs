@@ -5,6 +5,7 @@
 //! mass, because rapier, which integrates in `n` substeps, moves `c dt Δv` with `c = (n + 1) / 2n` where forces are steady.
 //! All is reckoned anew, in `f64`, from poses and joint velocities: rapier's own matrices are those of its last substep.
 
+use super::reading::link_weight_of;
 use super::sets::RapierSets;
 use super::shapes::pose_of;
 use crate::linalg::complementarity::{factorize_cholesky, solve_cholesky_in_place};
@@ -76,26 +77,6 @@ impl Pace {
     }
 }
 
-/// Masses, and forces of the user's and of gravity, as rapier's multibodies have them: of dominance they know nothing.
-fn weight_of(body: &RigidBody, gravity: Vec2) -> ([f64; 3], [f64; 3]) {
-    let properties = body.mass_properties();
-    let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
-    let inertias = [
-        f64::from(properties.effective_inv_mass.x),
-        f64::from(properties.effective_inv_mass.y),
-        f64::from(properties.effective_world_inv_inertia),
-    ]
-    .map(inverse);
-    let scale = f64::from(body.gravity_scale());
-    let user = from_rapier(body.user_force());
-    let force = [
-        user.x + inertias[0] * scale * gravity.x,
-        user.y + inertias[1] * scale * gravity.y,
-        f64::from(body.user_torque()),
-    ];
-    (inertias, force)
-}
-
 impl Tree {
     /// Reads a multibody; `None` if its bodies are not all there.
     pub fn read(multibody: &Multibody, sets: &RapierSets<'_>) -> Option<Self> {
@@ -107,7 +88,7 @@ impl Tree {
             tree.add_dofs(multibody, link, parent, sets)?;
             let is_free = body.is_dynamic();
             let (inertias, force) = if is_free {
-                weight_of(body, from_rapier(sets.gravity))
+                link_weight_of(body, from_rapier(sets.gravity))
             } else {
                 <([f64; 3], [f64; 3])>::default()
             };
