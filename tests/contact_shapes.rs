@@ -260,3 +260,46 @@ fn a_moving_platform_carries_a_flexible_block() {
         }
     }
 }
+
+#[test]
+fn a_block_that_slides_off_a_table_leaves_its_edge_without_a_step_in_doubt() {
+    // In one step the corner of the table comes in through the block's bottom by some tenths of a millimetre and out beside its end. Pushed
+    // back by so little it would lie beside the block, where nothing pushes: no force would do, and the step would be linearised.
+    for (rate, stiffness) in [
+        (30.0, 3e5),
+        (60.0, 1e6),
+        (60.0, 3e6),
+        (60.0, 1e7),
+        (60.0, 3e7),
+        (60.0, 1e8),
+        (120.0, 3e7),
+    ] {
+        let mut scene = Scene::new(1.0 / rate);
+        scene.ground(0.4);
+        let table = ColliderBuilder::cuboid(0.5, 0.25).translation(vec2(0.0, 0.25));
+        scene.fixed(table.friction(real(0.1)));
+        let block = scene.flexible(
+            FlexBodyBuilder::rectangle([0.4, 0.3], [4, 3])
+                .material(elastic(stiffness, 100.0, 1e-3))
+                .translation([-0.2, 0.501])
+                .friction(0.1)
+                .linvel([2.0, 0.0]),
+        );
+        for step in 0..(2.0 * rate) as usize {
+            let overlap = scene.step().gap_violation();
+            assert!(
+                overlap < gap_tolerance(),
+                "{rate} Hz, {stiffness} Pa, step {step}: {overlap} m"
+            );
+        }
+        let positions = scene.body(block).positions();
+        let least = positions
+            .iter()
+            .step_by(2)
+            .fold(f64::INFINITY, |a, &b| a.min(b));
+        assert!(
+            least > 0.5,
+            "{rate} Hz, {stiffness} Pa: it lies beside the table, at {least} m"
+        );
+    }
+}

@@ -3,10 +3,10 @@
 //! The coupling is staggered. The flexible stage foresees where a link goes, finds the forces, and leaves the motion to rapier's full
 //! step, which is told of them as one force for this step: so momentum is kept, and rapier sees to joints, limits, motors and whatever
 //! else the links touch. As every block, a link stores the force at the end of a step, of which `dt - b1` acts in the next: that too is
-//! handed on, even if nothing touches the link any more. Links of one multibody answer each other in the next step only. Where `k` of
-//! them are met at once each answers with `k` times its inverse mass, which is never less than they do together (mass splitting): too
-//! small a force is corrected in the next step, too large a one would throw the lighter side away. Forces that last are known for all
-//! links, so at rest nothing is scaled.
+//! handed on, even if nothing touches the link any more. Links of one multibody answer each other in the next step only. Where `k` that
+//! feel each other (unlike the fingers of a fixed hand) are met at once, each answers with `k` times its inverse mass, which is never less
+//! than they do together (mass splitting): too small a force is corrected in the next step, too large a one would throw the lighter
+//! side away. Forces that last are known for all links, so at rest nothing is scaled.
 
 use super::claim::Claims;
 use super::filter::is_free_body;
@@ -266,9 +266,11 @@ fn foresee(
             .for_each(|(sum, part)| *sum += part);
     }
     let solved = tree.solve(multibody, sets, pace, &reactions)?;
-    let split = members.len() as f64;
     for member in members {
         let link = place(member.handle)?;
+        let stem = tree.stem(link);
+        let others = members.iter().filter_map(|other| place(other.handle));
+        let split = others.filter(|&other| tree.stem(other) == stem).count() as f64;
         let mobility = split * solved.mobility(&tree, link);
         let own = mobility * Vector3::from(lasting(member.handle));
         let acceleration = Vector3::from(solved.acceleration(&tree, link)) - own;

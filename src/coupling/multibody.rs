@@ -5,7 +5,7 @@
 //! mass, because rapier, which integrates in `n` substeps, moves `c dt Δv` with `c = (n + 1) / 2n` where forces are steady.
 //! All is reckoned anew, in `f64`, from poses and joint velocities: rapier's own matrices are those of its last substep.
 
-use super::reading::load_of;
+use super::reading::link_weight_of;
 use super::sets::RapierSets;
 use super::shapes::pose_of;
 use crate::linalg::complementarity::{factorize_cholesky, solve_cholesky_in_place};
@@ -23,8 +23,8 @@ pub(super) struct Link {
     spin: f64,
     /// Acceleration of the centre with steady joint velocities (m/s²).
     steady: Vec2,
-    mass: f64,
-    inertia: f64,
+    /// Mass along both axes and inertia; rapier leaves out what the body's own locks hold (kg, kg, kg m²).
+    inertias: [f64; 3],
     force: [f64; 3],
 }
 
@@ -86,9 +86,12 @@ impl Tree {
             let body = sets.bodies.get(handle)?;
             let parent = link.parent_id().filter(|_| !link.is_root());
             tree.add_dofs(multibody, link, parent, sets)?;
-            let load = load_of(body, from_rapier(sets.gravity));
-            let inverse = f64::from(body.mass_properties().effective_world_inv_inertia);
             let is_free = body.is_dynamic();
+            let (inertias, force) = if is_free {
+                link_weight_of(body, from_rapier(sets.gravity))
+            } else {
+                <([f64; 3], [f64; 3])>::default()
+            };
             tree.links.push(Link {
                 handle,
                 parent,
@@ -96,13 +99,8 @@ impl Tree {
                 velocity: Vec2::zeros(),
                 spin: 0.0,
                 steady: Vec2::zeros(),
-                mass: if is_free { f64::from(body.mass()) } else { 0.0 },
-                inertia: if is_free && inverse > 0.0 {
-                    1.0 / inverse
-                } else {
-                    0.0
-                },
-                force: if is_free { load.force } else { [0.0; 3] },
+                inertias,
+                force,
             });
         }
         tree.find_velocities(sets);
@@ -260,15 +258,14 @@ impl Tree {
         };
         for index in 0..self.links.len() {
             let link = self.links[index];
-            let inertias = [link.mass, link.mass, link.inertia];
             let columns: Vec<Option<[f64; 3]>> = self
                 .free_dofs()
                 .map(|dof| self.column(dof, index))
                 .collect();
-            let steady = link.mass * link.steady;
+            let inertias = link.inertias;
             let acting = [
-                link.force[0] - steady.x,
-                link.force[1] - steady.y,
+                link.force[0] - inertias[0] * link.steady.x,
+                link.force[1] - inertias[1] * link.steady.y,
                 link.force[2],
             ];
             for (a, one) in columns.iter().enumerate() {
@@ -302,6 +299,19 @@ impl Tree {
             }
         }
         sum
+    }
+
+    /// The link nearest to the root that moves freely and carries this one, or is it: links with different stems do not feel each
+    /// other.
+    pub fn stem(&self, link: usize) -> Option<usize> {
+        let (mut at, mut stem) = (Some(link), None);
+        while let Some(link) = at {
+            if self.free_dofs().any(|dof| dof.link == link) {
+                stem = Some(link);
+            }
+            at = self.links[link].parent;
+        }
+        stem
     }
 
     /// Velocity of a link's centre and its spin (m/s, rad/s).

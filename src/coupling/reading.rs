@@ -119,6 +119,26 @@ pub(super) fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
     }
 }
 
+/// Masses along both axes and inertia of a link, and forces of the user's and of gravity, as rapier's multibodies have them: of dominance they know nothing.
+pub(super) fn link_weight_of(body: &RigidBody, gravity: Vec2) -> ([f64; 3], [f64; 3]) {
+    let properties = body.mass_properties();
+    let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
+    let inertias = [
+        f64::from(properties.effective_inv_mass.x),
+        f64::from(properties.effective_inv_mass.y),
+        f64::from(properties.effective_world_inv_inertia),
+    ]
+    .map(inverse);
+    let scale = f64::from(body.gravity_scale());
+    let user = from_rapier(body.user_force());
+    let force = [
+        user.x + inertias[0] * scale * gravity.x,
+        user.y + inertias[1] * scale * gravity.y,
+        f64::from(body.user_torque()),
+    ];
+    (inertias, force)
+}
+
 /// Friction and restitution of a pair, combined by rapier's rules.
 pub(super) fn law_of(
     colliders: &ColliderSet,

@@ -336,3 +336,65 @@ fn a_table_held_by_a_motor_or_lying_on_its_stop_carries_a_block() {
         );
     }
 }
+
+/// A block between two fingers of 1 kg on rails, which press with 200 N each: of one fixed hand, or of a hand each.
+fn squeezed(is_one_hand: bool) -> (Scene, FlexBodyHandle) {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let hands = [(); 2].map(|()| scene.world.insert_body(RigidBodyBuilder::fixed()));
+    for (finger, side) in [-1.0, 1.0].into_iter().enumerate() {
+        let body = RigidBodyBuilder::dynamic()
+            .translation(vec2(0.3 * side, 0.0))
+            .can_sleep(false);
+        let shape = ColliderBuilder::cuboid(real(0.05), real(0.2)).density(25.0);
+        let link = scene.world.insert(body, shape.friction(0.8)).0;
+        let rail = PrismaticJointBuilder::new(vec2(1.0, 0.0)).local_anchor1(vec2(0.3 * side, 0.0));
+        let hand = hands[if is_one_hand { 0 } else { finger }];
+        let joints = &mut scene.world.multibody_joints;
+        joints.insert(hand, link, rail, true);
+        scene.world.bodies[link].add_force(vec2(-200.0 * side, 0.0), true);
+    }
+    let block = block(&mut scene, 4.5, 1e5, [-0.15, -0.15]);
+    (scene, block)
+}
+
+#[test]
+fn fingers_of_one_fixed_hand_press_as_if_each_had_a_hand_of_its_own() {
+    // What is fixed hands nothing on, so neither answers with the other's share: they would meet the block as half of what they weigh,
+    // overlap it by centimetres at 6 m/s, and pass each other. Here both are the same sums.
+    let (mut one, in_one) = squeezed(true);
+    let (mut two, in_two) = squeezed(false);
+    for step in 0..180 {
+        one.step();
+        two.step();
+        let places = [one.body(in_one), two.body(in_two)].map(FlexBody::positions);
+        let pairs = places[0].iter().zip(places[1]);
+        let missed = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(missed < 1e-6, "step {step}: {missed} m");
+    }
+    let carried = one.body(in_one).total_contact_force()[1] / (G * 4.5);
+    assert!((carried - 1.0).abs() < 1e-6, "{carried} of the weight");
+}
+
+#[test]
+fn what_lies_on_a_link_of_negative_dominance_or_with_locked_axes_lies_still() {
+    // Rapier's multibodies weigh what a body's own locks leave, and all of it whatever its dominance: a link foreseen with another weight
+    // gives the block on it a velocity, though both rest.
+    let changes: [fn(&mut RigidBody); 3] = [
+        |link| link.set_dominance_group(-1),
+        |link| link.set_locked_axes(LockedAxes::TRANSLATION_LOCKED, true),
+        |link| link.set_locked_axes(LockedAxes::ROTATION_LOCKED, true),
+    ];
+    for (case, change) in changes.into_iter().enumerate() {
+        let mut scene = Scene::new(1.0 / 60.0);
+        let top = table(&mut scene, 0.0, 0.5, 2.0, 1e5);
+        change(&mut scene.world.bodies[top]);
+        let block = block(&mut scene, 9.0, 1e6, [-0.15, 0.051]);
+        scene.steps(300);
+        let body = scene.body(block);
+        let carried = body.total_contact_force()[1] / (G * body.mass());
+        assert!((carried - 1.0).abs() < 1e-4, "{case}: {carried}");
+        // 1.2e-2 m/s of a link that is foreseen to rise.
+        let [x, y] = body.linvel();
+        assert!(x.hypot(y) < 1e-5, "{case}: {x} {y} m/s");
+    }
+}
