@@ -268,3 +268,30 @@ fn only_what_comes_or_goes_nearby_wakes() {
     let fallen = before - scene.body(body).centre_of_mass()[1];
     assert!(fallen > 1e-4, "it falls in the same step: {fallen} m");
 }
+
+#[test]
+fn a_tower_of_flush_rigid_and_flexible_blocks_sleeps_within_five_seconds() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    for (level, is_flexible) in [false, false, false, true, false, true, false]
+        .into_iter()
+        .enumerate()
+    {
+        let y = 0.01 + 0.31 * level as f64;
+        if is_flexible {
+            let block = FlexBodyBuilder::rectangle([0.5, 0.3], [5, 3]);
+            let block = block.material(elastic(1e7, 1000.0, 1e-2));
+            scene.flexible(block.translation([-0.25, y]));
+        } else {
+            let body = RigidBodyBuilder::dynamic().translation(vec2(0.0, y + 0.15));
+            let shape = ColliderBuilder::cuboid(0.25, 0.15).density(500.0);
+            scene.world.insert(body, shape);
+        }
+    }
+    let asleep = (0..300).find(|_| {
+        scene.step();
+        let mut bodies = scene.world.bodies.iter();
+        bodies.all(|(_, body)| body.is_sleeping())
+    });
+    assert!(asleep.is_some(), "awake after 300 steps");
+}
