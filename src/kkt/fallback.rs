@@ -23,7 +23,7 @@ const FLUNG: f64 = 10.0;
 /// The same for a linearised step of joints, which begins with what the last one gave: it may be as fast, or cross the body, and no more.
 const JERKED: f64 = 1.0;
 
-/// Overlap, relative to a body's size, that no step in doubt leaves: someone has put it there.
+/// Overlap, relative to the smallest flexible body, that no step in doubt leaves: someone has put it there.
 const PUT_INTO: f64 = 1e-2;
 
 impl Island {
@@ -119,12 +119,11 @@ impl Island {
     fn is_fed(&self, supply: f64, summary: &IslandSummary) -> bool {
         let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
         // Bodies that were put into each other are pressed apart, whatever energy that takes.
-        let mut members = self.blocks.iter();
-        let size = members.find_map(|block| match block {
+        let sizes = self.blocks.iter().filter_map(|block| match block {
             Block::Flex(block) => Some(block.size()),
             Block::Rigid(_) => None,
         });
-        let deep = PUT_INTO * size.unwrap_or_default();
+        let deep = PUT_INTO * sizes.fold(f64::INFINITY, f64::min);
         let mut contacts = self.contacts.iter();
         let is_parting = contacts.any(|contact| contact.allowance < -deep);
         let gain = after - before - supply;

@@ -104,3 +104,90 @@ fn distance_to_segment(body: &FlexBlock, segment: usize, point: Vec2) -> f64 {
     let xi = (along.dot(&(point - from)) / along.norm_squared()).clamp(0.0, 1.0);
     (point - from - xi * along).norm()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constraint::contact::{ContactKey, ContactLaw, Owner};
+    use crate::constraint::geometry::{ConvexPart, Pose2};
+    use crate::system::{Block, RigidBlock, RigidMotion};
+    use std::sync::Arc;
+
+    /// Two squares of half-width 1 m, the second with its centre at `place` and turned by `angle`; rounded by `radius`.
+    fn distance(place: [f64; 2], angle: f64, pair: Pair, skin: f64, radius: f64) -> f64 {
+        let still = |centre: Vec2, angle: f64| {
+            let motion = RigidMotion {
+                centre,
+                angle,
+                ..RigidMotion::default()
+            };
+            Block::Rigid(RigidBlock::prescribed(motion, motion))
+        };
+        let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+        let square = ConvexPart::polygon(corners.map(Vec2::from).to_vec(), radius);
+        let placed = PlacedPart {
+            part: Arc::new(square),
+            pose: Pose2::identity(),
+        };
+        let scene = Scene {
+            blocks: &[still(Vec2::zeros(), 0.0), still(place.into(), angle)],
+            parts: &[placed.clone(), placed],
+            segments: &[],
+        };
+        let owner = Owner::Collider(0);
+        let candidate = Candidate {
+            key: ContactKey {
+                contactor: owner,
+                point: 0,
+                target: owner,
+                part: 0,
+            },
+            pair,
+            law: ContactLaw {
+                friction: 0.0,
+                restitution: 0.0,
+                skin,
+                direction: None,
+                may_pass: false,
+            },
+        };
+        candidate.distance(&scene)
+    }
+
+    #[test]
+    fn a_vertex_is_as_far_from_a_part_as_pythagoras_says_less_radii_and_skin() {
+        let vertex = Pair::VertexOnPart {
+            point: (1, Vec2::new(-1.0, -1.0)),
+            radius: 0.5,
+            rigid: 0,
+            part: 0,
+            towards: Vec2::zeros(),
+            meets_vertices: true,
+        };
+        // Its vertex is 3 m and 4 m off the corner; rounded by 0.5 m, as is the part, with a skin of 0.25 m.
+        let far = distance([5.0, 6.0], 0.0, vertex, 0.25, 0.5);
+        assert!((far - 3.75).abs() < 1e-12, "{far}");
+        // A depth of 0.3 m counts as a distance, with which the radius goes.
+        let deep = distance([1.7, 1.0], 0.0, vertex, 0.0, 0.0);
+        assert!((deep - 0.8).abs() < 1e-12, "{deep}");
+    }
+
+    #[test]
+    fn crossing_parts_are_as_near_as_the_nearest_vertex_of_either() {
+        let crossing = Pair::Crossing {
+            blocks: [0, 1],
+            parts: [0, 1],
+        };
+        // A square on its tip, which is 0.5 m beside the other's face: that tip, and no vertex of the other, is near.
+        let tip = 1.5 + std::f64::consts::SQRT_2;
+        let quarter = std::f64::consts::FRAC_PI_4;
+        for place in [[tip, 0.0], [-tip, 0.0], [0.0, tip]] {
+            let found = distance(place, quarter, crossing, 0.1, 0.0);
+            assert!((found - 0.4).abs() < 1e-12, "{place:?}: {found}");
+        }
+        // And the other way round.
+        let corner = distance([2.0, 2.0], quarter, crossing, 0.0, 0.0);
+        let expected = 2.0 * std::f64::consts::SQRT_2 - std::f64::consts::SQRT_2 - 1.0;
+        assert!((corner - expected).abs() < 1e-12, "{corner}");
+    }
+}
