@@ -23,6 +23,7 @@ pub mod kkt;
 pub mod linalg;
 pub mod math;
 pub mod nonlinear;
+pub(crate) mod path;
 pub mod pipeline;
 pub mod system;
 

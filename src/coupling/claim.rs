@@ -46,6 +46,13 @@ pub(crate) struct ClaimedFlex {
     pub solver_groups: InteractionGroups,
 }
 
+impl ClaimedFlex {
+    /// How far around where its velocity takes it the body may get in the step (m).
+    pub fn reach(&self) -> f64 {
+        self.edge + f64::from(self.travel)
+    }
+}
+
 /// The result of a claim, with its buffers.
 #[derive(Debug, Default)]
 pub(crate) struct Claims {

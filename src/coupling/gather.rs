@@ -6,6 +6,7 @@ use super::filter::claimable_parent;
 use super::hooks::{HookBook, HookedPair};
 use super::links::{LinkBlock, LinkBook};
 use super::masters::{Masters, cap_speed};
+use super::outlines::OutlineCache;
 use super::reading::{
     GatherError, at_rest, is_held_load, is_held_motion, law_of, load_of, offset_of, owner_of,
 };
@@ -13,8 +14,9 @@ use super::references::References;
 use super::rigid_pairs::{Agitation, RigidPair};
 use super::sets::RapierSets;
 use super::shapes::{ShapeCache, pose_of};
+use super::ways::{self, RigidSurface};
 use crate::body::FlexBodySet;
-use crate::constraint::contact::Owner;
+use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
 use crate::constraint::joint::JointMemory;
 use crate::kkt::Island;
@@ -30,6 +32,7 @@ use std::sync::Arc;
 struct PlacedCollider {
     block: usize,
     parts: Range<usize>,
+    offset: Pose2,
 }
 
 /// Builds islands; holds the rebuildable half of every flexible body and the converted shapes.
@@ -38,6 +41,7 @@ pub(crate) struct Gatherer {
     /// One per slot of the flexible set.
     pub(super) pool: Vec<Option<Box<FlexBlock>>>,
     shapes: ShapeCache,
+    outlines: OutlineCache,
     pub(super) references: References,
     placed: HashMap<ColliderHandle, PlacedCollider>,
     block_of_body: HashMap<RigidBodyHandle, usize>,
@@ -62,6 +66,8 @@ pub(crate) struct GatherSettings {
     pub step: Step,
     /// Prediction distance of rapier (m).
     pub prediction: f64,
+    /// Whether flexible surfaces are led along a feasible path.
+    pub uses_path: bool,
 }
 
 impl Gatherer {
@@ -109,6 +115,7 @@ impl Gatherer {
             }
         }
         self.shapes.retain(sets.colliders);
+        self.outlines.retain(sets.colliders);
     }
 
     /// Fills `island` with one component.
@@ -314,12 +321,25 @@ impl Gatherer {
                     other: owner_of(collider),
                 };
                 let law = law_of(sets.colliders, own.collider, collider)?;
+                let is_led = settings.uses_path
+                    && !HookBook::asks([own.collider, collider], sets)
+                    && self.lead(
+                        collider,
+                        block,
+                        (&placed, own.reach()),
+                        (names, law),
+                        sets,
+                        island,
+                    );
+                if is_led {
+                    return Ok(());
+                }
                 let first = island.candidates.len();
                 candidates::flex_rigid(
                     island,
                     block,
                     placed.block,
-                    placed.parts,
+                    placed.parts.clone(),
                     names,
                     law,
                     own.edge + 2.0 * law.skin,
@@ -341,6 +361,12 @@ impl Gatherer {
                 };
                 let law = law_of(sets.colliders, points_of.collider, surface_of.collider)?;
                 let edge = points_of.edge.max(surface_of.edge) + 2.0 * law.skin;
+                let is_led = settings.uses_path
+                    && !HookBook::asks([points_of.collider, surface_of.collider], sets)
+                    && ways::flex_flex(island, [points, surface], names, law);
+                if is_led {
+                    return Ok(());
+                }
                 let first = island.candidates.len();
                 candidates::flex_flex(island, points, surface, names, law, edge);
                 let colliders = [points_of.collider, surface_of.collider];
@@ -378,6 +404,27 @@ impl Gatherer {
             _ => {}
         }
         Ok(())
+    }
+
+    /// Leads a flexible block along a path that keeps it apart from a collider; returns whether they are apart to begin with.
+    fn lead(
+        &mut self,
+        handle: ColliderHandle,
+        flex: usize,
+        (placed, reach): (&PlacedCollider, f64),
+        (names, law): (Names, ContactLaw),
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) -> bool {
+        let Some(collider) = sets.colliders.get(handle) else {
+            return false;
+        };
+        let surface = RigidSurface {
+            block: placed.block,
+            outline: self.outlines.outline(handle, collider),
+            offset: placed.offset,
+        };
+        ways::flex_rigid(island, flex, &surface, names, law, reach)
     }
 
     /// Shows the candidates from the `first` on to the user's hook.
@@ -435,7 +482,11 @@ impl Gatherer {
             }
         };
         let parts = candidates::add_parts(island, self.shapes.parts(handle, collider), offset);
-        let placed = PlacedCollider { block, parts };
+        let placed = PlacedCollider {
+            block,
+            parts,
+            offset,
+        };
         self.placed.insert(handle, placed.clone());
         Some(placed)
     }

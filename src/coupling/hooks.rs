@@ -51,6 +51,13 @@ impl HookBook {
         self.next.clear();
     }
 
+    /// Whether a collider of a pair wants its contacts shown.
+    pub(super) fn asks(colliders: [ColliderHandle; 2], sets: &RapierSets<'_>) -> bool {
+        let hooks = colliders.map(|handle| sets.colliders.get(handle).map(Collider::active_hooks));
+        let wants = |hooks: ActiveHooks| hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS);
+        hooks.into_iter().flatten().any(wants)
+    }
+
     /// Asks the user's hook about the candidates of a pair, those from the `first` on, if a collider wants it.
     ///
     /// # Errors

@@ -23,6 +23,7 @@ mod masters;
 mod multibody;
 mod multibody_rows;
 mod nearby;
+mod outlines;
 mod places;
 mod quarantine;
 mod reading;
@@ -34,6 +35,7 @@ mod sensor_events;
 mod sets;
 mod shapes;
 mod sleep;
+mod ways;
 
 pub(crate) use carrier::{is_carried, sync_settings, write_surface};
 pub(crate) use changes::WorldChange;

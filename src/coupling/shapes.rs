@@ -82,7 +82,7 @@ pub(crate) fn rounding(shape: &dyn Shape) -> f64 {
     }
 }
 
-fn convert(shape: &dyn Shape, pose: Pose2, parts: &mut Vec<ShapePart>) {
+pub(super) fn convert(shape: &dyn Shape, pose: Pose2, parts: &mut Vec<ShapePart>) {
     let mut push = |part: ConvexPart| {
         parts.push(ShapePart {
             part: Arc::new(part),

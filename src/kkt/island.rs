@@ -2,16 +2,17 @@
 
 use super::constraint_function::{ContactMethod, Newton};
 use super::delassus::RowDirection;
+use super::feasible::FeasiblePath;
 use super::impact::ImpactTreatment;
 use super::joint_rows::ActiveJoint;
 use crate::constraint::contact::{
-    Candidate, ContactMemory, Kinematics, Owner, PlacedPart, Remembered, Scene,
+    Candidate, ContactKey, ContactMemory, Kinematics, Owner, PlacedPart, Remembered, Scene,
 };
 use crate::constraint::joint::{JointGrip, JointRow};
 use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use thiserror::Error;
 
 /// Why an island cannot be solved.
@@ -104,6 +105,17 @@ pub struct ActiveContact {
     pub allowance: f64,
     /// What the contact was in the last step.
     pub remembered: Remembered,
+    /// Where the contact was at the base of the path; `None` for signed rows, which know no path.
+    pub(super) base: Option<AtBase>,
+}
+
+/// A contact at the base of the feasible path.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AtBase {
+    /// Distance beyond the one at which the contact closes (m).
+    pub gap: f64,
+    /// Motion of the material points against each other since the beginning of the step (m).
+    pub moved: Vec2,
 }
 
 impl ActiveContact {
@@ -159,6 +171,8 @@ pub struct IslandSummary {
     pub is_doubtful: bool,
     /// Whether Newton's iterations failed and a linearised step was taken.
     pub is_linearized: bool,
+    /// Whether the step was cut at a state on its feasible path.
+    pub is_cut: bool,
     /// Whether even that threw a body about, so that the island stayed where it was, at rest.
     pub is_held: bool,
     /// Largest overlap left at a candidate (m).
@@ -190,6 +204,12 @@ pub struct Island {
     pub segments: Vec<u32>,
     /// Pairs that may touch.
     pub candidates: Vec<Candidate>,
+    /// Surfaces that are led along a feasible path.
+    pub path: FeasiblePath,
+    /// Candidates of near pairs, by their names.
+    pub(super) near_candidates: HashMap<ContactKey, usize>,
+    pub(super) contacts_before: Vec<ActiveContact>,
+    pub(super) slot_of: Vec<u32>,
     /// The working set after a solve.
     pub contacts: Vec<ActiveContact>,
     /// Rows of joints.
@@ -238,6 +258,8 @@ impl Island {
         self.parts.clear();
         self.segments.clear();
         self.candidates.clear();
+        self.near_candidates.clear();
+        self.path.clear();
         self.contacts.clear();
         self.joints.clear();
         self.joint_grips.clear();

@@ -217,6 +217,14 @@ impl Island {
         error
     }
 
+    /// Notes that the forces of soft joints acted along the rows that they have.
+    pub(super) fn keep_joints(&mut self) {
+        self.applied_grips.copy_from_slice(&self.joint_grips);
+        for tie in &mut self.ties {
+            tie.applied = tie.direction;
+        }
+    }
+
     /// Makes the present geometry the rows that the forces of soft joints act along.
     pub(super) fn refresh_joints(&mut self) {
         for tie in &mut self.ties {

@@ -10,6 +10,8 @@ mod constraint_function;
 mod delassus;
 mod energy;
 mod fallback;
+mod feasible;
+mod follow;
 mod forward;
 mod impact;
 mod island;
@@ -26,6 +28,7 @@ mod position;
 mod velocity;
 
 pub use constraint_function::{ConstraintFunction, ContactMethod, EpsilonError};
+pub(crate) use feasible::Way;
 pub use impact::ImpactTreatment;
 pub use island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
 pub use joint_rows::ActiveJoint;

@@ -98,7 +98,11 @@ impl Island {
                     normal: normal_row,
                     coefficient,
                 });
-                self.free.push(slip(kinematics, &self.blocks) / b0);
+                let slip = match contact.base {
+                    Some(_) => contact.slip,
+                    None => slip(kinematics, &self.blocks),
+                };
+                self.free.push(slip / b0);
                 self.multipliers.push(contact.multiplier[1]);
                 self.statuses.push(contact.status[1]);
             }

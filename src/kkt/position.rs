@@ -5,7 +5,7 @@
 //! hold, finds new multipliers from `b = g / b0 - W p`. A contact at rest so costs one solve.
 
 use super::constraint_function::{ContactMethod, Trial};
-use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
+use super::island::{ActiveContact, AtBase, Island, IslandSummary, SolveSettings};
 use crate::constraint::contact::{Candidate, ContactMemory, Kinematics, Remembered, Scene};
 use crate::linalg::complementarity::Status;
 use crate::math::{Vec2, exp};
@@ -42,9 +42,17 @@ impl Island {
                 self.iterate_functions(&trial, summary)
             }
         };
-        let is_solved = is_solved || self.iterate(settings, memory, tolerance, summary);
-        if !is_solved || self.is_astray() {
-            self.fall_back(settings, memory, tolerance, summary);
+        if self.path.is_empty() {
+            let is_solved = is_solved || self.iterate(settings, memory, tolerance, summary);
+            if !is_solved || self.is_astray() {
+                self.fall_back(settings, memory, tolerance, summary);
+            }
+        } else if !self.follow_path(settings, memory, tolerance, summary) {
+            summary.is_cut = true;
+            self.path.stop(&mut self.blocks);
+            for contact in &mut self.contacts {
+                contact.is_lost = false;
+            }
         }
         if !self.ties.is_empty() {
             self.relax_turns();
@@ -153,7 +161,13 @@ impl Island {
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
-            error = error.max(contact.measure(candidate, &scene, extrapolates));
+            error = error.max(match contact.base {
+                Some(base) => {
+                    let onward = self.path.onward(&contact.kinematics, &self.blocks);
+                    contact.measure_from(base, onward, candidate.law.friction)
+                }
+                None => contact.measure(candidate, &scene, extrapolates),
+            });
         }
         error
     }
@@ -185,7 +199,8 @@ impl Island {
         let before = self.contacts.len();
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for (index, candidate) in self.candidates.iter().enumerate() {
-            if self.is_working[index] {
+            // Near pairs of the path come after the signed candidates.
+            if self.is_working.get(index).is_none_or(|works| *works) {
                 continue;
             }
             let remembered = memory.recall(&candidate.key);
@@ -275,6 +290,36 @@ impl ActiveContact {
         (gap - linear.min(travelled), is_clear)
     }
 
+    /// Follows gap and slip from the base, from where the points have moved `onward`; returns how far the laws are from holding (m).
+    fn measure_from(&mut self, base: AtBase, onward: Vec2, friction: f64) -> f64 {
+        let Kinematics { normal, .. } = self.kinematics;
+        let gap = base.gap + normal.dot(&onward) - self.allowance;
+        self.kinematics.gap = gap;
+        self.slip = self.kinematics.tangent().dot(&(base.moved + onward));
+        if self.is_lost {
+            // Its force is still in the iterate.
+            return f64::INFINITY;
+        }
+        self.law_error(gap, friction)
+    }
+
+    /// How far Signorini's and Coulomb's laws are from holding (m).
+    fn law_error(&self, gap: f64, friction: f64) -> f64 {
+        if self.multiplier[0] <= 0.0 {
+            return -gap;
+        }
+        let slip = if friction > 0.0 {
+            match self.status[1] {
+                Status::SlipPositive => self.slip,
+                Status::SlipNegative => -self.slip,
+                Status::Stick | Status::Open => self.slip.abs(),
+            }
+        } else {
+            0.0
+        };
+        gap.abs().max(slip)
+    }
+
     /// Measures gap and slip; returns how far the laws are from holding (m).
     fn measure(&mut self, candidate: &Candidate, scene: &Scene<'_>, extrapolates: bool) -> f64 {
         let at = moved(&self.kinematics, scene.blocks);
@@ -290,19 +335,11 @@ impl ActiveContact {
         if self.multiplier[0] <= 0.0 {
             return error;
         }
-        error = error.max(gap.abs());
         if is_asked {
             error = error.max(self.apart);
         }
         self.slip = slip(&self.kinematics, scene.blocks);
-        if candidate.law.friction > 0.0 {
-            error = error.max(match self.status[1] {
-                Status::SlipPositive => self.slip,
-                Status::SlipNegative => -self.slip,
-                Status::Stick | Status::Open => self.slip.abs(),
-            });
-        }
-        error
+        error.max(self.law_error(gap, candidate.law.friction))
     }
 
     /// The gap beyond the allowance where the blocks are, with the points moved to `at` (m).
@@ -338,7 +375,7 @@ impl ActiveContact {
         self.apart = apart;
     }
 
-    fn new(
+    pub(super) fn new(
         candidate: usize,
         kinematics: Kinematics,
         remembered: Remembered,
@@ -392,6 +429,7 @@ impl ActiveContact {
             unresolved: 0.0,
             approach,
             remembered,
+            base: None,
         }
     }
 }

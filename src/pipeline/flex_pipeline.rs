@@ -360,6 +360,7 @@ impl FlexPipeline {
             component,
             step,
             prediction: f64::from(sets.integration_parameters.prediction_distance()),
+            uses_path: !step.is_explicit() && self.contact == ContactMethod::Lagrange,
         };
         let (claims, island) = (&mut self.claims, &mut self.island);
         let kept = (&self.masters, &self.links);

@@ -12,6 +12,7 @@ mod flex_block;
 mod flex_impulse;
 mod flex_momentum;
 mod flex_motion;
+mod flex_path;
 mod flex_restart;
 mod flex_solve;
 mod link_response;

@@ -309,6 +309,12 @@ impl RigidBlock {
         self.current.angle += step[2];
     }
 
+    /// Puts the body where the step could go, with the velocity that its forces lead to.
+    pub fn stop_at(&mut self, centre: Vec2, angle: f64) {
+        self.current.centre = centre;
+        self.current.angle = angle;
+    }
+
     /// Ends the step where it began, without velocities, unless the motion is given.
     pub fn hold(&mut self) {
         if !self.is_prescribed {

@@ -106,6 +106,11 @@ pub enum Pair {
         /// Whether vertices of the part count: two round vertices meet once, not twice.
         meets_vertices: bool,
     },
+    /// A point near an edge or a point of another surface, on a feasible path: the path measures it.
+    Near {
+        /// Blocks of the point and of the target.
+        blocks: [usize; 2],
+    },
     /// Two polygonal parts whose edges may cross without a vertex of either in the other: what [`Pair::VertexOnPart`]
     /// does not see.
     Crossing {
@@ -125,7 +130,7 @@ impl Pair {
             Self::NodeOnSurface { node, flex, .. } => [node.0, flex],
             Self::PointOnFace { point, face, .. } => [point.0, face],
             Self::VertexOnPart { point, rigid, .. } => [point.0, rigid],
-            Self::Crossing { blocks, .. } => blocks,
+            Self::Crossing { blocks, .. } | Self::Near { blocks } => blocks,
         }
     }
 }

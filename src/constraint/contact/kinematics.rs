@@ -88,6 +88,43 @@ impl Kinematics {
             .any(|a| blocks[a.block].is_explicit())
     }
 
+    /// A row whose grips have the levers given: block, point, weight, and lever from the block's centre (m).
+    ///
+    /// # Panics
+    /// If there are more than three grips.
+    pub(crate) fn with_levers(
+        gap: f64,
+        normal: Vec2,
+        position: Vec2,
+        grips: &[(usize, Point, f64, Vec2)],
+    ) -> Self {
+        let unused = Attachment {
+            block: 0,
+            grip: Grip {
+                point: Point::Node(0),
+                lever: Vec2::zeros(),
+            },
+            weight: 0.0,
+        };
+        let mut attachments = [unused; 3];
+        for (slot, &(block, point, weight, lever)) in grips.iter().enumerate() {
+            attachments[slot] = Attachment {
+                block,
+                grip: Grip { point, lever },
+                weight,
+            };
+        }
+        Self {
+            gap,
+            normal,
+            position,
+            feature: None,
+            attachments,
+            n_attachments: grips.len(),
+            is_quasi_static: false,
+        }
+    }
+
     pub(super) fn new(
         scene: &Scene<'_>,
         gap: f64,
@@ -254,6 +291,8 @@ impl Candidate {
             } => point_on_face(scene, point, face, ends, radius),
             Pair::VertexOnPart { .. } => vertex_on_part(scene, &self.pair),
             Pair::Crossing { blocks, parts } => crossing(scene, blocks, parts),
+            // The path knows; what it lists no more is not near.
+            Pair::Near { .. } => None,
         }
     }
 }

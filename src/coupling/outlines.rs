@@ -1,0 +1,235 @@
+//! Outlines of rapier's shapes: the points and edges that flexible surfaces meet, converted once and kept until the shape changes.
+//!
+//! What has a core keeps its true surface: the outline is drawn inwards by an offset and rounded by it, which rounds sharp corners by
+//! that much and nothing else. Chains without thickness (polylines, height fields, the rim of triangle meshes) stay where they are and
+//! are met at the offset.
+
+use super::shapes::{convert, pose_of};
+use crate::constraint::geometry::{ConvexPart, Pose2};
+use crate::math::{Vec2, atan2, cross, from_rapier, perp};
+use crate::rapier::parry::shape::{Shape, TypedShape};
+use crate::rapier::prelude::*;
+use std::collections::HashMap;
+
+/// A piece of an outline, in the collider's coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Piece {
+    /// All points with `normal · (x - origin) <= 0`.
+    HalfSpace {
+        /// A point of the boundary (m).
+        origin: Vec2,
+        /// Outward unit normal.
+        normal: Vec2,
+    },
+    /// A convex core, counter-clockwise: a polygon, a segment or a point, rounded by a radius.
+    Convex {
+        /// The core's vertices (m).
+        vertices: Vec<Vec2>,
+        /// Radius of the rounding (m).
+        radius: f64,
+        /// Least thickness of the core (m).
+        width: f64,
+    },
+    /// Edges without thickness.
+    Chain {
+        /// Points (m).
+        points: Vec<Vec2>,
+        /// Edges between them.
+        edges: Vec<[u32; 2]>,
+    },
+}
+
+/// The outline of one collider.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Outline {
+    /// Its pieces, in the order of the shape.
+    pub pieces: Vec<Piece>,
+}
+
+/// Outlines of all colliders met so far.
+#[derive(Default)]
+pub(super) struct OutlineCache {
+    entries: HashMap<ColliderHandle, (SharedShape, Outline)>,
+}
+
+impl std::fmt::Debug for OutlineCache {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("OutlineCache")
+            .field("n_outlines", &self.entries.len())
+            .finish()
+    }
+}
+
+impl OutlineCache {
+    /// The outline of a collider's shape.
+    pub fn outline(&mut self, handle: ColliderHandle, collider: &Collider) -> &Outline {
+        let shape = collider.shared_shape();
+        let entry = self
+            .entries
+            .entry(handle)
+            .or_insert_with(|| (shape.clone(), outline_of(shape.as_ref())));
+        if !std::sync::Arc::ptr_eq(&entry.0.0, &shape.0) {
+            *entry = (shape.clone(), outline_of(shape.as_ref()));
+        }
+        &entry.1
+    }
+
+    /// Drops outlines of colliders that no longer exist.
+    pub fn retain(&mut self, colliders: &ColliderSet) {
+        self.entries.retain(|handle, _| colliders.contains(*handle));
+    }
+}
+
+fn outline_of(shape: &dyn Shape) -> Outline {
+    let mut outline = Outline::default();
+    add_shape(shape, Pose2::identity(), &mut outline.pieces);
+    outline
+}
+
+fn add_shape(shape: &dyn Shape, pose: Pose2, pieces: &mut Vec<Piece>) {
+    match shape.as_typed_shape() {
+        TypedShape::Polyline(polyline) => {
+            let points = polyline.vertices().iter();
+            let points = points.map(|&point| pose.transform(from_rapier(point)));
+            pieces.push(Piece::Chain {
+                points: points.collect(),
+                edges: polyline.indices().to_vec(),
+            });
+        }
+        TypedShape::HeightField(field) => {
+            let mut points: Vec<Vec2> = Vec::new();
+            let mut edges = Vec::new();
+            let mut last = None;
+            for segment in field.segments() {
+                // Neighbouring segments share a vertex to the last bit, unless one between them was removed.
+                if last != Some(segment.a) {
+                    points.push(pose.transform(from_rapier(segment.a)));
+                }
+                points.push(pose.transform(from_rapier(segment.b)));
+                let end = points.len() as u32 - 1;
+                edges.push([end - 1, end]);
+                last = Some(segment.b);
+            }
+            pieces.push(Piece::Chain { points, edges });
+        }
+        TypedShape::TriMesh(mesh) => {
+            let points = mesh.vertices().iter();
+            let points = points.map(|&point| pose.transform(from_rapier(point)));
+            pieces.push(Piece::Chain {
+                points: points.collect(),
+                edges: rim_of(mesh.indices()),
+            });
+        }
+        TypedShape::Segment(segment) => pieces.push(Piece::Chain {
+            points: [segment.a, segment.b]
+                .map(|point| pose.transform(from_rapier(point)))
+                .to_vec(),
+            edges: vec![[0, 1]],
+        }),
+        TypedShape::Compound(compound) => {
+            for (local, child) in compound.shapes() {
+                let local = pose_of(local);
+                let angle = atan2(pose.sin, pose.cos) + atan2(local.sin, local.cos);
+                let pose = Pose2::new(pose.transform(local.translation), angle);
+                add_shape(child.as_ref(), pose, pieces);
+            }
+        }
+        _ => {
+            let mut parts = Vec::new();
+            convert(shape, pose, &mut parts);
+            pieces.extend(parts.iter().map(|part| piece_of(&part.part, &part.pose)));
+        }
+    }
+}
+
+fn piece_of(part: &ConvexPart, pose: &Pose2) -> Piece {
+    if part.is_half_space() {
+        return Piece::HalfSpace {
+            origin: pose.translation,
+            normal: pose.rotate(part.normals()[0]),
+        };
+    }
+    Piece::Convex {
+        vertices: part.vertices().iter().map(|v| pose.transform(*v)).collect(),
+        radius: part.radius(),
+        width: part.width(),
+    }
+}
+
+/// The edges that belong to one triangle only.
+fn rim_of(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    let mut sides: Vec<([u32; 2], [u32; 2])> = Vec::new();
+    for [a, b, c] in triangles {
+        for [from, to] in [[*a, *b], [*b, *c], [*c, *a]] {
+            sides.push(([from.min(to), from.max(to)], [from, to]));
+        }
+    }
+    sides.sort_unstable();
+    let is_rim = |slot: &usize| {
+        let name = sides[*slot].0;
+        let before = slot.checked_sub(1).map(|other| sides[other].0);
+        let after = sides.get(slot + 1).map(|other| other.0);
+        before != Some(name) && after != Some(name)
+    };
+    let rim = (0..sides.len()).filter(is_rim);
+    rim.map(|slot| sides[slot].1).collect()
+}
+
+/// A convex polygon drawn inwards by up to `offset` (m), over `inset`; returns by how much: never so far that an edge would vanish.
+pub(super) fn draw_inwards(vertices: &[Vec2], offset: f64, inset: &mut Vec<Vec2>) -> f64 {
+    inset.clear();
+    let n = vertices.len();
+    let direction = |edge: usize| (vertices[(edge + 1) % n] - vertices[edge]).normalize();
+    // Tangent of half the turn at a vertex: how far a unit offset moves it along either edge.
+    let bend = |vertex: usize| {
+        let [before, after] = [(vertex + n - 1) % n, vertex].map(direction);
+        cross(before, after) / (1.0 + before.dot(&after)).max(f64::MIN_POSITIVE)
+    };
+    let mut most = offset;
+    for edge in 0..n {
+        let length = (vertices[(edge + 1) % n] - vertices[edge]).norm();
+        most = most.min(KEPT * length / (bend(edge) + bend((edge + 1) % n)));
+    }
+    for vertex in 0..n {
+        let along = direction(vertex);
+        inset.push(vertices[vertex] + most * (perp(along) + bend(vertex) * along));
+    }
+    most
+}
+
+/// Share of an edge that drawing inwards may take: a quarter leaves a core that is no sliver, whatever the polygon.
+const KEPT: f64 = 0.25;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rectangle_drawn_inwards_keeps_its_faces_at_the_offset() {
+        let corners = [[-2.0, -1.0], [2.0, -1.0], [2.0, 1.0], [-2.0, 1.0]].map(Vec2::from);
+        let mut inset = Vec::new();
+        let by = draw_inwards(&corners, 0.1, &mut inset);
+        assert_eq!(by, 0.1);
+        let expected = [[-1.9, -0.9], [1.9, -0.9], [1.9, 0.9], [-1.9, 0.9]].map(Vec2::from);
+        for (found, expected) in inset.iter().zip(expected) {
+            assert!((found - expected).norm() < 1e-15, "{found}");
+        }
+    }
+
+    #[test]
+    fn a_sliver_is_drawn_inwards_by_less_than_its_shortest_edge() {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1e-3]].map(Vec2::from);
+        let mut inset = Vec::new();
+        let by = draw_inwards(&corners, 0.1, &mut inset);
+        assert!(by > 1e-5 && by < 5e-4, "{by}");
+        let area = cross(inset[1] - inset[0], inset[2] - inset[0]);
+        assert!(area > 0.0);
+    }
+
+    #[test]
+    fn the_rim_of_two_triangles_leaves_out_what_they_share() {
+        let rim = rim_of(&[[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(rim.len(), 4);
+        assert!(!rim.contains(&[0, 2]) && !rim.contains(&[2, 0]));
+    }
+}

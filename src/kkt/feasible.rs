@@ -1,0 +1,479 @@
+//! The feasible path of an island: which surfaces are kept apart, where they are at the base of the path, and what of it the rows need.
+
+use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics, Owner};
+use crate::math::{Vec2, node_vec, perp};
+use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces, Target};
+use crate::system::{Block, Grip, Point, RigidMotion};
+
+/// Reach of the rows beyond the distance at which contact closes, relative to the margin: a tenth of an edge, as a margin is a hundredth.
+/// Between half of it and twice only the number of passes changes.
+const REACH: f64 = 10.0;
+
+/// Turn of a member with near pairs within a pass (rad): rows are straight where arcs are not.
+const MOST_TURN: f64 = 0.5;
+
+/// Two members that are kept apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    /// Both members.
+    pub members: [usize; 2],
+    /// Their names in contact keys.
+    pub owners: [Owner; 2],
+    /// Friction and restitution.
+    pub law: ContactLaw,
+    /// Distance of cores at which contact closes (m).
+    pub closing: f64,
+    /// The part of it that the path may use up (m).
+    pub margin: f64,
+}
+
+/// A member: its block, and whether that is flexible.
+#[derive(Clone, Copy, Debug)]
+struct Carrier {
+    block: usize,
+    is_flex: bool,
+}
+
+/// Where a block is at the base; of a flexible one its frame, and where its nodes begin among those of all.
+#[derive(Clone, Copy, Debug, Default)]
+struct BlockBase {
+    centre: Vec2,
+    angle: f64,
+    nodes: Option<usize>,
+}
+
+impl BlockBase {
+    fn motion(&self) -> RigidMotion {
+        RigidMotion {
+            centre: self.centre,
+            angle: self.angle,
+            ..RigidMotion::default()
+        }
+    }
+}
+
+/// Surfaces that are led along a feasible path, with their buffers.
+#[derive(Debug, Default)]
+pub struct FeasiblePath {
+    surfaces: Surfaces,
+    motion: Motion,
+    search: Path,
+    pairs: Vec<MemberPair>,
+    ways: Vec<Way>,
+    carriers: Vec<Carrier>,
+    /// For each surface point its place on its block and its name.
+    points: Vec<(Point, u32)>,
+    /// Member of each flexible block.
+    flex_members: Vec<Option<usize>>,
+    near: Vec<NearPair>,
+    hits: Vec<Hit>,
+    base: Vec<BlockBase>,
+    /// Nodes of the flexible blocks at the base, interleaved (m).
+    nodes: Vec<f64>,
+    scratch: Vec<Vec2>,
+    edges: Vec<[u32; 2]>,
+}
+
+impl FeasiblePath {
+    pub(super) fn clear(&mut self) {
+        self.surfaces.truncate(0);
+        self.pairs.clear();
+        self.ways.clear();
+        self.carriers.clear();
+        self.points.clear();
+        self.flex_members.clear();
+        self.near.clear();
+    }
+
+    /// Whether no surfaces are kept apart.
+    pub(super) fn is_empty(&self) -> bool {
+        self.ways.is_empty()
+    }
+
+    /// Number of ways so far.
+    pub(crate) fn n_ways(&self) -> usize {
+        self.ways.len()
+    }
+
+    /// Forgets all ways from the `first` on.
+    pub(crate) fn truncate(&mut self, first: usize) {
+        self.ways.truncate(first);
+        self.pairs.truncate(first);
+    }
+
+    /// The member of a flexible block, added when first asked for.
+    pub(crate) fn flex_member(&mut self, block: usize, blocks: &[Block]) -> usize {
+        if self.flex_members.len() <= block {
+            self.flex_members.resize(block + 1, None);
+        }
+        if let (Some(member), _) | (None, Some(member)) =
+            (self.flex_members[block], self.add_flex(block, blocks))
+        {
+            self.flex_members[block] = Some(member);
+            return member;
+        }
+        usize::MAX
+    }
+
+    fn add_flex(&mut self, block: usize, blocks: &[Block]) -> Option<usize> {
+        let Block::Flex(body) = &blocks[block] else {
+            return None;
+        };
+        if self.flex_members[block].is_some() {
+            return None;
+        }
+        let boundary = body.model().mesh().boundary();
+        self.scratch.clear();
+        self.edges.clear();
+        let first = self.points.len();
+        for &node in boundary.nodes() {
+            self.scratch.push(body.start_position(node));
+            self.points.push((Point::Node(node), node as u32));
+        }
+        // Segment k starts at boundary node k.
+        for segment in 0..boundary.segments().len() {
+            self.edges
+                .push([segment as u32, boundary.next_segment(segment) as u32]);
+        }
+        debug_assert_eq!(first + self.scratch.len(), self.points.len());
+        self.carriers.push(Carrier {
+            block,
+            is_flex: true,
+        });
+        let edges = self.edges.iter().copied();
+        let kind = MotionKind::Flexible;
+        Some(self.surfaces.add(kind, true, &self.scratch, edges))
+    }
+
+    /// Adds a piece of a rigid block.
+    ///
+    /// - `name`: what its points' names are counted from.
+    /// - `points`: names and arms from the centre of mass, in body axes (m).
+    /// - `edges`: their ends among the points.
+    pub(crate) fn rigid_member(
+        &mut self,
+        block: usize,
+        blocks: &[Block],
+        name: u32,
+        points: &[(u32, Vec2)],
+        edges: &[[u32; 2]],
+    ) -> usize {
+        let mut kind = MotionKind::Still;
+        self.scratch.clear();
+        if let Block::Rigid(body) = &blocks[block] {
+            let start = *body.start();
+            if !body.is_prescribed() || body.drift() != start {
+                kind = MotionKind::Rigid;
+            }
+            for (own, arm) in points {
+                self.scratch.push(start.point(*arm));
+                self.points.push((Point::Arm(*arm), name + own));
+            }
+        }
+        self.carriers.push(Carrier {
+            block,
+            is_flex: false,
+        });
+        let is_solid = edges.len() > 2 && edges.len() == points.len();
+        let edges = edges.iter().copied();
+        self.surfaces.add(kind, is_solid, &self.scratch, edges)
+    }
+
+    /// Keeps two members apart; returns whether they are to begin with. If not, nothing is added.
+    pub(crate) fn add_way(&mut self, way: Way) -> bool {
+        let [one, other] = way.members;
+        let pair = MemberPair {
+            one,
+            other,
+            name: self.pairs.len() as u64,
+            closing: way.closing,
+            margin: way.margin,
+        };
+        if !self.search.separated(&self.surfaces, one, other) {
+            return false;
+        }
+        self.pairs.push(pair);
+        self.ways.push(way);
+        true
+    }
+
+    /// Smallest margin of the ways (m).
+    pub(super) fn least_margin(&self) -> f64 {
+        let margins = self.ways.iter().map(|way| way.margin);
+        margins.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Puts the base where the step begins.
+    pub(super) fn rest(&mut self, blocks: &[Block]) {
+        self.base.clear();
+        self.nodes.clear();
+        for block in blocks {
+            self.base.push(match block {
+                Block::Flex(body) => {
+                    let first = self.nodes.len();
+                    self.nodes.extend_from_slice(body.start_positions());
+                    let frame = body.start_frame();
+                    BlockBase {
+                        centre: frame.centre,
+                        angle: frame.angle,
+                        nodes: Some(first),
+                    }
+                }
+                Block::Rigid(body) => BlockBase {
+                    centre: body.start().centre,
+                    angle: body.start().angle,
+                    nodes: None,
+                },
+            });
+        }
+    }
+
+    /// Moves the base towards the blocks' iterate, as far as the surfaces stay apart; returns whether it arrives.
+    pub(super) fn advance(&mut self, blocks: &[Block]) -> bool {
+        self.motion.rest(&self.surfaces);
+        for (member, carrier) in self.carriers.iter().enumerate() {
+            match (&blocks[carrier.block], self.surfaces.members()[member].kind) {
+                (Block::Flex(body), _) => {
+                    let first = self.surfaces.members()[member].points.start;
+                    let ends = self.motion.ends_mut(&self.surfaces, member);
+                    for (slot, end) in ends.iter_mut().enumerate() {
+                        if let (Point::Node(node), _) = self.points[first + slot] {
+                            *end = body.position(node);
+                        }
+                    }
+                }
+                (Block::Rigid(body), MotionKind::Rigid) => {
+                    let base = self.base[carrier.block];
+                    let end = body.current();
+                    let (shift, turn) = (end.centre - base.centre, end.angle - base.angle);
+                    self.motion
+                        .move_rigid(&self.surfaces, member, base.centre, shift, turn);
+                }
+                _ => {}
+            }
+        }
+        let impact =
+            self.search
+                .time_of_impact(&self.surfaces, &self.motion, &self.pairs, &mut self.hits);
+        let part = impact.t.min(1.0).min(self.turning_part(blocks));
+        self.go(part, blocks);
+        part >= 1.0
+    }
+
+    /// The part of the way on which no block with near pairs turns too far.
+    fn turning_part(&self, blocks: &[Block]) -> f64 {
+        let mut part = 1.0f64;
+        for near in &self.near {
+            let way = &self.ways[near.pair];
+            for member in way.members {
+                let block = self.carriers[member].block;
+                let turn = (angle_of(&blocks[block]) - self.base[block].angle).abs();
+                if turn > MOST_TURN {
+                    part = part.min(MOST_TURN / turn);
+                }
+            }
+        }
+        part
+    }
+
+    fn go(&mut self, part: f64, blocks: &[Block]) {
+        self.surfaces.advance(&self.motion, part);
+        for (base, block) in self.base.iter_mut().zip(blocks) {
+            let (centre, angle) = (block.centre(), angle_of(block));
+            if part >= 1.0 {
+                (base.centre, base.angle) = (centre, angle);
+            } else {
+                base.centre += part * (centre - base.centre);
+                base.angle += part * (angle - base.angle);
+            }
+            if let (Some(first), Block::Flex(body)) = (base.nodes, block) {
+                let ends = body.positions();
+                let nodes = &mut self.nodes[first..first + ends.len()];
+                if part >= 1.0 {
+                    nodes.copy_from_slice(ends);
+                } else {
+                    for (node, end) in nodes.iter_mut().zip(ends) {
+                        *node += part * (end - *node);
+                    }
+                }
+            }
+        }
+        // Points of rigid members stay on their bodies to the last digit.
+        for (member, carrier) in self.carriers.iter().enumerate() {
+            let own = &self.surfaces.members()[member];
+            if own.kind != MotionKind::Rigid {
+                continue;
+            }
+            let (points, pose) = (own.points.clone(), self.base[carrier.block].motion());
+            let placed = self.surfaces.points_mut(member).iter_mut();
+            for (place, (point, _)) in placed.zip(&self.points[points]) {
+                if let Point::Arm(arm) = point {
+                    *place = pose.point(*arm);
+                }
+            }
+        }
+    }
+
+    /// Leaves the blocks at the base, with what else the iterate found.
+    pub(super) fn stop(&self, blocks: &mut [Block]) {
+        for (base, block) in self.base.iter().zip(blocks) {
+            match (block, base.nodes) {
+                (Block::Flex(body), Some(first)) => {
+                    let n = body.positions().len();
+                    body.stop_at(&self.nodes[first..first + n]);
+                }
+                (Block::Rigid(body), _) => body.stop_at(base.centre, base.angle),
+                _ => {}
+            }
+        }
+    }
+
+    /// Lists what is near at the base.
+    pub(super) fn list_near(&mut self) {
+        let reach = |way: &Way| REACH * way.margin;
+        let farthest = self.ways.iter().map(reach).fold(0.0, f64::max);
+        self.search
+            .near(&self.surfaces, &self.pairs, farthest, &mut self.near);
+        let ways = &self.ways;
+        self.near.retain(|near| {
+            let way = &ways[near.pair];
+            near.distance <= way.closing + reach(way)
+        });
+    }
+
+    /// What is near at the base.
+    pub(super) fn near(&self) -> &[NearPair] {
+        &self.near
+    }
+
+    /// The law of a near pair.
+    pub(super) fn law(&self, near: &NearPair) -> ContactLaw {
+        self.ways[near.pair].law
+    }
+
+    /// Members of the point and of the target.
+    fn members_of(&self, near: &NearPair) -> [usize; 2] {
+        let [one, other] = self.ways[near.pair].members;
+        let owns = self.surfaces.members()[one].points.contains(&near.point);
+        if owns { [one, other] } else { [other, one] }
+    }
+
+    /// Blocks of the point and of the target.
+    pub(super) fn blocks_of(&self, near: &NearPair) -> [usize; 2] {
+        self.members_of(near)
+            .map(|member| self.carriers[member].block)
+    }
+
+    /// The name of a near pair.
+    pub(super) fn key(&self, near: &NearPair) -> ContactKey {
+        let way = &self.ways[near.pair];
+        let is_first = self.members_of(near)[0] == way.members[0];
+        let [contactor, target] = if is_first {
+            way.owners
+        } else {
+            [way.owners[1], way.owners[0]]
+        };
+        let part = match near.target {
+            Target::Edge(edge) => {
+                let [from, _] = self.surfaces.edges()[edge];
+                2 * self.points[from as usize].1 + 1
+            }
+            Target::Vertex(vertex) => 2 * self.points[vertex].1,
+        };
+        ContactKey {
+            contactor,
+            point: self.points[near.point].1,
+            target,
+            part: PATH_NAMES | part,
+        }
+    }
+
+    /// The row of a near pair at the base.
+    pub(super) fn kinematics(&self, near: &NearPair) -> Kinematics {
+        let way = &self.ways[near.pair];
+        let [own, met] = self.members_of(near).map(|member| self.carriers[member]);
+        let point = self.surfaces.points()[near.point];
+        // Forces act on the surface of a flexible body: at the point's own, or where the target's is met.
+        let position = if own.is_flex {
+            point
+        } else {
+            point - near.distance * near.normal
+        };
+        let lever = |carrier: Carrier| position - self.base[carrier.block].centre;
+        let held = |carrier: Carrier, at: usize| {
+            if carrier.is_flex {
+                self.points[at].0
+            } else {
+                Point::Arm(self.base[carrier.block].motion().arm(position))
+            }
+        };
+        let first = (own.block, held(own, near.point), 1.0, lever(own));
+        let gap = near.distance - way.closing;
+        let target = |at: usize, weight: f64| (met.block, held(met, at), weight, lever(met));
+        let row = |grips: &[_]| Kinematics::with_levers(gap, near.normal, position, grips);
+        match near.target {
+            Target::Edge(edge) if met.is_flex => {
+                let [from, to] = self.surfaces.edges()[edge].map(|end| end as usize);
+                row(&[first, target(from, near.xi - 1.0), target(to, -near.xi)])
+            }
+            Target::Edge(edge) => {
+                let [from, _] = self.surfaces.edges()[edge];
+                row(&[first, target(from as usize, -1.0)])
+            }
+            Target::Vertex(vertex) => row(&[first, target(vertex, -1.0)]),
+        }
+    }
+
+    /// Position of a point of a block at the base (m).
+    fn at_base(&self, block: usize, point: Point) -> Vec2 {
+        let base = &self.base[block];
+        match (point, base.nodes) {
+            (Point::Node(node), Some(first)) => node_vec(&self.nodes[first..], node),
+            (Point::Arm(arm), _) => base.motion().point(arm),
+            (Point::Node(_), None) => base.centre,
+        }
+    }
+
+    /// Motion of the material at a row from the beginning of the step to the base, the point's against the target's (m).
+    pub(super) fn moved(&self, row: &Kinematics, blocks: &[Block]) -> Vec2 {
+        let grips = row.attachments().iter();
+        grips
+            .map(|a| {
+                let start = blocks[a.block].start_position(a.grip.point);
+                a.weight * (self.at_base(a.block, a.grip.point) - start)
+            })
+            .sum()
+    }
+
+    /// Motion at a row from the base to the blocks' iterate, linear in the dofs of rigid blocks (m).
+    pub(super) fn onward(&self, row: &Kinematics, blocks: &[Block]) -> Vec2 {
+        let grips = row.attachments().iter();
+        grips
+            .map(|a| a.weight * self.onward_of(a.block, a.grip, &blocks[a.block]))
+            .sum()
+    }
+
+    fn onward_of(&self, block: usize, grip: Grip, iterate: &Block) -> Vec2 {
+        let base = &self.base[block];
+        match (iterate, grip.point) {
+            (Block::Flex(body), Point::Node(node)) => {
+                body.position(node) - self.at_base(block, grip.point)
+            }
+            (Block::Rigid(body), _) => {
+                let end = body.current();
+                end.centre - base.centre + (end.angle - base.angle) * perp(grip.lever)
+            }
+            _ => Vec2::zeros(),
+        }
+    }
+}
+
+/// Marks the names of near pairs in contact keys.
+const PATH_NAMES: u32 = 1 << 31;
+
+fn angle_of(block: &Block) -> f64 {
+    match block {
+        Block::Flex(body) => body.angle(),
+        Block::Rigid(body) => body.current().angle,
+    }
+}

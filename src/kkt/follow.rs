@@ -1,0 +1,191 @@
+//! The position stage along a feasible path: from where the bodies are apart, towards where the forces would have them, as far as they
+//! stay apart.
+//!
+//! A *pass* lists the near pairs at the base, solves one contact problem on their rows for new forces, finds where the bodies end under
+//! them, and moves the base that way until the time of impact. It is over when the base is where the forces lead and the laws hold
+//! there in truth. Whatever the forces are, the base is free of overlaps: what is not solved within the budget stops at the base.
+
+use super::island::{ActiveContact, AtBase, Island, IslandSummary, SolveSettings};
+use super::iterate::{ANGLE_TOLERANCE, ROWS_KEPT_FROM};
+use super::position::PARTING_RATE;
+use crate::constraint::contact::{Candidate, ContactMemory, Pair, Remembered};
+use crate::math::exp;
+
+/// Passes in a step. The scenes of the tests take one to four; what needs more is cut.
+const MOST_PASSES: usize = 40;
+
+/// Pass from which the laws need only hold to [`CLOSE_ENOUGH`].
+const EASED_FROM: usize = 8;
+
+/// Share of the margin by which true gaps may miss what the law asks for (-).
+const CLOSE_ENOUGH: f64 = 0.05;
+
+/// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
+const NEAR: f64 = 1e5;
+
+/// How the near pairs of a base are listed.
+#[derive(Clone, Copy)]
+struct Listing<'a> {
+    /// Multipliers of the last step, for the first list of a step.
+    memory: Option<&'a ContactMemory>,
+    /// Whether rows that are at work stay as they are.
+    keeps_rows: bool,
+    /// Overlap beyond which a contact parts by and by (m), and the share of it that stays for this step.
+    slop: f64,
+    kept: f64,
+}
+
+impl Island {
+    /// Solves the positions along the path; returns whether the laws hold.
+    pub(super) fn follow_path(
+        &mut self,
+        settings: &SolveSettings,
+        memory: &ContactMemory,
+        tolerance: f64,
+        summary: &mut IslandSummary,
+    ) -> bool {
+        let kept = exp(-PARTING_RATE * settings.dt);
+        self.path.rest(&self.blocks);
+        let mut listing = Listing {
+            memory: Some(memory),
+            keeps_rows: false,
+            slop: 1e7 * tolerance,
+            kept,
+        };
+        self.list_near(&listing);
+        listing.memory = None;
+        let mut turned = self.correct();
+        for pass in 0..MOST_PASSES {
+            summary.n_newton += 1;
+            // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
+            let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
+            let misleads = is_guess && self.measure(true) > NEAR * tolerance;
+            let mut arrives = false;
+            let mut error = 0.0;
+            if !misleads {
+                arrives = self.path.advance(&self.blocks);
+                listing.keeps_rows = pass >= ROWS_KEPT_FROM;
+                self.list_near(&listing);
+                error = self.measure(false);
+            }
+            let has_more = !misleads && self.add_violated(tolerance, kept, memory);
+            let enough = if pass < EASED_FROM {
+                tolerance
+            } else {
+                CLOSE_ENOUGH * self.path.least_margin()
+            };
+            let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
+            if arrives && is_close && !has_more {
+                return true;
+            }
+            if !(error + turned).is_finite() {
+                return false;
+            }
+            if !self.ties.is_empty() && pass > 0 && pass % 5 == 0 {
+                self.restiffen_turns(settings);
+            }
+            self.turn_signed_rows(!misleads && !listing.keeps_rows);
+            let solved = self.solve_multipliers(settings, true, tolerance, summary);
+            if solved.is_err() {
+                return false;
+            }
+            turned = self.correct();
+        }
+        false
+    }
+
+    /// Lists the near pairs of the base as contacts, and keeps the signed ones. A contact that is near no more stays for one solve, which
+    /// takes its force out.
+    fn list_near(&mut self, listing: &Listing<'_>) {
+        self.path.list_near();
+        std::mem::swap(&mut self.contacts, &mut self.contacts_before);
+        self.contacts.clear();
+        self.slot_of.clear();
+        self.slot_of.resize(self.candidates.len(), u32::MAX);
+        for (slot, contact) in self.contacts_before.iter().enumerate() {
+            self.slot_of[contact.candidate] = slot as u32;
+            if contact.base.is_none() {
+                self.contacts.push(*contact);
+            }
+        }
+        for near in 0..self.path.near().len() {
+            let near = self.path.near()[near];
+            let key = self.path.key(&near);
+            let law = self.path.law(&near);
+            let kinematics = self.path.kinematics(&near);
+            let candidates = &mut self.candidates;
+            let candidate = *self.near_candidates.entry(key).or_insert_with(|| {
+                let pair = Pair::Near {
+                    blocks: self.path.blocks_of(&near),
+                };
+                candidates.push(Candidate { key, pair, law });
+                candidates.len() - 1
+            });
+            let base = AtBase {
+                gap: kinematics.gap,
+                moved: self.path.moved(&kinematics, &self.blocks),
+            };
+            let known = self.slot_of.get_mut(candidate);
+            let slot = known.map_or(u32::MAX, |slot| std::mem::replace(slot, u32::MAX));
+            let mut contact = match self.contacts_before.get(slot as usize) {
+                Some(&before) => ActiveContact {
+                    applied: before.kinematics,
+                    kinematics: if listing.keeps_rows {
+                        before.kinematics
+                    } else {
+                        kinematics
+                    },
+                    ..before
+                },
+                None => {
+                    let remembered = listing
+                        .memory
+                        .map_or(Remembered::default(), |memory| memory.recall(&key));
+                    let friction = law.friction;
+                    let mut contact = ActiveContact::new(
+                        candidate,
+                        kinematics,
+                        remembered,
+                        friction,
+                        &self.blocks,
+                    );
+                    if listing.memory.is_some() && base.gap < -listing.slop {
+                        contact.allowance = listing.kept * base.gap;
+                    }
+                    contact
+                }
+            };
+            contact.base = Some(base);
+            contact.is_lost = false;
+            self.contacts.push(contact);
+        }
+        for contact in &self.contacts_before {
+            let is_left = self.slot_of[contact.candidate] != u32::MAX;
+            if is_left && contact.base.is_some() && contact.multiplier != [0.0; 2] {
+                self.contacts.push(ActiveContact {
+                    applied: contact.kinematics,
+                    is_lost: true,
+                    ..*contact
+                });
+            }
+        }
+    }
+
+    /// Notes the rows that the forces of signed contacts and joints acted along; with `refreshes` they turn to the measured geometry.
+    fn turn_signed_rows(&mut self, refreshes: bool) {
+        for contact in self.contacts.iter_mut().filter(|one| one.base.is_none()) {
+            contact.applied = contact.kinematics;
+            if refreshes {
+                let gap = contact.kinematics.gap;
+                contact.kinematics = contact.measured;
+                contact.kinematics.gap = gap;
+                contact.known = None;
+            }
+        }
+        if refreshes {
+            self.refresh_joints();
+        } else {
+            self.keep_joints();
+        }
+    }
+}

@@ -1,0 +1,233 @@
+//! The certificate of a placement: in exact arithmetic, no two edges share a point and no member lies inside another.
+//!
+//! Signs of `det [b - a, c - a]` are exact (Shewchuk's adaptive predicates). If no edges of two members meet, each connected
+//! part of one lies as a whole inside or outside the other, so one point of it decides, by how often the other's edges go
+//! round it.
+
+use super::distance::foot_on;
+use super::search::{Extent, Search};
+use super::{MemberPair, Path, Surfaces};
+use crate::math::Vec2;
+use robust::{Coord, orient2d};
+
+/// How a member pair overlaps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Overlap {
+    /// Two edges cross.
+    Crossing,
+    /// Two edges share a point, but do not go through each other there.
+    Touching,
+    /// A part of one lies inside the other.
+    Contained,
+}
+
+/// What is true of a placement.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certificate {
+    /// Pairs of edges that cross.
+    pub n_crossings: usize,
+    /// Pairs of edges that share a point without crossing; also where a vertex lies on the other's edge.
+    pub n_touching: usize,
+    /// Connected parts of members inside the solid member of their pair; not asked where edges meet.
+    pub n_contained: usize,
+    /// The first offending member pair.
+    pub first: Option<(usize, Overlap)>,
+    /// Least distance of cores beyond closing, `(d - closing) / margin`: -0.8 at the guard; infinite if no pair is within
+    /// `closing + margin`.
+    pub least_gap: f64,
+}
+
+impl Certificate {
+    /// Whether nothing overlaps or touches.
+    pub fn is_valid(&self) -> bool {
+        self.first.is_none()
+    }
+}
+
+impl Path {
+    /// Checks a placement.
+    pub fn certificate(&mut self, surfaces: &Surfaces, pairs: &[MemberPair]) -> Certificate {
+        let mut certificate = Certificate {
+            n_crossings: 0,
+            n_touching: 0,
+            n_contained: 0,
+            first: None,
+            least_gap: f64::INFINITY,
+        };
+        self.search.refresh(Extent::of(surfaces));
+        for (index, pair) in pairs.iter().enumerate() {
+            let found = check(
+                &mut self.search,
+                surfaces,
+                [pair.one, pair.other],
+                pair.closing + pair.margin,
+            );
+            certificate.n_crossings += found.n_crossings;
+            certificate.n_touching += found.n_touching;
+            certificate.n_contained += found.n_contained;
+            if certificate.first.is_none() {
+                certificate.first = found.overlap().map(|overlap| (index, overlap));
+            }
+            if found.distance <= pair.closing + pair.margin {
+                let gap = (found.distance - pair.closing) / pair.margin;
+                certificate.least_gap = certificate.least_gap.min(gap);
+            }
+        }
+        certificate
+    }
+
+    /// Whether two members are apart: they share no point and neither lies inside the other.
+    pub fn separated(&mut self, surfaces: &Surfaces, one: usize, other: usize) -> bool {
+        self.search.refresh(Extent::of(surfaces));
+        check(&mut self.search, surfaces, [one, other], 0.0)
+            .overlap()
+            .is_none()
+    }
+
+    /// [`Self::separated`] of many pairs, of which only the members are looked at; the result in their order.
+    ///
+    /// - `separated`: overwritten.
+    pub fn separated_all(
+        &mut self,
+        surfaces: &Surfaces,
+        pairs: &[MemberPair],
+        separated: &mut Vec<bool>,
+    ) {
+        self.search.refresh(Extent::of(surfaces));
+        let search = &mut self.search;
+        separated.clear();
+        separated.extend(pairs.iter().map(|pair| {
+            check(search, surfaces, [pair.one, pair.other], 0.0)
+                .overlap()
+                .is_none()
+        }));
+    }
+}
+
+struct Found {
+    n_crossings: usize,
+    n_touching: usize,
+    n_contained: usize,
+    /// Least distance of the edges looked at (m).
+    distance: f64,
+}
+
+impl Found {
+    fn overlap(&self) -> Option<Overlap> {
+        if self.n_crossings > 0 {
+            Some(Overlap::Crossing)
+        } else if self.n_touching > 0 {
+            Some(Overlap::Touching)
+        } else {
+            (self.n_contained > 0).then_some(Overlap::Contained)
+        }
+    }
+}
+
+/// Looks at all edges of two members whose boxes are within `reach` (m) of each other.
+fn check(search: &mut Search, surfaces: &Surfaces, [one, other]: [usize; 2], reach: f64) -> Found {
+    let mut found = Found {
+        n_crossings: 0,
+        n_touching: 0,
+        n_contained: 0,
+        distance: f64::INFINITY,
+    };
+    search.edges_and_edges(
+        Extent::of(surfaces),
+        [one, other],
+        reach,
+        |first, second| {
+            let [ends, others] = [first, second].map(|edge| surfaces.edges()[edge]);
+            // Within one member each pair once, and not the edges that share a point by being neighbours.
+            if one == other && (second <= first || ends.iter().any(|end| others.contains(end))) {
+                return;
+            }
+            let (ends, others) = (surfaces.ends(first), surfaces.ends(second));
+            match meet(ends, others) {
+                Some(Overlap::Crossing) => found.n_crossings += 1,
+                Some(_) => found.n_touching += 1,
+                None => {
+                    // Edges that do not meet are closest at an end of one of them.
+                    let distance = ends.map(|end| foot_on(end, others).distance);
+                    let back = others.map(|end| foot_on(end, ends).distance);
+                    let least = distance[0].min(distance[1]).min(back[0].min(back[1]));
+                    found.distance = found.distance.min(least);
+                    return;
+                }
+            }
+            found.distance = 0.0;
+        },
+    );
+    if found.n_crossings + found.n_touching == 0 && one != other {
+        for [of, around] in [[one, other], [other, one]] {
+            found.n_contained += n_parts_inside(search, surfaces, of, around);
+        }
+    }
+    found
+}
+
+fn n_parts_inside(search: &Search, surfaces: &Surfaces, of: usize, around: usize) -> usize {
+    if !surfaces.members()[around].solid {
+        return 0;
+    }
+    let points = surfaces
+        .parts(of)
+        .iter()
+        .map(|&point| surfaces.points()[point as usize]);
+    points
+        .filter(|&p| search.contains(surfaces, around, p) && winding(surfaces, around, p) != 0)
+        .count()
+}
+
+/// How often the edges of a member go round a point that lies on none of them, counter-clockwise.
+fn winding(surfaces: &Surfaces, member: usize, point: Vec2) -> i64 {
+    let mut winding = 0;
+    for edge in surfaces.members()[member].edges.clone() {
+        let [a, b] = surfaces.ends(edge);
+        // An end on the ray's line counts as below it, for both edges that meet there.
+        let upward = a.y <= point.y && b.y > point.y;
+        let downward = b.y <= point.y && a.y > point.y;
+        if upward && side(a, b, point) > 0.0 {
+            winding += 1;
+        } else if downward && side(a, b, point) < 0.0 {
+            winding -= 1;
+        }
+    }
+    winding
+}
+
+/// Positive if `c` lies on the left of the line from `a` to `b`, negative on the right, zero on it: exactly.
+#[inline]
+fn side(a: Vec2, b: Vec2, c: Vec2) -> f64 {
+    let [a, b, c] = [a, b, c].map(|point| Coord {
+        x: point.x,
+        y: point.y,
+    });
+    orient2d(a, b, c)
+}
+
+/// Whether two edges, their ends included, share a point.
+fn meet([a, b]: [Vec2; 2], [c, d]: [Vec2; 2]) -> Option<Overlap> {
+    let within = |[a, b]: [Vec2; 2], p: Vec2| {
+        (a.x.min(b.x) <= p.x && p.x <= a.x.max(b.x)) && (a.y.min(b.y) <= p.y && p.y <= a.y.max(b.y))
+    };
+    let of_others = [side(a, b, c), side(a, b, d)];
+    if of_others[0] * of_others[1] > 0.0 {
+        return None;
+    }
+    let of_own = [side(c, d, a), side(c, d, b)];
+    let opposite =
+        |[one, other]: [f64; 2]| (one < 0.0 && other > 0.0) || (one > 0.0 && other < 0.0);
+    if opposite(of_others) && opposite(of_own) {
+        return Some(Overlap::Crossing);
+    }
+    let on = |side: f64, edge: [Vec2; 2], p: Vec2| side == 0.0 && within(edge, p);
+    let touching = on(of_others[0], [a, b], c)
+        || on(of_others[1], [a, b], d)
+        || on(of_own[0], [c, d], a)
+        || on(of_own[1], [c, d], b);
+    touching.then_some(Overlap::Touching)
+}
+
+#[cfg(test)]
+mod tests;

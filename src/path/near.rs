@@ -1,0 +1,184 @@
+//! The near pairs of a placement: what the rows of contact are made of.
+//!
+//! A row is a foot inside an edge, or a vertex against a vertex where each lies in the other's cone, asked of all the edges
+//! that meet in them. Elsewhere another pair of the two chains is closer, and has a row of its own.
+
+use super::distance::{Beside, Foot, direction, inner_foot};
+use super::search::Extent;
+use super::{MemberPair, Path, Surfaces};
+use crate::math::{Vec2, mix};
+
+/// What a point is near to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Target {
+    /// The inside of an edge.
+    Edge(usize),
+    /// A vertex, as a point.
+    Vertex(usize),
+}
+
+/// A point near an edge or a vertex of another member.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearPair {
+    /// Which of the member pairs it belongs to.
+    pub pair: usize,
+    /// The point.
+    pub point: usize,
+    /// What it is near to.
+    pub target: Target,
+    /// Where on the edge, in (0, 1); 0 on a vertex.
+    pub xi: f64,
+    /// From the target to the point, of length one; zero where the distance is.
+    pub normal: Vec2,
+    /// Distance of the cores (m).
+    pub distance: f64,
+    /// The same from step to step as long as the pair has its name and its members their points and edges in the same
+    /// order; different for different rows but for chance (1 in 10⁹ with 10⁵ rows).
+    pub key: u64,
+}
+
+impl Path {
+    /// Writes all near pairs within `closing + reach` of each other, in the order of the member pairs, then of points and
+    /// targets.
+    ///
+    /// - `reach`: how far beyond closing (m).
+    /// - `rows`: overwritten.
+    pub fn near(
+        &mut self,
+        surfaces: &Surfaces,
+        pairs: &[MemberPair],
+        reach: f64,
+        rows: &mut Vec<NearPair>,
+    ) {
+        rows.clear();
+        let extent = Extent::of(surfaces);
+        self.search.refresh(extent);
+        for (index, pair) in pairs.iter().enumerate() {
+            let first = rows.len();
+            let within = pair.closing + reach;
+            // A vertex against a vertex is found from both sides; the first tells it.
+            for (side, members) in [[pair.one, pair.other], [pair.other, pair.one]]
+                .into_iter()
+                .enumerate()
+            {
+                if side == 1 && pair.one == pair.other {
+                    break;
+                }
+                self.search
+                    .points_and_edges(extent, members, within, |point, edge| {
+                        let asked = Asked {
+                            surfaces,
+                            pair,
+                            index,
+                            side,
+                            within,
+                        };
+                        asked.list(point, edge, rows);
+                    });
+            }
+            rows[first..].sort_unstable_by_key(|row| (row.point, row.target));
+        }
+    }
+}
+
+/// A member pair being asked, from one side.
+struct Asked<'a> {
+    surfaces: &'a Surfaces,
+    pair: &'a MemberPair,
+    index: usize,
+    side: usize,
+    within: f64,
+}
+
+impl Asked<'_> {
+    fn list(&self, point: usize, edge: usize, rows: &mut Vec<NearPair>) {
+        let surfaces = self.surfaces;
+        let vertices = surfaces.edges()[edge];
+        let own = self.pair.one == self.pair.other;
+        if own && vertices.contains(&(point as u32)) {
+            return;
+        }
+        let (position, ends) = (surfaces.points()[point], surfaces.ends(edge));
+        let beside = Beside::of(position, ends);
+        if beside.is_inner() {
+            let foot = inner_foot(position, ends, beside.inside);
+            self.push(point, Target::Edge(edge), foot, rows);
+            return;
+        }
+        if self.side == 1 {
+            return;
+        }
+        for (end, vertex) in vertices
+            .map(|vertex| vertex as usize)
+            .into_iter()
+            .enumerate()
+        {
+            // Once for each vertex: from the first of its edges, and within one member from the smaller index.
+            let is_first = surfaces.edges_at(vertex)[0] as usize == edge
+                && !(end == 1 && vertices[0] == vertices[1]);
+            if !is_first || !beside.is_beyond(end) || own && vertex <= point {
+                continue;
+            }
+            if self.in_cone(position, vertex) && self.in_cone(surfaces.points()[vertex], point) {
+                let (normal, distance) = direction(surfaces.points()[vertex], position);
+                self.push(
+                    point,
+                    Target::Vertex(vertex),
+                    Foot {
+                        xi: 0.0,
+                        normal,
+                        distance,
+                    },
+                    rows,
+                );
+            }
+        }
+    }
+
+    fn in_cone(&self, position: Vec2, vertex: usize) -> bool {
+        self.surfaces.edges_at(vertex).iter().all(|&edge| {
+            let end = usize::from(self.surfaces.edges()[edge as usize][0] as usize != vertex);
+            Beside::of(position, self.surfaces.ends(edge as usize)).is_beyond(end)
+        })
+    }
+
+    fn push(&self, point: usize, target: Target, foot: Foot, rows: &mut Vec<NearPair>) {
+        if foot.distance > self.within {
+            return;
+        }
+        let Foot {
+            xi,
+            normal,
+            distance,
+        } = foot;
+        let key = self.key(point, target);
+        rows.push(NearPair {
+            pair: self.index,
+            point,
+            target,
+            xi,
+            normal,
+            distance,
+            key,
+        });
+    }
+
+    fn key(&self, point: usize, target: Target) -> u64 {
+        let members = self.surfaces.members();
+        let (of, against) = if self.side == 0 {
+            (self.pair.one, self.pair.other)
+        } else {
+            (self.pair.other, self.pair.one)
+        };
+        let point = (point - members[of].points.start) as u64;
+        let (sort, target) = match target {
+            Target::Edge(edge) => (0, edge - members[against].edges.start),
+            Target::Vertex(vertex) => (1, vertex - members[against].points.start),
+        };
+        let words = [2 * self.side as u64 + sort, point, target as u64];
+        words.into_iter().fold(mix(0, self.pair.name), mix)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,47 @@
+//! What a feasible path asks of a flexible block: where it begins, how far its frame has turned, and to stop on the way.
+
+use super::flex_block::FlexBlock;
+use crate::body::{Frame, FrameMotion};
+use crate::math::{node_vec, rotation, set_node_vec};
+
+impl FlexBlock {
+    /// All positions at the beginning of the step, interleaved (m).
+    pub fn start_positions(&self) -> &[f64] {
+        &self.start_position
+    }
+
+    /// The frame at the beginning of the step.
+    pub fn start_frame(&self) -> &FrameMotion {
+        &self.start_frame
+    }
+
+    /// Angle of the frame at the iterate (rad).
+    pub fn angle(&self) -> f64 {
+        self.frame.angle
+    }
+
+    /// Puts the nodes where the step could go (m), with the velocities and accelerations that its forces lead to.
+    pub fn stop_at(&mut self, positions: &[f64]) {
+        self.position.copy_from_slice(positions);
+        if self.kind == Frame::Fixed {
+            let pairs = self.position.iter().zip(self.model.rest_positions());
+            for (u, (x, rest)) in self.displacement.iter_mut().zip(pairs) {
+                *u = x - rest;
+            }
+            return;
+        }
+        let centre = self
+            .arms
+            .centre(self.kind, &self.position, self.frame.centre);
+        let angle = self.arms.angle(&self.position, centre, self.frame.angle);
+        (self.frame.centre, self.frame.angle) = (centre, angle);
+        self.turn = rotation(angle);
+        let back = self.turn.transpose();
+        for node in 0..self.model.n_nodes() {
+            let arm = back * (node_vec(&self.position, node) - centre);
+            let reference = node_vec(&self.arms.reference, node);
+            set_node_vec(&mut self.displacement, node, arm - reference);
+        }
+        self.inertia = self.inertia_of(&self.displacement);
+    }
+}
