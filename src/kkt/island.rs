@@ -5,10 +5,12 @@ use super::delassus::RowDirection;
 use super::feasible::FeasiblePath;
 use super::impact::ImpactTreatment;
 use super::joint_rows::ActiveJoint;
+use super::sparse::Sparse;
 use crate::constraint::contact::{
     Candidate, ContactKey, ContactMemory, Kinematics, Owner, PlacedPart, Remembered, Scene,
 };
 use crate::constraint::joint::{JointGrip, JointRow};
+use crate::linalg::cone::ConeError;
 use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
@@ -33,6 +35,9 @@ pub enum KktError {
     /// The contact problem holds numbers that are not finite.
     #[error(transparent)]
     Contact(#[from] ComplementarityError),
+    /// The sparse contact problem holds numbers that are not finite.
+    #[error(transparent)]
+    Cone(#[from] ConeError),
 }
 
 /// Settings of a solve.
@@ -234,6 +239,12 @@ pub struct Island {
     pub(super) kinds: Vec<RowKind>,
     pub(super) free: Vec<f64>,
     pub(super) delassus: Vec<f64>,
+    /// What the multipliers move every row by, and its own share of that per unit.
+    pub(super) responses: Vec<f64>,
+    pub(super) diagonals: Vec<f64>,
+    /// How far every joint row of the problem gives way by itself.
+    pub(super) joint_gives: Vec<f64>,
+    pub(super) sparse: Sparse,
     pub(super) multipliers: Vec<f64>,
     /// What has acted already of the rows' multipliers.
     pub(super) acted: Vec<f64>,

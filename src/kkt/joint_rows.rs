@@ -88,6 +88,14 @@ impl ActiveJoint {
         }
     }
 
+    /// Share of the row's motion that a problem holds (-).
+    pub(super) fn share_of(&self, of: Response) -> f64 {
+        match of {
+            Response::Position => 1.0,
+            Response::Velocity | Response::Acceleration => self.share,
+        }
+    }
+
     /// Whether the row holds its velocity in this step.
     pub(super) fn is_closed(&self) -> bool {
         !matches!(self.kind, RowKind::Unilateral) || self.multiplier > 0.0

@@ -20,10 +20,23 @@ impl Island {
     /// Appends all movable joint rows to the position problem, gaps divided by `b0` and without the multipliers they were
     /// measured under.
     pub(super) fn add_joint_positions(&mut self, settings: &SolveSettings, has_new_rows: bool) {
-        self.joint_rows.clear();
-        if self.ties.is_empty() {
+        self.list_joint_positions(settings);
+        if self.joint_rows.is_empty() {
             return;
         }
+        self.expand_delassus(Response::Position, Rows::Kept);
+        self.take_out_joints(has_new_rows);
+        let (n, first) = (self.kinds.len(), self.rows.len());
+        for (slot, give) in self.joint_gives.iter().enumerate() {
+            let diagonal = (first + slot) * (n + 1);
+            self.delassus[diagonal] += give;
+        }
+    }
+
+    /// Lists all movable joint rows after those of the contacts, gaps divided by `b0`.
+    pub(super) fn list_joint_positions(&mut self, settings: &SolveSettings) {
+        self.joint_rows.clear();
+        self.joint_gives.clear();
         let movable = (0..self.ties.len()).filter(|&row| self.ties[row].is_movable);
         self.joint_rows.extend(movable);
         let b0 = settings.b0;
@@ -33,14 +46,21 @@ impl Island {
             self.free.push(tie.gap / b0);
             self.multipliers.push(tie.multiplier);
             self.statuses.push(tie.status);
+            self.joint_gives.push(tie.give / b0);
         }
-        self.expand_delassus(Response::Position, Rows::Kept);
-        self.take_out_joints(has_new_rows);
-        let (n, first) = (self.kinds.len(), self.rows.len());
-        for (slot, &row) in self.joint_rows.iter().enumerate() {
-            let diagonal = (first + slot) * (n + 1);
-            self.delassus[diagonal] += self.ties[row].give / b0;
+    }
+
+    /// `G A⁻¹ Gᵀ` of one joint row (1/kg).
+    pub(super) fn joint_mobility(&self, row: usize, of: Response, which: Rows) -> f64 {
+        let own = self.grips_of(row, which);
+        let mut sum = 0.0;
+        for at in own.0 {
+            for from in own.0.iter().filter(|from| from.block == at.block) {
+                let (along, turns) = (own.1, own.2);
+                sum += pair_mobility(&self.blocks, (at, along, turns), (from, along, turns), of);
+            }
         }
+        sum
     }
 
     /// Takes over the joints' part of a solution of the position problem.

@@ -130,29 +130,33 @@ impl Island {
         sum
     }
 
-    /// Appends the joint rows to the velocity problem.
-    pub(super) fn add_joint_velocities(&mut self, settings: &SolveSettings) {
+    /// Lists the joint rows of the velocity problem after those of the contacts.
+    pub(super) fn list_joint_velocities(&mut self, settings: &SolveSettings) {
         self.joint_rows.clear();
+        self.joint_gives.clear();
         for index in 0..self.ties.len() {
             let tie = &self.ties[index];
-            let Some((free, kind, _)) = self.velocity_law(tie, settings) else {
+            let Some((free, kind, give)) = self.velocity_law(tie, settings) else {
                 continue;
             };
             self.joint_rows.push(index);
+            self.joint_gives.push(give);
             self.free.push(free);
             self.kinds.push(kind);
         }
+    }
+
+    /// Adds the joint rows listed to the Delassus matrix of the contacts' rows, softened by their shares.
+    pub(super) fn expand_joints(&mut self, of: Response) {
         if self.joint_rows.is_empty() {
             return;
         }
-        self.expand_delassus(Response::Velocity, Rows::End);
+        self.expand_delassus(of, Rows::End);
         let (n, first) = (self.kinds.len(), self.rows.len());
-        for slot in 0..self.joint_rows.len() {
-            let tie = &self.ties[self.joint_rows[slot]];
+        for (slot, &row) in self.joint_rows.iter().enumerate() {
             let diagonal = (first + slot) * (n + 1);
-            if let Some((_, _, give)) = self.velocity_law(tie, settings) {
-                self.delassus[diagonal] = self.delassus[diagonal] / tie.share + give;
-            }
+            let share = self.ties[row].share;
+            self.delassus[diagonal] = self.delassus[diagonal] / share + self.joint_gives[slot];
         }
     }
 
@@ -259,9 +263,10 @@ impl Island {
         }
     }
 
-    /// Appends the joint rows to the acceleration problem, `G'a' = ` what turning asks for.
-    pub(super) fn add_joint_accelerations(&mut self) {
+    /// Lists the joint rows of the acceleration problem, `G'a' = ` what turning asks for.
+    pub(super) fn list_joint_accelerations(&mut self) {
         self.joint_rows.clear();
+        self.joint_gives.clear();
         for index in 0..self.ties.len() {
             let tie = &self.ties[index];
             let holds = matches!(tie.finish, Finish::Hold { .. } | Finish::Limit);
@@ -272,16 +277,9 @@ impl Island {
             }
             let acceleration = self.along(tie, |block, grip| self.total_acceleration(block, grip));
             self.joint_rows.push(index);
+            self.joint_gives.push(0.0);
             self.free.push(acceleration);
             self.kinds.push(RowKind::Bilateral);
-        }
-        if self.joint_rows.is_empty() {
-            return;
-        }
-        self.expand_delassus(Response::Acceleration, Rows::End);
-        let (n, first) = (self.kinds.len(), self.rows.len());
-        for (slot, &row) in self.joint_rows.iter().enumerate() {
-            self.delassus[(first + slot) * (n + 1)] /= self.ties[row].share;
         }
     }
 

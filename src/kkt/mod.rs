@@ -25,6 +25,7 @@ mod multipliers;
 mod partner;
 mod passage;
 mod position;
+mod sparse;
 mod velocity;
 
 pub use constraint_function::{ConstraintFunction, ContactMethod, EpsilonError};

@@ -2,7 +2,9 @@
 
 use super::delassus::{RowDirection, assemble, compliance};
 use super::island::{Island, IslandSummary, KktError, SolveSettings};
+use super::joint_system::Rows;
 use super::position::slip;
+use super::sparse::Asked;
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind};
 use crate::math::Vec2;
@@ -30,6 +32,20 @@ impl Island {
             }
         }
         self.position_rows(settings.b0);
+        let n_ties = self.ties.iter().filter(|tie| tie.is_movable).count();
+        if self.is_sparse(self.rows.len() + n_ties) {
+            self.list_joint_positions(settings);
+            let asked = Asked {
+                of: Response::Position,
+                which: Rows::Kept,
+                unit: settings.b0,
+            };
+            let outcome = self.solve_sparse(asked)?;
+            summary.n_pivots += outcome.n_factorizations;
+            summary.residual = outcome.residual;
+            self.read_multipliers();
+            return Ok(());
+        }
         let contacts = &self.contacts;
         let kinematics = |index: usize| &contacts[index].kinematics;
         assemble(
@@ -60,6 +76,12 @@ impl Island {
         })?;
         summary.n_pivots += outcome.n_pivots;
         summary.residual = outcome.residual;
+        self.read_multipliers();
+        Ok(())
+    }
+
+    /// Takes over a solution of the position problem.
+    fn read_multipliers(&mut self) {
         for (row, direction) in self.rows.iter().enumerate() {
             let contact = &mut self.contacts[direction.contact];
             let which = usize::from(matches!(self.kinds[row], RowKind::Friction { .. }));
@@ -67,7 +89,6 @@ impl Island {
             contact.status[which] = self.statuses[row];
         }
         self.take_joint_multipliers();
-        Ok(())
     }
 
     /// Rows of the working set, with gaps and slips divided by `b0` and the multipliers that they were measured under.

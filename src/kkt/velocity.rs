@@ -13,7 +13,9 @@
 
 use super::delassus::{RowDirection, assemble};
 use super::island::{Island, KktError, SolveSettings};
+use super::joint_system::Rows;
 use super::multipliers::prepare;
+use super::sparse::Asked;
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
 use crate::math::Vec2;
@@ -50,11 +52,11 @@ impl Island {
     pub(super) fn impact_rows(&mut self, settings: &SolveSettings) -> Result<bool, KktError> {
         self.kick_joints(settings);
         self.velocity_rows(settings);
-        self.add_joint_velocities(settings);
+        self.list_joint_velocities(settings);
         if self.kinds.is_empty() {
             return Ok(false);
         }
-        self.solve_rows()?;
+        self.solve_impulses(Response::Velocity)?;
         self.take_joint_impulses();
         self.read_impulses();
         self.clear_impulses();
@@ -168,16 +170,44 @@ impl Island {
                 self.push_row(index, tangent, velocity.dot(&tangent), kind);
             }
         }
+        self.list_acted(settings.b1);
+    }
+
+    /// Solves the rows listed, those of the contacts and those of the joints after them, for impulses (or forces, of accelerations).
+    fn solve_impulses(&mut self, of: Response) -> Result<(), KktError> {
+        let n = self.kinds.len();
+        self.acted.resize(n, 0.0);
+        if self.is_sparse(n) {
+            self.multipliers.clear();
+            self.multipliers.resize(n, 0.0);
+            let asked = Asked {
+                of,
+                which: Rows::End,
+                unit: 1.0,
+            };
+            self.solve_sparse(asked)?;
+            return Ok(());
+        }
         let contacts = &self.contacts;
         assemble(
             &self.blocks,
             &self.rows,
-            Response::Velocity,
+            of,
             |index| &contacts[index].kinematics,
             &mut self.delassus,
         );
         self.soften();
-        self.list_acted(settings.b1);
+        self.expand_joints(of);
+        self.solve_rows()?;
+        self.responses.clear();
+        self.diagonals.clear();
+        for row in 0..n {
+            let line = &self.delassus[row * n..(row + 1) * n];
+            let moved = line.iter().zip(&self.multipliers).map(|(w, p)| w * p);
+            self.responses.push(moved.sum());
+            self.diagonals.push(line[row]);
+        }
+        Ok(())
     }
 
     fn push_row(&mut self, contact: usize, direction: Vec2, free: f64, kind: RowKind) {
@@ -203,12 +233,8 @@ impl Island {
 
     /// Leaves impulses and the velocities of rows after them on the contacts.
     fn read_impulses(&mut self) {
-        let n = self.kinds.len();
         for (row, direction) in self.rows.iter().enumerate() {
-            let response = self.delassus[row * n..(row + 1) * n]
-                .iter()
-                .zip(&self.multipliers);
-            let softened: f64 = self.free[row] + response.map(|(w, p)| w * p).sum::<f64>();
+            let softened = self.free[row] + self.responses[row];
             let contact = &mut self.contacts[direction.contact];
             let which = usize::from(direction.direction != contact.kinematics.normal);
             let impulse = self.multipliers[row];
@@ -218,7 +244,7 @@ impl Island {
                 contact.holds_velocity().max(1e-12)
             };
             contact.parting[which] +=
-                softened - (1.0 - share) * self.delassus[row * n + row] * impulse;
+                softened - (1.0 - share) * self.diagonals[row] * impulse;
             contact.impulse[which] = impulse;
         }
     }
@@ -375,18 +401,9 @@ impl Island {
         if self.rows.is_empty() && !self.has_soft_joints() {
             return Ok(());
         }
-        let contacts = &self.contacts;
-        assemble(
-            &self.blocks,
-            &self.rows,
-            Response::Acceleration,
-            |index| &contacts[index].kinematics,
-            &mut self.delassus,
-        );
-        self.soften();
         self.list_acted(1.0);
-        self.add_joint_accelerations();
-        self.solve_rows()?;
+        self.list_joint_accelerations();
+        self.solve_impulses(Response::Acceleration)?;
         // What the stored acceleration loses will not act in the next step.
         let late = settings.dt - settings.b1;
         for (row, direction) in self.rows.iter().enumerate() {

@@ -118,6 +118,11 @@ impl BlockMatrix {
         &self.values
     }
 
+    /// All stored blocks, row after row, to be changed: the caller keeps the matrix symmetric.
+    pub(super) fn blocks_mut(&mut self) -> &mut [[f64; 4]] {
+        &mut self.values
+    }
+
     /// The place in [`blocks`](Self::blocks) where the row of `node` begins.
     pub(super) fn row_start(&self, node: usize) -> usize {
         self.pattern.row_start[node]
@@ -202,6 +207,24 @@ impl BlockMatrix {
         if let Some(block) = self.block_mut(node, node) {
             block[0] += mass_x;
             block[3] += mass_y;
+        }
+    }
+
+    /// Copies the rows of a smaller matrix over those from `first` on.
+    ///
+    /// # Panics
+    /// If a row stores another number of blocks.
+    pub fn assign_part(&mut self, first: usize, part: &Self) {
+        for node in 0..part.n_nodes() {
+            let row = self.pattern.row(first + node);
+            self.values[row].copy_from_slice(part.row_blocks(node));
+        }
+    }
+
+    /// Sets the diagonal of one node.
+    pub fn assign_diagonal(&mut self, node: usize, [x, y]: [f64; 2]) {
+        if let Some(block) = self.block_mut(node, node) {
+            *block = [x, 0.0, 0.0, y];
         }
     }
 

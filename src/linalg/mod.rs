@@ -3,3 +3,4 @@
 pub mod block_matrix;
 pub mod cholesky;
 pub mod complementarity;
+pub mod cone;

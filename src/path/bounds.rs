@@ -2,6 +2,17 @@
 
 use crate::math::Vec2;
 
+// One instruction each, unlike `f64::min` and `max`, which ask for numbers that are none.
+#[inline]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 /// A box, empty at first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
@@ -16,15 +27,23 @@ impl Bounds {
     };
 
     #[inline]
-    pub fn add(&mut self, point: Vec2) {
-        self.low = Vec2::new(self.low.x.min(point.x), self.low.y.min(point.y));
-        self.high = Vec2::new(self.high.x.max(point.x), self.high.y.max(point.y));
+    pub fn of([a, b]: [Vec2; 2]) -> Self {
+        Self {
+            low: Vec2::new(lesser(a.x, b.x), lesser(a.y, b.y)),
+            high: Vec2::new(greater(a.x, b.x), greater(a.y, b.y)),
+        }
     }
 
     #[inline]
     pub fn join(&mut self, other: &Self) {
-        self.add(other.low);
-        self.add(other.high);
+        self.low = Vec2::new(
+            lesser(self.low.x, other.low.x),
+            lesser(self.low.y, other.low.y),
+        );
+        self.high = Vec2::new(
+            greater(self.high.x, other.high.x),
+            greater(self.high.y, other.high.y),
+        );
     }
 
     #[inline]

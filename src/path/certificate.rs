@@ -4,7 +4,8 @@
 //! part of one lies as a whole inside or outside the other, so one point of it decides, by how often the other's edges go
 //! round it.
 
-use super::distance::foot_on;
+use super::bounds::Bounds;
+use super::distance::square_distance;
 use super::search::{Extent, Search};
 use super::{MemberPair, Path, Surfaces};
 use crate::math::Vec2;
@@ -108,7 +109,7 @@ struct Found {
     n_crossings: usize,
     n_touching: usize,
     n_contained: usize,
-    /// Least distance of the edges looked at (m).
+    /// Least distance of the edges looked at (m), infinite if there are none.
     distance: f64,
 }
 
@@ -130,8 +131,9 @@ fn check(search: &mut Search, surfaces: &Surfaces, [one, other]: [usize; 2], rea
         n_crossings: 0,
         n_touching: 0,
         n_contained: 0,
-        distance: f64::INFINITY,
+        distance: 0.0,
     };
+    let mut square = f64::INFINITY;
     search.edges_and_edges(
         Extent::of(surfaces),
         [one, other],
@@ -148,16 +150,21 @@ fn check(search: &mut Search, surfaces: &Surfaces, [one, other]: [usize; 2], rea
                 Some(_) => found.n_touching += 1,
                 None => {
                     // Edges that do not meet are closest at an end of one of them.
-                    let distance = ends.map(|end| foot_on(end, others).distance);
-                    let back = others.map(|end| foot_on(end, ends).distance);
-                    let least = distance[0].min(distance[1]).min(back[0].min(back[1]));
-                    found.distance = found.distance.min(least);
-                    return;
+                    for end in ends {
+                        square = square.min(square_distance(end, others));
+                    }
+                    for end in others {
+                        square = square.min(square_distance(end, ends));
+                    }
                 }
             }
-            found.distance = 0.0;
         },
     );
+    found.distance = if found.n_crossings + found.n_touching > 0 {
+        0.0
+    } else {
+        square.sqrt()
+    };
     if found.n_crossings + found.n_touching == 0 && one != other {
         for [of, around] in [[one, other], [other, one]] {
             found.n_contained += n_parts_inside(search, surfaces, of, around);
@@ -208,9 +215,9 @@ fn side(a: Vec2, b: Vec2, c: Vec2) -> f64 {
 
 /// Whether two edges, their ends included, share a point.
 fn meet([a, b]: [Vec2; 2], [c, d]: [Vec2; 2]) -> Option<Overlap> {
-    let within = |[a, b]: [Vec2; 2], p: Vec2| {
-        (a.x.min(b.x) <= p.x && p.x <= a.x.max(b.x)) && (a.y.min(b.y) <= p.y && p.y <= a.y.max(b.y))
-    };
+    if !Bounds::of([a, b]).meets(&Bounds::of([c, d])) {
+        return None;
+    }
     let of_others = [side(a, b, c), side(a, b, d)];
     if of_others[0] * of_others[1] > 0.0 {
         return None;
@@ -221,7 +228,7 @@ fn meet([a, b]: [Vec2; 2], [c, d]: [Vec2; 2]) -> Option<Overlap> {
     if opposite(of_others) && opposite(of_own) {
         return Some(Overlap::Crossing);
     }
-    let on = |side: f64, edge: [Vec2; 2], p: Vec2| side == 0.0 && within(edge, p);
+    let on = |side: f64, edge: [Vec2; 2], p: Vec2| side == 0.0 && Bounds::of(edge).contains(p);
     let touching = on(of_others[0], [a, b], c)
         || on(of_others[1], [a, b], d)
         || on(of_own[0], [c, d], a)

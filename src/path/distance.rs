@@ -9,9 +9,10 @@
 
 use crate::math::{Vec2, cross, perp};
 
-/// Bound of the rounding of coordinates in a projection, in ulp of the largest: differences, two products and a sum round
-/// some four times; 16 leaves room for joints whose own ends are rounded. The foot it misplaces is 1e-14 of the coordinates
-/// away, less than a millionth of the least distance that single-precision bodies can keep.
+/// Bound of the rounding of coordinates in a projection, in ulp of the largest: two coordinates of the point and four of the
+/// joint and its neighbours may be off by one each, and products and sums round again; 16 covers both components of them.
+/// The foot it misplaces is some 1e-14 of the coordinates away, less than a millionth of the least distance that bodies in
+/// single precision can keep.
 const PROJECTION_ULPS: f64 = 16.0;
 
 /// The point of an edge that is closest to a point.
@@ -30,7 +31,7 @@ pub struct Foot {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Beside {
     pub inside: [f64; 2],
-    bound: f64,
+    bounds: [f64; 2],
 }
 
 impl Beside {
@@ -39,22 +40,25 @@ impl Beside {
         let edge = b - a;
         let largest = |v: Vec2| v.x.abs().max(v.y.abs());
         let size = largest(point).max(largest(a)).max(largest(b));
+        let arms = [point - a, b - point];
+        // What an error of an ulp in every coordinate makes of a product of two differences.
+        let ulps = PROJECTION_ULPS * f64::EPSILON * size;
         Self {
-            inside: [(point - a).dot(&edge), (b - point).dot(&edge)],
-            bound: PROJECTION_ULPS * f64::EPSILON * size * largest(edge),
+            inside: arms.map(|arm| arm.dot(&edge)),
+            bounds: arms.map(|arm| ulps * (largest(edge) + largest(arm))),
         }
     }
 
     /// Whether the foot lies inside the edge, away from both ends.
     #[inline]
     pub fn is_inner(&self) -> bool {
-        self.inside[0] > self.bound && self.inside[1] > self.bound
+        self.inside[0] > self.bounds[0] && self.inside[1] > self.bounds[1]
     }
 
     /// Whether the point is beside an end (0 the start, 1 the end), as the cone of that vertex asks it.
     #[inline]
     pub fn is_beyond(&self, end: usize) -> bool {
-        self.inside[end] <= self.bound
+        self.inside[end] <= self.bounds[end]
     }
 }
 
@@ -78,6 +82,20 @@ pub fn foot_on(point: Vec2, ends: [Vec2; 2]) -> Foot {
         xi,
         normal,
         distance,
+    }
+}
+
+/// The square of the distance from an edge (m²).
+#[inline]
+pub(super) fn square_distance(point: Vec2, [a, b]: [Vec2; 2]) -> f64 {
+    let (edge, arm, back) = (b - a, point - a, b - point);
+    if arm.dot(&edge) <= 0.0 {
+        arm.norm_squared()
+    } else if back.dot(&edge) <= 0.0 {
+        back.norm_squared()
+    } else {
+        let area = cross(edge, arm);
+        area * area / edge.norm_squared()
     }
 }
 
@@ -122,7 +140,6 @@ pub(super) fn direction(from: Vec2, to: Vec2) -> (Vec2, f64) {
 #[cfg(test)]
 mod tests {
     use super::{Beside, foot_on};
-    use crate::math::Vec2;
     use crate::path::samples::Random;
 
     #[test]
@@ -136,7 +153,8 @@ mod tests {
             // The nearest sample is half a thousandth of the edge away: d² grows by the square of that.
             assert!(foot.distance <= brute + 1e-15);
             assert!(brute * brute - foot.distance * foot.distance <= 0.25e-6 * 8.0);
-            assert!((a + (b - a) * foot.xi + foot.normal * foot.distance - p).norm() < 1e-15 * 8.0);
+            assert!((super::square_distance(p, [a, b]).sqrt() - foot.distance).abs() < 4e-15);
+            assert!((a + (b - a) * foot.xi + foot.normal * foot.distance - p).norm() < 8e-15);
         }
     }
 

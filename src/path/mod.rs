@@ -15,6 +15,7 @@
 //! [`Path::time_of_impact`] how much of it is safe, [`Surfaces::advance`] goes that far; [`Path::certificate`] checks the
 //! result in exact arithmetic. No other part of the stage looks at geometry.
 
+mod advance;
 mod bounds;
 mod certificate;
 mod distance;
@@ -26,6 +27,8 @@ mod surfaces;
 
 #[cfg(test)]
 mod samples;
+#[cfg(test)]
+mod tests;
 
 pub use certificate::{Certificate, Overlap};
 pub use distance::{Foot, foot_on};
@@ -94,7 +97,7 @@ impl MemberPair {
 #[derive(Clone, Debug, Default)]
 pub struct Path {
     search: search::Search,
-    candidates: Vec<impact::Candidate>,
+    candidates: Vec<advance::Candidate>,
 }
 
 impl Path {

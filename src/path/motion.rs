@@ -53,7 +53,7 @@ pub(super) fn turned(v: Vec2, (sin, cos): (f64, f64)) -> Vec2 {
     Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }
 
-/// Where all points go.
+/// Where all points go. Positions must be finite: the searches pass over those that are not.
 #[derive(Clone, Debug, Default)]
 pub struct Motion {
     ends: Vec<Vec2>,

@@ -39,20 +39,22 @@ impl<'a> Extent<'a> {
     }
 
     #[inline]
-    fn bound_points<const N: usize>(&self, points: [usize; N]) -> Bounds {
-        let mut bounds = Bounds::EMPTY;
-        for point in points {
-            bounds.add(self.surfaces.points()[point]);
-            if let Some(motion) = self.motion {
-                bounds.add(motion.ends()[point]);
-            }
-        }
-        bounds
+    fn bound_point(&self, point: usize) -> Bounds {
+        let here = self.surfaces.points()[point];
+        Bounds::of([
+            here,
+            self.motion.map_or(here, |motion| motion.ends()[point]),
+        ])
     }
 
     #[inline]
     fn bound_edge(&self, edge: usize) -> Bounds {
-        self.bound_points(self.surfaces.edges()[edge].map(|end| end as usize))
+        let ends = self.surfaces.edges()[edge].map(|end| end as usize);
+        let mut bounds = Bounds::of(ends.map(|end| self.surfaces.points()[end]));
+        if let Some(motion) = self.motion {
+            bounds.join(&Bounds::of(ends.map(|end| motion.ends()[end])));
+        }
+        bounds
     }
 
     /// The boxes of a member: the whole, chunks of points, chunks of edges.
@@ -65,7 +67,7 @@ impl<'a> Extent<'a> {
         for (chunk, bounds) in of_points.iter_mut().enumerate() {
             *bounds = Bounds::EMPTY;
             for point in part(&member.points, chunk) {
-                bounds.join(&self.bound_points([point]));
+                bounds.join(&self.bound_point(point));
             }
             *bounds = bounds.grown(bulge);
             whole[0].join(bounds);
@@ -217,7 +219,7 @@ impl Search {
             }
             for index in part(range, chunk) {
                 let bounds = match sort {
-                    Sort::Points => extent.bound_points([index]),
+                    Sort::Points => extent.bound_point(index),
                     Sort::Edges => extent.bound_edge(index),
                 };
                 let bounds = bounds.grown(bulge);
@@ -285,38 +287,4 @@ fn sweep(left: &mut [Item], right: &mut [Item], found: &mut impl FnMut(usize, us
 }
 
 #[cfg(test)]
-mod tests {
-    use super::{Extent, Search};
-    use crate::path::samples::Random;
-    use crate::path::{MotionKind, Surfaces};
-
-    #[test]
-    fn the_search_finds_the_same_boxes_as_all_against_all() {
-        let mut random = Random::new(3);
-        for (n, m) in [(3, 4), (20, 7), (90, 140)] {
-            let mut surfaces = Surfaces::new();
-            let one = random.chain(n, 0.3);
-            let other = random.chain(m, 0.3);
-            surfaces.add_chain(MotionKind::Still, false, &one, false);
-            surfaces.add_chain(MotionKind::Flexible, false, &other, true);
-            let extent = Extent::of(&surfaces);
-            let mut search = Search::default();
-            search.refresh(extent);
-            let mut found = Vec::new();
-            search.points_and_edges(extent, [0, 1], 0.05, |point, edge| {
-                found.push((point, edge))
-            });
-            let mut all = Vec::new();
-            for point in surfaces.members()[0].points.clone() {
-                for edge in surfaces.members()[1].edges.clone() {
-                    let grown = extent.bound_points([point]).grown(0.05);
-                    if grown.meets(&extent.bound_edge(edge)) {
-                        all.push((point, edge));
-                    }
-                }
-            }
-            found.sort_unstable();
-            assert_eq!(found, all);
-        }
-    }
-}
+mod tests;

@@ -47,6 +47,7 @@ impl FlexPipeline {
             self.note_pressed(slot, step, sets, flex_bodies);
         }
         self.note_joints(step, flex_bodies);
+        self.note_quality(summary, sets, flex_bodies);
         let report = &mut self.report;
         report.gap_violation = report.gap_violation.max(summary.gap_violation);
         report.solver_residual = report.solver_residual.max(summary.residual);
@@ -153,6 +154,23 @@ impl FlexPipeline {
         }
     }
 
+    /// What the user knows an owner as.
+    pub(super) fn participant(
+        owner: Owner,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) -> Option<Participant> {
+        match owner {
+            Owner::Flex(index) => flex_bodies
+                .at_index(index)
+                .map(|(handle, _)| Participant::Flex(handle)),
+            Owner::Collider(index) => sets
+                .colliders
+                .get_unknown_gen(index)
+                .map(|(_, handle)| Participant::Rigid(handle)),
+        }
+    }
+
     fn contact_report(
         &self,
         contact: &ActiveContact,
@@ -161,15 +179,7 @@ impl FlexPipeline {
         flex_bodies: &FlexBodySet,
     ) -> Option<ContactReport> {
         let key = self.island.candidates[contact.candidate].key;
-        let participant = |owner| match owner {
-            Owner::Flex(index) => flex_bodies
-                .at_index(index)
-                .map(|(handle, _)| Participant::Flex(handle)),
-            Owner::Collider(index) => sets
-                .colliders
-                .get_unknown_gen(index)
-                .map(|(_, handle)| Participant::Rigid(handle)),
-        };
+        let participant = |owner| Self::participant(owner, sets, flex_bodies);
         let [normal_force, tangential_force] = contact.force(step.dt);
         Some(ContactReport {
             position: contact.kinematics.position.into(),

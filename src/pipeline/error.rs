@@ -1,5 +1,7 @@
 //! Why a step was not taken.
 
+use super::quality::Quality;
+use super::report::Participant;
 use crate::body::{AttachmentHandle, FlexBodyError, FlexBodyHandle};
 use crate::coupling::GatherError;
 use crate::integrator::IntegratorError;
@@ -48,6 +50,18 @@ pub enum StepError {
     /// The contact problem could not be solved.
     #[error(transparent)]
     Kkt(#[from] KktError),
+    /// The step is not solved, and the pipeline [refuses](super::FlexPipeline::refusing_unsolved) such steps.
+    #[error(
+        "the contacts of {bodies:?} are not solved within the budget ({quality:?}, overlap {overlap:e} m): shorten the step, or take the step and look at `StepReport::quality`"
+    )]
+    Unsolved {
+        /// What would have become of it.
+        quality: Quality,
+        /// Flexible bodies of the island, and who its worst contact belongs to.
+        bodies: Vec<Participant>,
+        /// Largest overlap at its contacts (m).
+        overlap: f64,
+    },
     /// The step length is negative, not finite or out of range.
     #[error(
         "the step length is {0:e} s: set `integration_parameters.dt` to zero or a positive number from 1e-8 s to 1e4 s"

@@ -50,6 +50,7 @@ pub struct FlexPipeline {
     pub(super) restitution_threshold: f64,
     pub(super) max_newton: usize,
     pub(super) insists: bool,
+    pub(super) refuses_unsolved: bool,
     pub(super) claims: Claims,
     pub(super) gatherer: Gatherer,
     pub(super) masters: Masters,
@@ -83,6 +84,7 @@ impl FlexPipeline {
             restitution_threshold: 0.5,
             max_newton: 20,
             insists: false,
+            refuses_unsolved: false,
             claims: Claims::default(),
             gatherer: Gatherer::default(),
             masters: Masters::default(),
@@ -390,6 +392,15 @@ impl FlexPipeline {
             .map_err(|error| self.name_bodies(error, flex_bodies))?;
         self.check_finite(flex_bodies)?;
         self.note(step, &summary, reserve, sets, flex_bodies);
+        if self.refuses_unsolved
+            && let Some(unsolved) = self.report.unsolved.pop()
+        {
+            return Err(StepError::Unsolved {
+                quality: unsolved.quality,
+                bodies: unsolved.bodies,
+                overlap: unsolved.overlap,
+            });
+        }
         clock.lap(&mut self.report.times.solve);
         Ok(())
     }

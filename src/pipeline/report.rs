@@ -1,5 +1,6 @@
 //! What a step tells about itself.
 
+use super::quality::{Quality, Unsolved};
 use crate::body::{AttachmentHandle, FlexBodyHandle};
 use crate::coupling::RapierSets;
 use crate::rapier::prelude::{ColliderHandle, ImpulseJointHandle, RigidBodyHandle};
@@ -139,6 +140,8 @@ pub struct StepReport {
     pub(super) energy: EnergyReport,
     pub(super) momentum: [f64; 2],
     pub(super) angular_momentum: f64,
+    pub(super) quality: Quality,
+    pub(super) unsolved: Vec<Unsolved>,
     pub(super) gap_violation: f64,
     pub(super) complementarity_residual: f64,
     pub(super) cone_residual: f64,
@@ -188,6 +191,16 @@ impl StepReport {
     /// Their angular momentum about the origin (N m s).
     pub fn angular_momentum(&self) -> f64 {
         self.angular_momentum
+    }
+
+    /// How well the step was solved, that of its worst island: look here first.
+    pub fn quality(&self) -> Quality {
+        self.quality
+    }
+
+    /// The islands that were not solved in one piece, with their bodies.
+    pub fn unsolved(&self) -> &[Unsolved] {
+        &self.unsolved
     }
 
     /// Largest overlap at the contacts that the step was solved with (m), measured where it ended, in `f64`; what was put into each other

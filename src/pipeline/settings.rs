@@ -46,6 +46,13 @@ impl FlexPipeline {
         self
     }
 
+    /// Refuses steps that are not [solved](super::Quality::Solved), with [`StepError::Unsolved`](super::StepError::Unsolved), instead of
+    /// taking them and telling of it in the report.
+    pub fn refusing_unsolved(mut self) -> Self {
+        self.refuses_unsolved = true;
+        self
+    }
+
     /// Approach velocity (m/s) below which restitution is ignored, so that resting contacts do not bounce.
     pub fn with_restitution_threshold(mut self, threshold: f64) -> Self {
         self.restitution_threshold = threshold;

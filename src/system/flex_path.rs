@@ -1,10 +1,34 @@
 //! What a feasible path asks of a flexible block: where it begins, how far its frame has turned, and to stop on the way.
 
 use super::flex_block::FlexBlock;
+use crate::linalg::block_matrix::BlockMatrix;
 use crate::body::{Frame, FrameMotion};
-use crate::math::{node_vec, rotation, set_node_vec};
+use crate::math::{Vec2, node_vec, rotation, set_node_vec};
 
 impl FlexBlock {
+    /// `A` in the frame, pinned dofs taken out.
+    pub fn effective(&self) -> &BlockMatrix {
+        &self.effective
+    }
+
+    /// Operations of one factorization of `A`, roughly.
+    pub fn factor_operations(&self) -> f64 {
+        let stored = self.factor.n_nonzeros() as f64;
+        stored * stored / self.n_dofs() as f64
+    }
+
+    /// A direction at a node in the frame, without what pins hold.
+    pub fn local_row(&self, node: usize, direction: Vec2) -> [f64; 2] {
+        let local = self.turn.transpose() * direction;
+        [0, 1].map(|axis| {
+            if self.is_fixed[2 * node + axis] {
+                0.0
+            } else {
+                local[axis]
+            }
+        })
+    }
+
     /// All positions at the beginning of the step, interleaved (m).
     pub fn start_positions(&self) -> &[f64] {
         &self.start_position

@@ -309,6 +309,17 @@ impl RigidBlock {
         self.current.angle += step[2];
     }
 
+    /// Along which of its dofs forces move the body.
+    pub fn moves_along(&self) -> [bool; 3] {
+        self.inverse_effective.map(|inverse| inverse > 0.0)
+    }
+
+    /// Diagonal of `A` (kg, kg, kg m²), one along dofs that do not move.
+    pub fn effective_mass(&self) -> [f64; 3] {
+        self.inverse_effective
+            .map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 1.0 })
+    }
+
     /// Puts the body where the step could go, with the velocity that its forces lead to.
     pub fn stop_at(&mut self, centre: Vec2, angle: f64) {
         self.current.centre = centre;

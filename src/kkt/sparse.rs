@@ -1,0 +1,456 @@
+//! The rows of an island as one sparse problem on friction cones, for islands of many contacts.
+//!
+//! Flexible blocks enter with their whole effective matrix, in their frames, free rigid ones as two nodes: the centre of mass, and the
+//! angle beside a dof that nothing moves. The dense problem of [`delassus`](super::delassus) costs the cube of the number of rows, this
+//! one little more than factorizing the bodies: operations decide.
+
+use super::delassus::compliance;
+use super::island::{Island, KktError};
+use super::joint_system::Rows;
+use crate::constraint::joint::{JointGrip, unit_wrench};
+use crate::fe::model::Model;
+use crate::linalg::block_matrix::BlockMatrix;
+use crate::linalg::complementarity::{RowKind, Status};
+use crate::linalg::cone::{
+    ConeEntry, ConeLaw, ConeOutcome, ConeProblem, ConeRow, ConeSolver, ConeStatus,
+};
+use crate::math::{Vec2, cross};
+use crate::system::{Block, Point, Response};
+use std::sync::Arc;
+
+/// Scalar rows up to which the dense problem is always the quicker one.
+const ALWAYS_DENSE: usize = 24;
+
+/// Factorizations that a sparse solve takes more often than the dense one takes its own: what makes them equal in the benches.
+const MORE_OFTEN: f64 = 4.0;
+
+/// What stands behind a block's nodes, to tell when the pattern changes.
+#[derive(Clone, Debug)]
+enum Shape {
+    None,
+    Rigid,
+    Flex(Arc<Model>),
+}
+
+impl Shape {
+    fn of(block: &Block) -> Self {
+        match block {
+            Block::Flex(block) => Self::Flex(Arc::clone(block.model())),
+            Block::Rigid(block) if block.is_prescribed() => Self::None,
+            Block::Rigid(_) => Self::Rigid,
+        }
+    }
+
+    fn is_that_of(&self, block: &Block) -> bool {
+        match (self, block) {
+            (Self::Flex(model), Block::Flex(block)) => Arc::ptr_eq(model, block.model()),
+            (Self::None, Block::Rigid(block)) => block.is_prescribed(),
+            (Self::Rigid, Block::Rigid(block)) => !block.is_prescribed(),
+            _ => false,
+        }
+    }
+}
+
+/// The sparse problem of an island, with its buffers.
+#[derive(Debug, Default)]
+pub(super) struct Sparse {
+    solver: ConeSolver,
+    matrix: Option<BlockMatrix>,
+    shapes: Vec<Shape>,
+    /// First node of every block.
+    first: Vec<usize>,
+    rows: Vec<ConeRow>,
+    entries: Vec<ConeEntry>,
+    /// Place of every cone row's first component among the scalar rows.
+    places: Vec<usize>,
+    load: Vec<f64>,
+    multipliers: Vec<[f64; 2]>,
+    slip: Vec<f64>,
+    answer: Vec<f64>,
+}
+
+/// What is asked of a sparse solve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    /// What responds.
+    pub of: Response,
+    /// Which rows of joints the forces act along.
+    pub which: Rows,
+    /// What a unit of `free` is worth in metres, or metres per second (s² or 1): `b0` for positions.
+    pub unit: f64,
+}
+
+impl Island {
+    /// Whether the scalar rows at hand are better solved as a sparse problem.
+    pub(super) fn is_sparse(&self, n_rows: usize) -> bool {
+        if n_rows <= ALWAYS_DENSE {
+            return false;
+        }
+        let mut operations = 0.0;
+        for block in &self.blocks {
+            match block {
+                Block::Flex(block) if block.is_explicit() => return false,
+                Block::Flex(block) => operations += block.factor_operations(),
+                // Links answer together, by no matrix of their own.
+                Block::Rigid(block) if block.link_response().is_some() => return false,
+                Block::Rigid(_) => operations += 64.0,
+            }
+        }
+        let n = n_rows as f64;
+        n * n * n / 3.0 > MORE_OFTEN * operations
+    }
+
+    /// Solves the rows, kinds and free motions at hand from the multipliers given; writes multipliers, statuses, responses and diagonals.
+    ///
+    /// `free` is what the rows are under the forces that act along [`ActiveContact::applied`](super::ActiveContact) and the joints'
+    /// applied rows if positions are asked for, and without forces of these rows otherwise.
+    pub(super) fn solve_sparse(&mut self, asked: Asked) -> Result<ConeOutcome, KktError> {
+        let mut sparse = std::mem::take(&mut self.sparse);
+        let outcome = self.state_sparse(&mut sparse, asked);
+        let outcome = outcome.and_then(|()| self.answer_sparse(&mut sparse, asked));
+        self.sparse = sparse;
+        outcome
+    }
+
+    fn state_sparse(&self, sparse: &mut Sparse, asked: Asked) -> Result<(), KktError> {
+        sparse.fill_matrix(&self.blocks);
+        sparse.rows.clear();
+        sparse.entries.clear();
+        sparse.places.clear();
+        sparse.multipliers.clear();
+        let mut row = 0;
+        while row < self.rows.len() {
+            let index = self.rows[row].contact;
+            let contact = &self.contacts[index];
+            let has_friction = matches!(self.kinds.get(row + 1), Some(RowKind::Friction { normal, .. }) if *normal == row);
+            let step = 1 + usize::from(has_friction);
+            if contact.is_lost && asked.of == Response::Position {
+                row += step;
+                continue;
+            }
+            let kinematics = &contact.kinematics;
+            let (normal, tangent) = (kinematics.normal, kinematics.tangent());
+            let first = sparse.entries.len() as u32;
+            for a in kinematics.attachments() {
+                let directions = [a.weight * normal, a.weight * tangent];
+                sparse.grip(&self.blocks, a.block, (a.grip.point, a.grip.lever), directions);
+            }
+            let own = compliance(&self.blocks, kinematics, kinematics, asked.of);
+            let scale = own.map_or([0.0; 2], |own| {
+                [normal, tangent].map(|along| along.dot(&(own * along)).max(0.0))
+            });
+            let softness = match asked.of {
+                Response::Position => 0.0,
+                _ if contact.is_hard => 0.0,
+                _ => {
+                    let share = contact.holds_velocity().max(1e-12);
+                    (1.0 - share) / share
+                }
+            };
+            let friction = match self.kinds.get(row + 1) {
+                Some(RowKind::Friction { coefficient, .. }) if has_friction => *coefficient,
+                _ => 0.0,
+            };
+            let second = |values: &[f64]| if has_friction { values[row + 1] } else { 0.0 };
+            let acted = if self.acted.is_empty() || asked.of == Response::Position {
+                [0.0; 2]
+            } else {
+                [self.acted[row], second(&self.acted)]
+            };
+            sparse.rows.push(ConeRow {
+                entries: (first, sparse.entries.len() as u32),
+                law: ConeLaw::Contact { friction },
+                free: [self.free[row], second(&self.free)],
+                give: scale.map(|own| softness * own),
+                acted,
+                scale,
+            });
+            sparse.places.push(row);
+            sparse
+                .multipliers
+                .push([self.multipliers[row], second(&self.multipliers)]);
+            row += step;
+        }
+        for slot in 0..self.joint_rows.len() {
+            let place = self.rows.len() + slot;
+            let tie = &self.ties[self.joint_rows[slot]];
+            let grips = match asked.which {
+                Rows::Kept => &self.joint_grips,
+                Rows::End => &self.end_grips,
+            };
+            let direction = match asked.which {
+                Rows::Kept => tie.direction,
+                Rows::End => tie.end,
+            };
+            let is_turn = tie.row.measure.is_turn();
+            let first = sparse.entries.len() as u32;
+            for grip in &grips[tie.row.grips.0..tie.row.grips.1] {
+                sparse.joint_grip(&self.blocks, grip, direction, is_turn);
+            }
+            let scale = self.joint_mobility(self.joint_rows[slot], asked.of, asked.which);
+            sparse.rows.push(ConeRow {
+                entries: (first, sparse.entries.len() as u32),
+                law: match self.kinds[place] {
+                    RowKind::Bilateral => ConeLaw::Bilateral,
+                    RowKind::Box { low, high } => ConeLaw::Box { low, high },
+                    _ => ConeLaw::Unilateral,
+                },
+                free: [self.free[place], 0.0],
+                give: [self.joint_gives[slot] + (1.0 / tie.share_of(asked.of) - 1.0) * scale, 0.0],
+                acted: [0.0; 2],
+                scale: [scale, 0.0],
+            });
+            sparse.places.push(place);
+            sparse.multipliers.push([self.multipliers[place], 0.0]);
+        }
+        sparse.load.clear();
+        sparse.load.resize(2 * sparse.n_nodes(), 0.0);
+        if asked.of == Response::Position {
+            self.load_applied(sparse);
+        }
+        Ok(())
+    }
+
+    /// Takes the forces that act already out of the load: `r = -G₀ᵀ p`.
+    fn load_applied(&self, sparse: &mut Sparse) {
+        sparse.scratch_begin();
+        for contact in &self.contacts {
+            let [normal, tangent] = contact.multiplier;
+            let force = -(normal * contact.applied.normal + tangent * contact.applied.tangent());
+            for a in contact.applied.attachments() {
+                let grip = (a.grip.point, a.grip.lever);
+                sparse.push_load(&self.blocks, a.block, grip, a.weight * force);
+            }
+        }
+        for tie in &self.ties {
+            let is_turn = tie.row.measure.is_turn();
+            for grip in &self.applied_grips[tie.row.grips.0..tie.row.grips.1] {
+                match (&self.blocks[grip.block], grip.point) {
+                    (Block::Flex(_), Point::Node(_)) => {
+                        let force = -tie.multiplier * grip.weight * tie.applied;
+                        sparse.push_load(&self.blocks, grip.block, (grip.point, grip.lever), force);
+                    }
+                    _ => {
+                        let wrench = unit_wrench(grip, tie.applied, is_turn);
+                        let wrench = wrench.map(|value| -tie.multiplier * value);
+                        sparse.push_wrench(&self.blocks, grip.block, wrench);
+                    }
+                }
+            }
+        }
+    }
+
+    fn answer_sparse(
+        &mut self,
+        sparse: &mut Sparse,
+        asked: Asked,
+    ) -> Result<ConeOutcome, KktError> {
+        let Sparse {
+            solver,
+            matrix: Some(matrix),
+            rows,
+            entries,
+            places,
+            load,
+            multipliers,
+            slip,
+            answer,
+            ..
+        } = sparse
+        else {
+            return Ok(ConeOutcome::default());
+        };
+        // Gaps that a slip's dilation leaves are guarded by the path; a millionth of the margin is beyond what it accepts.
+        solver.settings.gap_tolerance = 1e-3 * self.path.least_margin().min(1e-3) / asked.unit;
+        solver.settings.tolerance = 1e-9;
+        let problem = ConeProblem {
+            matrix,
+            load,
+            rows,
+            entries,
+        };
+        slip.clear();
+        slip.resize(rows.len(), 0.0);
+        let outcome = solver.solve(&problem, multipliers, slip, answer)?;
+        let n = self.kinds.len();
+        self.multipliers.fill(0.0);
+        self.statuses.clear();
+        self.statuses.resize(n, Status::Open);
+        self.responses.clear();
+        self.responses.resize(n, 0.0);
+        self.diagonals.clear();
+        self.diagonals.resize(n, 0.0);
+        for (slot, row) in rows.iter().enumerate() {
+            let place = places[slot];
+            let status = match solver.status()[slot] {
+                ConeStatus::Open => Status::Open,
+                ConeStatus::Stick => Status::Stick,
+                ConeStatus::SlipPositive => Status::SlipPositive,
+                ConeStatus::SlipNegative => Status::SlipNegative,
+            };
+            let motion = problem.motion(row, answer);
+            let is_contact = matches!(row.law, ConeLaw::Contact { .. });
+            let n_components = match row.law {
+                ConeLaw::Contact { friction } if friction > 0.0 => 2,
+                _ => 1,
+            };
+            for k in 0..n_components {
+                self.multipliers[place + k] = multipliers[slot][k];
+                self.responses[place + k] = motion[k] + row.give[k] * multipliers[slot][k];
+                self.diagonals[place + k] = row.scale[k] + row.give[k];
+                let pressed = if status == Status::Open {
+                    Status::Open
+                } else {
+                    Status::Stick
+                };
+                self.statuses[place + k] = if is_contact && k == 0 { pressed } else { status };
+            }
+        }
+        Ok(outcome)
+    }
+}
+
+impl Sparse {
+    fn n_nodes(&self) -> usize {
+        self.matrix.as_ref().map_or(0, BlockMatrix::n_nodes)
+    }
+
+    fn scratch_begin(&mut self) {
+        self.load.fill(0.0);
+    }
+
+    /// Writes the bodies' matrices, in a new pattern if the bodies are others.
+    fn fill_matrix(&mut self, blocks: &[Block]) {
+        let is_same = self.shapes.len() == blocks.len()
+            && self.matrix.is_some()
+            && self.shapes.iter().zip(blocks).all(|(shape, block)| shape.is_that_of(block));
+        if !is_same {
+            self.lay_out(blocks);
+        }
+        let Some(matrix) = &mut self.matrix else {
+            return;
+        };
+        for (block, &first) in blocks.iter().zip(&self.first) {
+            match block {
+                Block::Flex(block) => matrix.assign_part(first, block.effective()),
+                Block::Rigid(block) if !block.is_prescribed() => {
+                    let own = block.effective_mass();
+                    matrix.assign_diagonal(first, [own[0], own[1]]);
+                    matrix.assign_diagonal(first + 1, [own[2], 1.0]);
+                }
+                Block::Rigid(_) => {}
+            }
+        }
+    }
+
+    fn lay_out(&mut self, blocks: &[Block]) {
+        self.shapes.clear();
+        self.shapes.extend(blocks.iter().map(Shape::of));
+        self.first.clear();
+        let mut n_nodes = 0;
+        let mut pairs: Vec<[usize; 2]> = Vec::new();
+        for block in blocks {
+            self.first.push(n_nodes);
+            match block {
+                Block::Flex(block) => {
+                    let part = block.effective();
+                    for node in 0..part.n_nodes() {
+                        let later = part.neighbours(node).iter().filter(|&&other| other as usize >= node);
+                        pairs.extend(later.map(|&other| [n_nodes + node, n_nodes + other as usize]));
+                    }
+                    n_nodes += part.n_nodes();
+                }
+                Block::Rigid(block) if !block.is_prescribed() => n_nodes += 2,
+                Block::Rigid(_) => {}
+            }
+        }
+        let cells = pairs.iter().map(|pair| &pair[..]);
+        self.matrix = Some(BlockMatrix::from_cells(n_nodes, cells));
+    }
+
+    /// Adds what a point of a block contributes to a row along two directions.
+    fn grip(
+        &mut self,
+        blocks: &[Block],
+        block: usize,
+        (point, lever): (Point, Vec2),
+        [normal, tangent]: [Vec2; 2],
+    ) {
+        let first = self.first[block] as u32;
+        match (&blocks[block], point) {
+            (Block::Flex(body), Point::Node(node)) => {
+                let [normal, tangent] = [normal, tangent].map(|v| body.local_row(node, v));
+                self.entries.push(ConeEntry {
+                    node: first + node as u32,
+                    normal,
+                    tangent,
+                });
+            }
+            (Block::Rigid(body), _) => {
+                let wrenches = [normal, tangent].map(|v| [v.x, v.y, cross(lever, v)]);
+                self.wrench(body.moves_along(), first, wrenches);
+            }
+            _ => {}
+        }
+    }
+
+    fn wrench(&mut self, moves: [bool; 3], first: u32, wrenches: [[f64; 3]; 2]) {
+        let [normal, tangent] = wrenches.map(|wrench| {
+            std::array::from_fn::<f64, 3, _>(|i| if moves[i] { wrench[i] } else { 0.0 })
+        });
+        if moves == [false; 3] {
+            return;
+        }
+        self.entries.push(ConeEntry {
+            node: first,
+            normal: [normal[0], normal[1]],
+            tangent: [tangent[0], tangent[1]],
+        });
+        self.entries.push(ConeEntry {
+            node: first + 1,
+            normal: [normal[2], 0.0],
+            tangent: [tangent[2], 0.0],
+        });
+    }
+
+    fn joint_grip(&mut self, blocks: &[Block], grip: &JointGrip, direction: Vec2, is_turn: bool) {
+        match &blocks[grip.block] {
+            Block::Flex(_) => {
+                let along = grip.weight * direction;
+                self.grip(blocks, grip.block, (grip.point, grip.lever), [along, Vec2::zeros()]);
+            }
+            Block::Rigid(body) => {
+                let wrench = unit_wrench(grip, direction, is_turn);
+                let first = self.first[grip.block] as u32;
+                self.wrench(body.moves_along(), first, [wrench, [0.0; 3]]);
+            }
+        }
+    }
+
+    fn push_load(&mut self, blocks: &[Block], block: usize, (point, lever): (Point, Vec2), force: Vec2) {
+        match (&blocks[block], point) {
+            (Block::Flex(body), Point::Node(node)) => {
+                let at = 2 * (self.first[block] + node);
+                let local = body.local_row(node, force);
+                self.load[at] += local[0];
+                self.load[at + 1] += local[1];
+            }
+            (Block::Rigid(_), _) => {
+                self.push_wrench(blocks, block, [force.x, force.y, cross(lever, force)]);
+            }
+            _ => {}
+        }
+    }
+
+    fn push_wrench(&mut self, blocks: &[Block], block: usize, wrench: [f64; 3]) {
+        let Block::Rigid(body) = &blocks[block] else {
+            return;
+        };
+        let at = 2 * self.first[block];
+        for (i, moves) in body.moves_along().into_iter().enumerate() {
+            if moves {
+                self.load[at + i] += wrench[i];
+            }
+        }
+    }
+}

@@ -1,0 +1,244 @@
+//! Contact with friction, joints and motors between many bodies: one sparse problem on the friction cones.
+//!
+//! ```text
+//! A a = r + Gᵀ p,      w = free + G a + give p,      P = p + acted
+//! ```
+//!
+//! with a law between `w` and `P` on every row ([`ConeLaw`]). Friction is Coulomb's: De Saxcé's dilation `mu sigma` with
+//! `sigma = |w_t|` makes the law of a contact a projection on its cone, and leaves no gap under a contact that slides.
+//!
+//! All solvers work on `H = A + Gᵀ S G`, as sparse as the graph of bodies that touch:
+//!
+//! 1. proximal steps from the last answer, by Newton's method ([`proximal`]);
+//! 2. if that takes more than a few factorizations, an interior point ([`interior`]),
+//! 3. whose forces proximal steps finish;
+//! 4. the budget spent, projected gradients ([`sweep`]), which obey every bound and bring no energy, but leave gaps.
+//!
+//! Whatever the solver, `a` is made from the forces handed back, so that `A a = r + Gᵀ p` to rounding.
+//!
+//! ```
+//! use foil2d::linalg::block_matrix::BlockMatrix;
+//! use foil2d::linalg::cone::{ConeEntry, ConeLaw, ConeProblem, ConeRow, ConeSolver};
+//!
+//! // a point of 4 kg falls at 3 m/s and slides at 10 m/s over rough ground
+//! let mut mass = BlockMatrix::from_cells(1, [[0]].iter().map(|cell| &cell[..]));
+//! mass.add_diagonal(0, [4.0, 4.0]);
+//! let row = ConeRow {
+//!     entries: (0, 1),
+//!     law: ConeLaw::Contact { friction: 0.5 },
+//!     free: [-3.0, 10.0],
+//!     give: [0.0; 2],
+//!     acted: [0.0; 2],
+//!     scale: [0.25; 2],
+//! };
+//! let entry = ConeEntry { node: 0, normal: [0.0, 1.0], tangent: [1.0, 0.0] };
+//! let problem = ConeProblem { matrix: &mass, load: &[0.0; 2], rows: &[row], entries: &[entry] };
+//! let (mut impulses, mut slip, mut change) = ([[0.0; 2]], [0.0], Vec::new());
+//! let outcome = ConeSolver::default().solve(&problem, &mut impulses, &mut slip, &mut change)?;
+//! assert!(outcome.is_solved);
+//! assert!((impulses[0][0] - 12.0).abs() < 1e-7 && (impulses[0][1] + 6.0).abs() < 1e-7);
+//! # Ok::<(), foil2d::linalg::cone::ConeError>(())
+//! ```
+
+mod interior;
+mod law;
+mod problem;
+mod proximal;
+mod reduced;
+mod slip;
+mod sweep;
+mod system;
+#[cfg(test)]
+mod tests;
+
+pub use law::ConeStatus;
+pub use problem::{ConeEntry, ConeError, ConeLaw, ConeProblem, ConeRow};
+
+use interior::Interior;
+use law::project;
+use proximal::{Ending, Proximal};
+use reduced::Reduced;
+use sweep::Sweep;
+use system::System;
+
+/// Penalties of the proximal steps, times `W_ii`: warm, where few steps are wanted, and after the interior point, where
+/// a soft one finds its piece sooner. Stiffer ones only speed up the last digits.
+const WARM: [f64; 2] = [1e4, 1e6];
+const POLISH: [f64; 3] = [1e2, 1e4, 1e6];
+/// Factorizations allowed to warm proximal steps; few if they have failed the last time.
+const N_WARM: [usize; 2] = [12, 3];
+
+/// What is good enough, and how much work it may take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConeSettings {
+    /// The natural-map residual to reach, relative to the largest force (-).
+    pub tolerance: f64,
+    /// The gap that dilation may leave under a sliding contact, in the unit of `w`.
+    pub gap_tolerance: f64,
+    /// The part of its slip that sigma may miss (-), which leaves a gap of `mu` times that slip.
+    pub slip_tolerance: f64,
+    /// Factorizations of `H` in one call.
+    pub max_factorizations: usize,
+}
+
+impl Default for ConeSettings {
+    fn default() -> Self {
+        Self { tolerance: 1e-9, gap_tolerance: 0.0, slip_tolerance: 1e-3, max_factorizations: 100 }
+    }
+}
+
+/// What a solve did and how good the answer is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ConeOutcome {
+    /// The natural map of all rows with the slips handed back, in square roots of energy (`sqrt(W_ii) P`), relative to the largest force (-).
+    pub residual: f64,
+    /// The gap that dilation leaves, `max mu |sigma - |w_t||`, in the unit of `w`.
+    pub dilation: f64,
+    /// Factorizations of `H`.
+    pub n_factorizations: usize,
+    /// Analyses of a new pattern.
+    pub n_analyses: usize,
+    /// Whether both are within the settings.
+    pub is_solved: bool,
+    /// Whether the interior point was asked.
+    pub used_interior_point: bool,
+}
+
+/// Forces and the motion they cause, in whole multipliers.
+#[derive(Debug, Clone, Default)]
+struct State {
+    forces: Vec<[f64; 2]>,
+    slip: Vec<f64>,
+    a: Vec<f64>,
+    status: Vec<ConeStatus>,
+}
+
+/// Solves cone problems of any size; holds factors and scratch, which only grow.
+#[derive(Debug, Clone, Default)]
+pub struct ConeSolver {
+    /// What is good enough.
+    pub settings: ConeSettings,
+    is_hard: bool,
+    reduced: Reduced,
+    system: System,
+    proximal: Proximal,
+    interior: Interior,
+    sweep: Sweep,
+    state: State,
+    start: Vec<[f64; 2]>,
+    start_slip: Vec<f64>,
+}
+
+impl ConeSolver {
+    /// Makes a solver without scratch; the first solve of each pattern reserves it.
+    pub fn new(settings: ConeSettings) -> Self {
+        Self { settings, ..Self::default() }
+    }
+
+    /// Where each row of the last problem stands.
+    pub fn status(&self) -> &[ConeStatus] {
+        &self.state.status
+    }
+
+    /// Solves the problem as well as it can; the outcome says how well.
+    ///
+    /// Rows that contradict each other are not solved: they end in a compromise with a residual.
+    ///
+    /// - `multipliers`: `p` of the last step or zeros, then the answer, normal and tangential, one pair per row.
+    /// - `slip`: `sigma` of the last step or zeros, then that of the answer, one per row.
+    /// - `acceleration`: overwritten with `a`, length `n_dofs`.
+    ///
+    /// # Errors
+    /// If lengths disagree, a number is not finite, or `A` has no factor; the arguments are then left as they were.
+    pub fn solve(&mut self, problem: &ConeProblem, multipliers: &mut [[f64; 2]], slip: &mut [f64], acceleration: &mut Vec<f64>) -> Result<ConeOutcome, ConeError> {
+        let n_rows = problem.rows.len();
+        for (what, found) in [("the multipliers", multipliers.len()), ("the slips", slip.len())] {
+            if found != n_rows {
+                return Err(ConeError::Length { what, found, expected: n_rows });
+            }
+        }
+        problem.check()?;
+        let (n_factorizations, n_analyses) = (self.system.n_factorizations, self.system.n_analyses);
+        self.system.prepare(problem)?;
+        self.reduced.restate(problem);
+        self.warm_start(problem, multipliers, slip);
+        let used_interior_point = self.improve(problem)?;
+        let outcome = self.hand_back(problem, multipliers, slip);
+        acceleration.clone_from(&self.state.a);
+        Ok(ConeOutcome {
+            n_factorizations: self.system.n_factorizations - n_factorizations,
+            n_analyses: self.system.n_analyses - n_analyses,
+            used_interior_point,
+            ..outcome
+        })
+    }
+
+    /// Takes over what the caller remembers, as far as the laws admit it.
+    fn warm_start(&mut self, problem: &ConeProblem, multipliers: &[[f64; 2]], slip: &[f64]) {
+        self.start.clear();
+        self.start_slip.clear();
+        for (index, row) in problem.rows.iter().enumerate() {
+            let acted = row.acted();
+            let is_usable = self.reduced.resistance[index] > 0.0 && multipliers[index].iter().all(|value| value.is_finite());
+            let given = if is_usable { multipliers[index] } else { [0.0; 2] };
+            self.start.push(project(row, [given[0] + acted[0], given[1] + acted[1]], [1.0; 2]).0);
+            let is_usable = row.has_tangent() && slip[index].is_finite();
+            self.start_slip.push(if is_usable { slip[index].abs() } else { 0.0 });
+        }
+        self.state.status.resize(problem.rows.len(), ConeStatus::Open);
+        self.restart(problem);
+    }
+
+    fn restart(&mut self, problem: &ConeProblem) {
+        self.state.forces.clone_from(&self.start);
+        self.state.slip.clone_from(&self.start_slip);
+        self.move_by_forces(problem);
+    }
+
+    /// `a = A⁻¹ (load + Gᵀ P)`.
+    fn move_by_forces(&mut self, problem: &ConeProblem) {
+        self.state.a.resize(problem.matrix.n_dofs(), 0.0);
+        self.reduced.total_load(problem, &self.state.forces, &mut self.state.a);
+        self.system.solve_bodies(&mut self.state.a);
+    }
+
+    /// Runs one solver after the other until one succeeds; whether the interior point was among them.
+    fn improve(&mut self, problem: &ConeProblem) -> Result<bool, ConeError> {
+        let limit = self.system.n_factorizations + self.settings.max_factorizations;
+        let n_warm = N_WARM[usize::from(self.is_hard)].min(self.settings.max_factorizations);
+        let ending = self.approach(problem, &WARM, n_warm)?;
+        self.is_hard = ending == Ending::Spent;
+        if ending != Ending::Spent {
+            return Ok(false);
+        }
+        self.restart(problem);
+        let n_left = limit - self.system.n_factorizations.min(limit);
+        self.interior.run(problem, &self.reduced, &mut self.system, &mut self.state, n_left);
+        let n_left = limit - self.system.n_factorizations.min(limit);
+        if self.approach(problem, &POLISH, n_left)? == Ending::Spent {
+            self.restart(problem);
+            self.sweep.run(problem, &self.reduced, &mut self.system, &mut self.state);
+        }
+        Ok(true)
+    }
+
+    fn approach(&mut self, problem: &ConeProblem, levels: &[f64], n_allowed: usize) -> Result<Ending, ConeError> {
+        let Self { proximal, reduced, system, state, settings, .. } = self;
+        Ok(proximal.run(problem, reduced, system, state, settings, levels, n_allowed)?.0)
+    }
+
+    /// Makes `a` from the forces, judges both, and writes multipliers and slips.
+    fn hand_back(&mut self, problem: &ConeProblem, multipliers: &mut [[f64; 2]], slip: &mut [f64]) -> ConeOutcome {
+        self.move_by_forces(problem);
+        let (settings, state) = (&self.settings, &mut self.state);
+        let measure = self.reduced.measure(problem, &state.a, &state.forces, &state.slip, settings, &mut state.status);
+        for (index, row) in problem.rows.iter().enumerate() {
+            let acted = row.acted();
+            multipliers[index] = [0, 1].map(|k| state.forces[index][k] - acted[k]);
+        }
+        slip.copy_from_slice(&state.slip);
+        // rounding may leave a little more than the iterations saw
+        let is_solved = measure.residual <= 2.0 * settings.tolerance && !measure.is_dilated;
+        ConeOutcome { residual: measure.residual, dilation: measure.dilation, is_solved, ..ConeOutcome::default() }
+    }
+}

@@ -1,0 +1,204 @@
+//! `H = A + Gᵀ S G` in one sparse factor, and the factor of `A` alone.
+
+use super::problem::{ConeEntry, ConeProblem};
+use crate::linalg::block_matrix::BlockMatrix;
+use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
+
+/// How the factor at hand fits the weights asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fit {
+    /// It is the factor of the same numbers.
+    Exact,
+    /// The weights are the same, but the matrix or the geometry has moved since.
+    Near,
+    /// It belongs to other weights.
+    None,
+}
+
+/// What is known once the pattern is.
+#[derive(Debug, Clone)]
+struct Analysis {
+    /// The values of `A` of which `bodies` is the factor, if `has_bodies`.
+    matrix: BlockMatrix,
+    bodies: BlockCholesky,
+    hull: BlockMatrix,
+    factor: BlockCholesky,
+    /// The place in `hull` of every block of `A`.
+    matrix_places: Vec<u32>,
+}
+
+/// Both factors, with an exact record of the numbers they were made of.
+#[derive(Debug, Clone, Default)]
+pub(super) struct System {
+    analysis: Option<Box<Analysis>>,
+    has_bodies: bool,
+    /// The place in `hull` of every pair of entries of every row, row after row.
+    row_places: Vec<u32>,
+    nodes: Vec<u32>,
+    spans: Vec<(u32, u32)>,
+    has_factor: bool,
+    weights: Vec<[f64; 3]>,
+    entries: Vec<ConeEntry>,
+    values: Vec<[f64; 4]>,
+    pub n_factorizations: usize,
+    pub n_analyses: usize,
+}
+
+impl System {
+    /// Makes the pattern cover the rows and the factor of `A` fit its values.
+    pub fn prepare(&mut self, problem: &ConeProblem) -> Result<(), CholeskyError> {
+        let has_pattern = self.analysis.as_ref().is_some_and(|analysis| analysis.matrix.has_pattern_of(problem.matrix));
+        if !has_pattern || !self.place_rows(problem) {
+            self.analyze(problem, has_pattern);
+            self.place_rows(problem);
+        }
+        let Some(analysis) = &mut self.analysis else { return Ok(()) };
+        if !self.has_bodies || analysis.matrix.blocks() != problem.matrix.blocks() {
+            self.has_bodies = false;
+            analysis.matrix.blocks_mut().copy_from_slice(problem.matrix.blocks());
+            analysis.bodies.factorize(problem.matrix)?;
+            self.has_bodies = true;
+        }
+        Ok(())
+    }
+
+    /// Couples all nodes of each row, beside those that `A` couples.
+    fn analyze(&mut self, problem: &ConeProblem, has_pattern: bool) {
+        let matrix = problem.matrix;
+        let mut members: Vec<usize> = Vec::new();
+        let mut ends = vec![0];
+        for node in 0..matrix.n_nodes() {
+            for &other in matrix.neighbours(node).iter().filter(|&&other| other as usize > node) {
+                members.extend([node, other as usize]);
+                ends.push(members.len());
+            }
+        }
+        for row in problem.rows {
+            members.extend(problem.entries_of(row).iter().map(|entry| entry.node as usize));
+            ends.push(members.len());
+        }
+        let hull = BlockMatrix::from_cells(matrix.n_nodes(), ends.windows(2).map(|ends| &members[ends[0]..ends[1]]));
+        let mut matrix_places = Vec::with_capacity(matrix.blocks().len());
+        for node in 0..matrix.n_nodes() {
+            matrix_places.extend(matrix.neighbours(node).iter().filter_map(|&other| place(&hull, node as u32, other)));
+        }
+        let factor = BlockCholesky::analyze(&hull);
+        self.spans.clear();
+        self.has_factor = false;
+        self.n_analyses += 1;
+        match &mut self.analysis {
+            Some(analysis) if has_pattern => {
+                (analysis.hull, analysis.factor, analysis.matrix_places) = (hull, factor, matrix_places);
+            }
+            slot => {
+                self.has_bodies = false;
+                let (matrix, bodies) = (matrix.clone(), BlockCholesky::analyze(matrix));
+                *slot = Some(Box::new(Analysis { matrix, bodies, hull, factor, matrix_places }));
+            }
+        }
+    }
+
+    /// Finds the blocks of every row; false if the pattern lacks one.
+    fn place_rows(&mut self, problem: &ConeProblem) -> bool {
+        let Some(analysis) = &self.analysis else { return false };
+        let spans = problem.rows.iter().map(|row| row.entries);
+        let nodes = problem.entries.iter().map(|entry| entry.node);
+        if spans.clone().eq(self.spans.iter().copied()) && nodes.clone().eq(self.nodes.iter().copied()) {
+            return true;
+        }
+        // weights are kept row by row: a factor belongs to the rows it was made of
+        self.has_factor = false;
+        self.spans.clear();
+        self.row_places.clear();
+        for row in problem.rows {
+            let entries = problem.entries_of(row);
+            for first in entries {
+                for second in entries {
+                    match place(&analysis.hull, first.node, second.node) {
+                        Some(place) => self.row_places.push(place),
+                        None => return false,
+                    }
+                }
+            }
+        }
+        self.spans.extend(spans);
+        self.nodes.clear();
+        self.nodes.extend(nodes);
+        true
+    }
+
+    /// Compares the factor at hand with the one asked for.
+    pub fn fit(&self, problem: &ConeProblem, weights: &[[f64; 3]]) -> Fit {
+        if !self.has_factor || self.weights != weights {
+            return Fit::None;
+        }
+        let is_same = |(row, weight): (&super::problem::ConeRow, &[f64; 3])| {
+            let span = row.entries.0 as usize..row.entries.1 as usize;
+            *weight == [0.0; 3] || self.entries[span.clone()] == problem.entries[span]
+        };
+        if self.values == problem.matrix.blocks() && problem.rows.iter().zip(weights).all(is_same) { Fit::Exact } else { Fit::Near }
+    }
+
+    /// Makes the factor of `A + Gᵀ S G`.
+    ///
+    /// - `weights`: `S` of each row, `[nn, nt, tt]`.
+    pub fn factorize(&mut self, problem: &ConeProblem, weights: &[[f64; 3]]) -> Result<(), CholeskyError> {
+        let Some(analysis) = &mut self.analysis else { return Ok(()) };
+        self.has_factor = false;
+        let Analysis { hull, factor, matrix_places, .. } = &mut **analysis;
+        hull.fill_zero();
+        let blocks = hull.blocks_mut();
+        for (&place, block) in matrix_places.iter().zip(problem.matrix.blocks()) {
+            blocks[place as usize] = *block;
+        }
+        let mut places = self.row_places.iter();
+        for (row, &[nn, nt, tt]) in problem.rows.iter().zip(weights) {
+            let entries = problem.entries_of(row);
+            if nn == 0.0 && tt == 0.0 {
+                if !entries.is_empty() {
+                    places.nth(entries.len() * entries.len() - 1);
+                }
+                continue;
+            }
+            for first in entries {
+                let normal = [0, 1].map(|k| nn * first.normal[k] + nt * first.tangent[k]);
+                let tangent = [0, 1].map(|k| nt * first.normal[k] + tt * first.tangent[k]);
+                for (second, &place) in entries.iter().zip(&mut places) {
+                    let block = &mut blocks[place as usize];
+                    for (k, value) in block.iter_mut().enumerate() {
+                        *value += normal[k / 2] * second.normal[k % 2] + tangent[k / 2] * second.tangent[k % 2];
+                    }
+                }
+            }
+        }
+        self.n_factorizations += 1;
+        factor.factorize(hull)?;
+        self.weights.clear();
+        self.weights.extend_from_slice(weights);
+        self.entries.clear();
+        self.entries.extend_from_slice(problem.entries);
+        self.values.clear();
+        self.values.extend_from_slice(problem.matrix.blocks());
+        self.has_factor = true;
+        Ok(())
+    }
+
+    /// Replaces `x` by `H⁻¹ x`, with the last factor made.
+    pub fn solve(&mut self, x: &mut [f64]) {
+        if let Some(analysis) = &mut self.analysis {
+            analysis.factor.solve_in_place(x);
+        }
+    }
+
+    /// Replaces `x` by `A⁻¹ x`.
+    pub fn solve_bodies(&mut self, x: &mut [f64]) {
+        if let Some(analysis) = &mut self.analysis {
+            analysis.bodies.solve_in_place(x);
+        }
+    }
+}
+
+fn place(matrix: &BlockMatrix, row: u32, column: u32) -> Option<u32> {
+    let found = matrix.neighbours(row as usize).binary_search(&column).ok()?;
+    u32::try_from(matrix.row_start(row as usize) + found).ok()
+}

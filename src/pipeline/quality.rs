@@ -1,0 +1,85 @@
+//! How well a step was solved: the one place where a user sees that something was cut short.
+
+use super::flex_pipeline::FlexPipeline;
+use super::report::Participant;
+use crate::body::FlexBodySet;
+use crate::coupling::RapierSets;
+use crate::kkt::IslandSummary;
+
+/// How well a step, or an island of it, was solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub enum Quality {
+    /// The laws of contact hold at its end.
+    #[default]
+    Solved,
+    /// It was solved in pieces of the step.
+    Cut,
+    /// Its budget ran out. Surfaces on a feasible path are apart where it was stopped, velocities come from the last forces; what lies on
+    /// no path (pairs of rigid bodies, pairs shown to hooks, what was put into each other) may overlap.
+    Unfinished,
+}
+
+/// An island that was not solved in one piece.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub struct Unsolved {
+    /// What became of it.
+    pub quality: Quality,
+    /// Its flexible bodies, and the colliders and bodies that its worst contact belongs to.
+    pub bodies: Vec<Participant>,
+    /// Largest overlap at its contacts (m).
+    pub overlap: f64,
+}
+
+impl IslandSummary {
+    /// How well the island was solved.
+    pub(super) fn quality(&self) -> Quality {
+        if self.is_cut || self.is_linearized || self.is_held {
+            Quality::Unfinished
+        } else {
+            Quality::Solved
+        }
+    }
+}
+
+impl FlexPipeline {
+    /// Notes an island that was not solved in one piece.
+    pub(super) fn note_quality(
+        &mut self,
+        summary: &IslandSummary,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) {
+        let quality = summary.quality();
+        self.report.quality = self.report.quality.max(quality);
+        if quality == Quality::Solved {
+            return;
+        }
+        let flexible = self.island.flex_index.iter().flatten();
+        let flexible = flexible.filter_map(|&index| flex_bodies.at_index(index));
+        let mut bodies: Vec<Participant> = flexible
+            .map(|(handle, _)| Participant::Flex(handle))
+            .collect();
+        let depth = |slot: &usize| -self.island.contacts[*slot].gap();
+        let worst = (0..self.island.contacts.len()).max_by(|a, b| depth(a).total_cmp(&depth(b)));
+        if let Some(slot) = worst {
+            let key = self.island.candidates[self.island.contacts[slot].candidate].key;
+            for owner in key.owners() {
+                let participant = Self::participant(owner, sets, flex_bodies);
+                bodies.extend(participant.filter(|one| !bodies.contains(one)));
+            }
+        }
+        self.report.unsolved.push(Unsolved {
+            quality,
+            bodies,
+            overlap: summary.gap_violation,
+        });
+    }
+}
