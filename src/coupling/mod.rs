@@ -14,6 +14,7 @@ mod filter;
 mod force_pair;
 mod gather;
 mod gather_joints;
+mod gather_pairs;
 mod hand_back;
 mod hooks;
 mod joints;

@@ -46,6 +46,18 @@ pub(super) struct Outline {
     pub pieces: Vec<Piece>,
 }
 
+impl Outline {
+    /// Distance at which flexible surfaces stay from true ones (m): the offset, where something has no thickness.
+    pub fn gap(&self, offset: f64) -> f64 {
+        let is_thin = |piece: &Piece| matches!(piece, Piece::Chain { .. });
+        if self.pieces.iter().any(is_thin) {
+            offset
+        } else {
+            0.0
+        }
+    }
+}
+
 /// Outlines of all colliders met so far.
 #[derive(Default)]
 pub(super) struct OutlineCache {

@@ -31,7 +31,7 @@ pub(super) struct RigidSurface<'a> {
 
 /// Keeps a flexible block apart from the pieces of a rigid collider near it; `reach` is how far around its swept box it may get (m).
 ///
-/// Returns whether they are apart to begin with. If not, nothing is added.
+/// If they are not apart to begin with, nothing is added, and the distance at which they should come to be is returned (m).
 pub(super) fn flex_rigid(
     island: &mut Island,
     flex: usize,
@@ -39,19 +39,19 @@ pub(super) fn flex_rigid(
     names: Names,
     law: ContactLaw,
     reach: f64,
-) -> bool {
+    draft: &mut Draft,
+) -> Result<(), f64> {
     let Block::Flex(body) = &island.blocks[flex] else {
-        return false;
+        return Err(0.0);
     };
     if is_below(surface, body, island) {
-        return false;
+        return Err(0.0);
     }
     let near = bounds_of(body).loosened(reach);
     let offset = offset_of(body);
     let (centre, size) = (body.centre(), body.size());
     let first = island.path.n_ways();
     let own = island.path.flex_member(flex, &island.blocks);
-    let mut draft = Draft::default();
     let mut name = 0;
     for piece in &surface.outline.pieces {
         let Some(closing) = draft.fill(piece, surface, offset, (centre, size), island, &near)
@@ -76,10 +76,10 @@ pub(super) fn flex_rigid(
         };
         if !island.path.add_way(way) {
             island.path.truncate(first);
-            return false;
+            return Err(surface.outline.gap(offset));
         }
     }
-    true
+    Ok(())
 }
 
 /// Whether a node has begun the step in a half-space: its boundary alone does not tell the sides apart.
@@ -106,15 +106,15 @@ fn is_below(surface: &RigidSurface<'_>, body: &FlexBlock, island: &Island) -> bo
     })
 }
 
-/// Keeps two flexible blocks apart; returns whether they are to begin with.
+/// Keeps two flexible blocks apart. If they are not to begin with, returns the distance at which they should come to be (m).
 pub(super) fn flex_flex(
     island: &mut Island,
     blocks: [usize; 2],
     names: Names,
     law: ContactLaw,
-) -> bool {
+) -> Result<(), f64> {
     let [Block::Flex(one), Block::Flex(other)] = blocks.map(|block| &island.blocks[block]) else {
-        return false;
+        return Err(0.0);
     };
     let offset = offset_of(one).min(offset_of(other));
     let members = blocks.map(|block| island.path.flex_member(block, &island.blocks));
@@ -125,7 +125,11 @@ pub(super) fn flex_flex(
         closing: offset + law.skin,
         margin: offset,
     };
-    island.path.add_way(way)
+    if island.path.add_way(way) {
+        Ok(())
+    } else {
+        Err(offset)
+    }
 }
 
 /// Distance of cores at which a contact closes, and the part of it that the path may use up (m).
@@ -135,10 +139,12 @@ struct Closing {
 }
 
 /// Points and edges of one piece, in the axes of its block.
-#[derive(Default)]
-struct Draft {
-    points: Vec<(u32, Vec2)>,
+#[derive(Debug, Default)]
+pub(super) struct Draft {
+    /// Names, places, and ways to the sharp corners that they stand for.
+    points: Vec<(u32, Vec2, Vec2)>,
     edges: Vec<[u32; 2]>,
+    sharp: Vec<Vec2>,
     inset: Vec<Vec2>,
     place: Vec<u32>,
 }
@@ -177,7 +183,9 @@ impl Draft {
                 let foot = seen - normal * normal.dot(&(seen - origin)) - offset * normal;
                 // Its material is on the left of the edge.
                 let far = FAR * size * along;
-                self.points.extend([(0, foot - far), (1, foot + far)]);
+                let none = Vec2::zeros();
+                self.points
+                    .extend([(0, foot - far, none), (1, foot + far, none)]);
                 self.edges.push([0, 1]);
                 Some(Closing {
                     distance: offset,
@@ -193,16 +201,16 @@ impl Draft {
                 let arms = vertices
                     .iter()
                     .map(|vertex| surface.offset.transform(*vertex));
+                self.sharp.clear();
+                self.sharp.extend(arms);
                 let closing = if *radius > 0.0 || n < 3 {
-                    self.inset.clear();
-                    self.inset.extend(arms);
+                    self.inset.clone_from(&self.sharp);
                     Closing {
                         distance: *radius,
                         margin: offset.min(0.5 * radius),
                     }
                 } else {
-                    let arms: Vec<Vec2> = arms.collect();
-                    let by = draw_inwards(&arms, offset.min(0.125 * width), &mut self.inset);
+                    let by = draw_inwards(&self.sharp, offset.min(0.125 * width), &mut self.inset);
                     Closing {
                         distance: by,
                         margin: by,
@@ -212,9 +220,9 @@ impl Draft {
                 if !bounds.intersects(near) {
                     return None;
                 }
-                let named = self.inset.iter().enumerate();
-                self.points
-                    .extend(named.map(|(name, arm)| (name as u32, *arm)));
+                let pairs = self.inset.iter().zip(&self.sharp).enumerate();
+                let named = pairs.map(|(name, (arm, sharp))| (name as u32, *arm, sharp - arm));
+                self.points.extend(named);
                 match n {
                     1 => {}
                     2 => self.edges.push([0, 1]),
@@ -237,7 +245,7 @@ impl Draft {
                         let place = &mut self.place[edge[side] as usize];
                         if *place == u32::MAX {
                             *place = self.points.len() as u32;
-                            self.points.push((edge[side], arms[side]));
+                            self.points.push((edge[side], arms[side], Vec2::zeros()));
                         }
                         *place
                     });

@@ -1,9 +1,10 @@
 //! The feasible path of an island: which surfaces are kept apart, where they are at the base of the path, and what of it the rows need.
 
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics, Owner};
-use crate::math::{Vec2, node_vec, perp};
+use crate::math::{Vec2, node_vec, perp, rotation};
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces, Target};
 use crate::system::{Block, Grip, Point, RigidMotion};
+use std::collections::HashSet;
 
 /// Reach of the rows beyond the distance at which contact closes, relative to the margin: a tenth of an edge, as a margin is a hundredth.
 /// Between half of it and twice only the number of passes changes.
@@ -34,6 +35,17 @@ struct Carrier {
     is_flex: bool,
 }
 
+/// A point of a surface.
+#[derive(Clone, Copy, Debug)]
+struct SurfacePoint {
+    /// Its place on its block.
+    point: Point,
+    /// Its name in contact keys.
+    name: u32,
+    /// From a core's vertex to the sharp corner that it stands for, in body axes (m).
+    corner: Vec2,
+}
+
 /// Where a block is at the base; of a flexible one its frame, and where its nodes begin among those of all.
 #[derive(Clone, Copy, Debug, Default)]
 struct BlockBase {
@@ -61,8 +73,7 @@ pub struct FeasiblePath {
     pairs: Vec<MemberPair>,
     ways: Vec<Way>,
     carriers: Vec<Carrier>,
-    /// For each surface point its place on its block and its name.
-    points: Vec<(Point, u32)>,
+    points: Vec<SurfacePoint>,
     /// Member of each flexible block.
     flex_members: Vec<Option<usize>>,
     near: Vec<NearPair>,
@@ -128,7 +139,11 @@ impl FeasiblePath {
         let first = self.points.len();
         for &node in boundary.nodes() {
             self.scratch.push(body.start_position(node));
-            self.points.push((Point::Node(node), node as u32));
+            self.points.push(SurfacePoint {
+                point: Point::Node(node),
+                name: node as u32,
+                corner: Vec2::zeros(),
+            });
         }
         // Segment k starts at boundary node k.
         for segment in 0..boundary.segments().len() {
@@ -148,14 +163,14 @@ impl FeasiblePath {
     /// Adds a piece of a rigid block.
     ///
     /// - `name`: what its points' names are counted from.
-    /// - `points`: names and arms from the centre of mass, in body axes (m).
+    /// - `points`: names, arms from the centre of mass, and ways to the sharp corners that they stand for, in body axes (m).
     /// - `edges`: their ends among the points.
     pub(crate) fn rigid_member(
         &mut self,
         block: usize,
         blocks: &[Block],
         name: u32,
-        points: &[(u32, Vec2)],
+        points: &[(u32, Vec2, Vec2)],
         edges: &[[u32; 2]],
     ) -> usize {
         let mut kind = MotionKind::Still;
@@ -165,9 +180,13 @@ impl FeasiblePath {
             if !body.is_prescribed() || body.drift() != start {
                 kind = MotionKind::Rigid;
             }
-            for (own, arm) in points {
-                self.scratch.push(start.point(*arm));
-                self.points.push((Point::Arm(*arm), name + own));
+            for &(own, arm, corner) in points {
+                self.scratch.push(start.point(arm));
+                self.points.push(SurfacePoint {
+                    point: Point::Arm(arm),
+                    name: name + own,
+                    corner,
+                });
             }
         }
         self.carriers.push(Carrier {
@@ -195,6 +214,17 @@ impl FeasiblePath {
         self.pairs.push(pair);
         self.ways.push(way);
         true
+    }
+
+    /// Lists the blocks of the ways between owners that pressed each other in the last step: their forces still act from the stored
+    /// accelerations.
+    pub(super) fn list_pressed(&self, pressed: &HashSet<[Owner; 2]>, blocks: &mut Vec<[usize; 2]>) {
+        for way in &self.ways {
+            let [one, other] = way.owners;
+            if pressed.contains(&[one.min(other), one.max(other)]) {
+                blocks.push(way.members.map(|member| self.carriers[member].block));
+            }
+        }
     }
 
     /// Smallest margin of the ways (m).
@@ -237,7 +267,7 @@ impl FeasiblePath {
                     let first = self.surfaces.members()[member].points.start;
                     let ends = self.motion.ends_mut(&self.surfaces, member);
                     for (slot, end) in ends.iter_mut().enumerate() {
-                        if let (Point::Node(node), _) = self.points[first + slot] {
+                        if let Point::Node(node) = self.points[first + slot].point {
                             *end = body.position(node);
                         }
                     }
@@ -306,9 +336,9 @@ impl FeasiblePath {
             }
             let (points, pose) = (own.points.clone(), self.base[carrier.block].motion());
             let placed = self.surfaces.points_mut(member).iter_mut();
-            for (place, (point, _)) in placed.zip(&self.points[points]) {
-                if let Point::Arm(arm) = point {
-                    *place = pose.point(*arm);
+            for (place, own) in placed.zip(&self.points[points]) {
+                if let Point::Arm(arm) = own.point {
+                    *place = pose.point(arm);
                 }
             }
         }
@@ -376,13 +406,13 @@ impl FeasiblePath {
         let part = match near.target {
             Target::Edge(edge) => {
                 let [from, _] = self.surfaces.edges()[edge];
-                2 * self.points[from as usize].1 + 1
+                2 * self.points[from as usize].name + 1
             }
-            Target::Vertex(vertex) => 2 * self.points[vertex].1,
+            Target::Vertex(vertex) => 2 * self.points[vertex].name,
         };
         ContactKey {
             contactor,
-            point: self.points[near.point].1,
+            point: self.points[near.point].name,
             target,
             part: PATH_NAMES | part,
         }
@@ -402,13 +432,13 @@ impl FeasiblePath {
         let lever = |carrier: Carrier| position - self.base[carrier.block].centre;
         let held = |carrier: Carrier, at: usize| {
             if carrier.is_flex {
-                self.points[at].0
+                self.points[at].point
             } else {
                 Point::Arm(self.base[carrier.block].motion().arm(position))
             }
         };
         let first = (own.block, held(own, near.point), 1.0, lever(own));
-        let gap = near.distance - way.closing;
+        let gap = near.distance - way.closing - self.corner(near);
         let target = |at: usize, weight: f64| (met.block, held(met, at), weight, lever(met));
         let row = |grips: &[_]| Kinematics::with_levers(gap, near.normal, position, grips);
         match near.target {
@@ -422,6 +452,24 @@ impl FeasiblePath {
             }
             Target::Vertex(vertex) => row(&[first, target(vertex, -1.0)]),
         }
+    }
+
+    /// How much farther than its faces a sharp corner reaches along the normal (m), where a core's vertex stands for one.
+    fn corner(&self, near: &NearPair) -> f64 {
+        let [own, met] = self
+            .members_of(near)
+            .map(|member| self.carriers[member].block);
+        let reach = |at: usize, block: usize, along: Vec2| {
+            let turn = rotation(self.base[block].angle);
+            along.dot(&(turn * self.points[at].corner))
+        };
+        let of_point = reach(near.point, own, -near.normal);
+        let of_target = match near.target {
+            Target::Edge(_) => 0.0,
+            Target::Vertex(vertex) => reach(vertex, met, near.normal),
+        };
+        let margin = self.ways[near.pair].margin;
+        of_point.max(of_target).max(margin) - margin
     }
 
     /// Position of a point of a block at the base (m).

@@ -46,6 +46,8 @@ impl Island {
     ) -> bool {
         let kept = exp(-PARTING_RATE * settings.dt);
         self.path.rest(&self.blocks);
+        self.path
+            .list_pressed(&self.pressed_owners, &mut self.pressed_before);
         let mut listing = Listing {
             memory: Some(memory),
             keeps_rows: false,
@@ -70,12 +72,23 @@ impl Island {
             }
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
             let enough = if pass < EASED_FROM {
-                tolerance
+                if self.is_large() {
+                    tolerance.max(1e-5 * self.path.least_margin())
+                } else {
+                    tolerance
+                }
             } else {
                 CLOSE_ENOUGH * self.path.least_margin()
             };
             let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
+            if std::env::var("DBG").is_ok() {
+                eprintln!(
+                    "pass {pass} misleads {misleads} arrives {arrives} error {error:.2e} turned {turned:.1e} more {has_more} contacts {}",
+                    self.contacts.len()
+                );
+            }
             if arrives && is_close && !has_more {
+                self.keep_applied_rows();
                 return true;
             }
             if !(error + turned).is_finite() {
@@ -92,6 +105,11 @@ impl Island {
             turned = self.correct();
         }
         false
+    }
+
+    /// Whether the contacts at hand are solved as a sparse problem.
+    fn is_large(&self) -> bool {
+        self.is_sparse(2 * self.contacts.len() + self.ties.len())
     }
 
     /// Lists the near pairs of the base as contacts, and keeps the signed ones. A contact that is near no more stays for one solve, which
@@ -168,6 +186,15 @@ impl Island {
                     ..*contact
                 });
             }
+        }
+    }
+
+    /// Goes back to the rows that the forces of the iterate acted along, with the gaps of the base.
+    fn keep_applied_rows(&mut self) {
+        for contact in self.contacts.iter_mut().filter(|one| one.base.is_some()) {
+            let gap = contact.kinematics.gap;
+            contact.kinematics = contact.applied;
+            contact.kinematics.gap = gap;
         }
     }
 

@@ -10,8 +10,8 @@ use crate::constraint::contact::{
     Candidate, ContactKey, ContactMemory, Kinematics, Owner, PlacedPart, Remembered, Scene,
 };
 use crate::constraint::joint::{JointGrip, JointRow};
-use crate::linalg::cone::ConeError;
 use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
+use crate::linalg::cone::ConeError;
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
 use std::collections::{HashMap, HashSet};

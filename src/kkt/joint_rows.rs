@@ -227,7 +227,8 @@ impl Island {
 
     /// Notes that the forces of soft joints acted along the rows that they have.
     pub(super) fn keep_joints(&mut self) {
-        self.applied_grips.copy_from_slice(&self.joint_grips);
+        self.applied_grips.clear();
+        self.applied_grips.extend_from_slice(&self.joint_grips);
         for tie in &mut self.ties {
             tie.applied = tie.direction;
         }

@@ -76,7 +76,7 @@ pub(super) struct Asked {
     pub of: Response,
     /// Which rows of joints the forces act along.
     pub which: Rows,
-    /// What a unit of `free` is worth in metres, or metres per second (s² or 1): `b0` for positions.
+    /// What the slip of the step is divided by to be of the unit of `free`: `b0` for positions (s²), the step for velocities (s).
     pub unit: f64,
 }
 
@@ -118,6 +118,7 @@ impl Island {
         sparse.entries.clear();
         sparse.places.clear();
         sparse.multipliers.clear();
+        sparse.slip.clear();
         let mut row = 0;
         while row < self.rows.len() {
             let index = self.rows[row].contact;
@@ -133,7 +134,12 @@ impl Island {
             let first = sparse.entries.len() as u32;
             for a in kinematics.attachments() {
                 let directions = [a.weight * normal, a.weight * tangent];
-                sparse.grip(&self.blocks, a.block, (a.grip.point, a.grip.lever), directions);
+                sparse.grip(
+                    &self.blocks,
+                    a.block,
+                    (a.grip.point, a.grip.lever),
+                    directions,
+                );
             }
             let own = compliance(&self.blocks, kinematics, kinematics, asked.of);
             let scale = own.map_or([0.0; 2], |own| {
@@ -166,6 +172,17 @@ impl Island {
                 scale,
             });
             sparse.places.push(row);
+            // What slid at the last look slides on, about as far.
+            let slides = matches!(
+                contact.status[1],
+                Status::SlipPositive | Status::SlipNegative
+            );
+            let far = match asked.of {
+                Response::Position => contact.slip.abs() / asked.unit,
+                Response::Velocity => contact.slip.abs() / asked.unit,
+                Response::Acceleration => 0.0,
+            };
+            sparse.slip.push(if slides { far } else { 0.0 });
             sparse
                 .multipliers
                 .push([self.multipliers[row], second(&self.multipliers)]);
@@ -196,11 +213,15 @@ impl Island {
                     _ => ConeLaw::Unilateral,
                 },
                 free: [self.free[place], 0.0],
-                give: [self.joint_gives[slot] + (1.0 / tie.share_of(asked.of) - 1.0) * scale, 0.0],
+                give: [
+                    self.joint_gives[slot] + (1.0 / tie.share_of(asked.of) - 1.0) * scale,
+                    0.0,
+                ],
                 acted: [0.0; 2],
                 scale: [scale, 0.0],
             });
             sparse.places.push(place);
+            sparse.slip.push(0.0);
             sparse.multipliers.push([self.multipliers[place], 0.0]);
         }
         sparse.load.clear();
@@ -262,16 +283,29 @@ impl Island {
         };
         // Gaps that a slip's dilation leaves are guarded by the path; a millionth of the margin is beyond what it accepts.
         solver.settings.gap_tolerance = 1e-3 * self.path.least_margin().min(1e-3) / asked.unit;
-        solver.settings.tolerance = 1e-9;
+        solver.settings.tolerance = 1e-7;
         let problem = ConeProblem {
             matrix,
             load,
             rows,
             entries,
         };
-        slip.clear();
-        slip.resize(rows.len(), 0.0);
         let outcome = solver.solve(&problem, multipliers, slip, answer)?;
+        if std::env::var("DBG").is_ok() {
+            let worst = multipliers.iter().fold(0.0f64, |m, p| m.max(p[0].abs()));
+            eprintln!(
+                "   sparse {:?} rows {} facts {} anal {} res {:.1e} dil {:.1e} solved {} ipm {} pmax {worst:.2e} amax {:.2e}",
+                asked.of,
+                rows.len(),
+                outcome.n_factorizations,
+                outcome.n_analyses,
+                outcome.residual,
+                outcome.dilation,
+                outcome.is_solved,
+                outcome.used_interior_point,
+                answer.iter().fold(0.0f64, |m, a| m.max(a.abs()))
+            );
+        }
         let n = self.kinds.len();
         self.multipliers.fill(0.0);
         self.statuses.clear();
@@ -303,7 +337,11 @@ impl Island {
                 } else {
                     Status::Stick
                 };
-                self.statuses[place + k] = if is_contact && k == 0 { pressed } else { status };
+                self.statuses[place + k] = if is_contact && k == 0 {
+                    pressed
+                } else {
+                    status
+                };
             }
         }
         Ok(outcome)
@@ -323,7 +361,11 @@ impl Sparse {
     fn fill_matrix(&mut self, blocks: &[Block]) {
         let is_same = self.shapes.len() == blocks.len()
             && self.matrix.is_some()
-            && self.shapes.iter().zip(blocks).all(|(shape, block)| shape.is_that_of(block));
+            && self
+                .shapes
+                .iter()
+                .zip(blocks)
+                .all(|(shape, block)| shape.is_that_of(block));
         if !is_same {
             self.lay_out(blocks);
         }
@@ -355,8 +397,12 @@ impl Sparse {
                 Block::Flex(block) => {
                     let part = block.effective();
                     for node in 0..part.n_nodes() {
-                        let later = part.neighbours(node).iter().filter(|&&other| other as usize >= node);
-                        pairs.extend(later.map(|&other| [n_nodes + node, n_nodes + other as usize]));
+                        let later = part
+                            .neighbours(node)
+                            .iter()
+                            .filter(|&&other| other as usize >= node);
+                        pairs
+                            .extend(later.map(|&other| [n_nodes + node, n_nodes + other as usize]));
                     }
                     n_nodes += part.n_nodes();
                 }
@@ -417,7 +463,12 @@ impl Sparse {
         match &blocks[grip.block] {
             Block::Flex(_) => {
                 let along = grip.weight * direction;
-                self.grip(blocks, grip.block, (grip.point, grip.lever), [along, Vec2::zeros()]);
+                self.grip(
+                    blocks,
+                    grip.block,
+                    (grip.point, grip.lever),
+                    [along, Vec2::zeros()],
+                );
             }
             Block::Rigid(body) => {
                 let wrench = unit_wrench(grip, direction, is_turn);
@@ -427,7 +478,13 @@ impl Sparse {
         }
     }
 
-    fn push_load(&mut self, blocks: &[Block], block: usize, (point, lever): (Point, Vec2), force: Vec2) {
+    fn push_load(
+        &mut self,
+        blocks: &[Block],
+        block: usize,
+        (point, lever): (Point, Vec2),
+        force: Vec2,
+    ) {
         match (&blocks[block], point) {
             (Block::Flex(body), Point::Node(node)) => {
                 let at = 2 * (self.first[block] + node);

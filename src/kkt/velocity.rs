@@ -56,7 +56,7 @@ impl Island {
         if self.kinds.is_empty() {
             return Ok(false);
         }
-        self.solve_impulses(Response::Velocity)?;
+        self.solve_impulses(Response::Velocity, settings.dt)?;
         self.take_joint_impulses();
         self.read_impulses();
         self.clear_impulses();
@@ -174,7 +174,7 @@ impl Island {
     }
 
     /// Solves the rows listed, those of the contacts and those of the joints after them, for impulses (or forces, of accelerations).
-    fn solve_impulses(&mut self, of: Response) -> Result<(), KktError> {
+    fn solve_impulses(&mut self, of: Response, dt: f64) -> Result<(), KktError> {
         let n = self.kinds.len();
         self.acted.resize(n, 0.0);
         if self.is_sparse(n) {
@@ -183,7 +183,7 @@ impl Island {
             let asked = Asked {
                 of,
                 which: Rows::End,
-                unit: 1.0,
+                unit: dt,
             };
             self.solve_sparse(asked)?;
             return Ok(());
@@ -243,8 +243,7 @@ impl Island {
             } else {
                 contact.holds_velocity().max(1e-12)
             };
-            contact.parting[which] +=
-                softened - (1.0 - share) * self.diagonals[row] * impulse;
+            contact.parting[which] += softened - (1.0 - share) * self.diagonals[row] * impulse;
             contact.impulse[which] = impulse;
         }
     }
@@ -403,7 +402,7 @@ impl Island {
         }
         self.list_acted(1.0);
         self.list_joint_accelerations();
-        self.solve_impulses(Response::Acceleration)?;
+        self.solve_impulses(Response::Acceleration, settings.dt)?;
         // What the stored acceleration loses will not act in the next step.
         let late = settings.dt - settings.b1;
         for (row, direction) in self.rows.iter().enumerate() {

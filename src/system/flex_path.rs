@@ -1,8 +1,8 @@
 //! What a feasible path asks of a flexible block: where it begins, how far its frame has turned, and to stop on the way.
 
 use super::flex_block::FlexBlock;
-use crate::linalg::block_matrix::BlockMatrix;
 use crate::body::{Frame, FrameMotion};
+use crate::linalg::block_matrix::BlockMatrix;
 use crate::math::{Vec2, node_vec, rotation, set_node_vec};
 
 impl FlexBlock {

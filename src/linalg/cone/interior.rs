@@ -79,11 +79,18 @@ impl Ray {
 
     /// The distance of the force from a bound.
     fn room(&self, side: usize) -> f64 {
-        if side == 0 { self.force - self.bounds[0] } else { self.bounds[1] - self.force }
+        if side == 0 {
+            self.force - self.bounds[0]
+        } else {
+            self.bounds[1] - self.force
+        }
     }
 
     fn product(&self) -> f64 {
-        (0..2).filter(|&side| self.has_bound(side)).map(|side| self.slack[side] * self.room(side)).sum()
+        (0..2)
+            .filter(|&side| self.has_bound(side))
+            .map(|side| self.slack[side] * self.room(side))
+            .sum()
     }
 
     fn room_change(&self, side: usize) -> f64 {
@@ -103,21 +110,34 @@ impl Ray {
 
 impl Interior {
     /// Replaces the forces and slips of `state` by better ones, or leaves them if that fails.
-    pub fn run(&mut self, problem: &ConeProblem, reduced: &Reduced, system: &mut System, state: &mut State, n_allowed: usize) {
+    pub fn run(
+        &mut self,
+        problem: &ConeProblem,
+        reduced: &Reduced,
+        system: &mut System,
+        state: &mut State,
+        n_allowed: usize,
+    ) {
         let limit = system.n_factorizations + n_allowed;
         if !self.start(problem, reduced, state) {
             return;
         }
         let mut closeness = 1.0;
         for iteration in 0..MOST_ITERATIONS {
-            let (imbalance, apart) = self.evaluate(problem, reduced, state, iteration > 0 && closeness > FOLLOW_SLIP);
+            let (imbalance, apart) = self.evaluate(
+                problem,
+                reduced,
+                state,
+                iteration > 0 && closeness > FOLLOW_SLIP,
+            );
             closeness = self.mean_product() / (self.scale * self.scale);
             if closeness < CLOSE_ENOUGH && apart < 1e-4 && imbalance < 1e-4 {
                 break;
             }
             self.weigh(problem, reduced);
             // what rounding or the budget ends is still a start for proximal steps
-            if system.n_factorizations >= limit || system.factorize(problem, &self.weights).is_err() {
+            if system.n_factorizations >= limit || system.factorize(problem, &self.weights).is_err()
+            {
                 break;
             }
             self.advance(problem, system, state);
@@ -128,10 +148,25 @@ impl Interior {
     /// Puts every ray off its bounds, starting from the forces and the motion at hand; false if nothing pushes.
     fn start(&mut self, problem: &ConeProblem, reduced: &Reduced, state: &State) -> bool {
         let mut energy = 0.0;
-        for (index, row) in problem.rows.iter().enumerate().filter(|(index, _)| reduced.resistance[*index] > 0.0) {
+        for (index, row) in problem
+            .rows
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| reduced.resistance[*index] > 0.0)
+        {
             let force = state.forces[index];
-            let mapped = reduced.natural(row, index, force, reduced.slack(problem, index, &state.a, force)).0;
-            let most = force.iter().chain(&mapped).fold(0.0_f64, |most, value| most.max(value.abs()));
+            let mapped = reduced
+                .natural(
+                    row,
+                    index,
+                    force,
+                    reduced.slack(problem, index, &state.a, force),
+                )
+                .0;
+            let most = force
+                .iter()
+                .chain(&mapped)
+                .fold(0.0_f64, |most, value| most.max(value.abs()));
             energy += reduced.resistance[index] * most * most;
         }
         self.scale = (energy / problem.rows.len().max(1) as f64).sqrt();
@@ -142,19 +177,36 @@ impl Interior {
             let mut pair = Pair::default();
             let w = reduced.slack(problem, index, &state.a, force);
             let size = self.scale / reduced.resistance[index].max(f64::MIN_POSITIVE).sqrt();
-            let signs: &[f64] = if row.has_tangent() { &[1.0, -1.0] } else { &[0.0] };
+            let signs: &[f64] = if row.has_tangent() {
+                &[1.0, -1.0]
+            } else {
+                &[0.0]
+            };
             // a row that nothing can move, or whose bounds meet, keeps its force
             if reduced.resistance[index] > 0.0 && low < high {
                 pair.n_rays = signs.len();
             }
             for (ray, &sign) in pair.rays.iter_mut().zip(signs) {
-                let share = if sign == 0.0 { force[0] } else { 0.5 * (force[0] + sign * force[1] / mu) };
+                let share = if sign == 0.0 {
+                    force[0]
+                } else {
+                    0.5 * (force[0] + sign * force[1] / mu)
+                };
                 let slack = w[0] + mu * state.slip[index] + sign * mu * w[1];
                 let margin = CLEARANCE * size.min(high - low);
                 let gap = CLEARANCE * size * reduced.resistance[index];
-                *ray = Ray { sign, bounds: [low, high], force: share.max(low + margin).min(high - margin), ..Ray::default() };
+                *ray = Ray {
+                    sign,
+                    bounds: [low, high],
+                    force: share.max(low + margin).min(high - margin),
+                    ..Ray::default()
+                };
                 for (side, slack) in [slack, -slack].into_iter().enumerate() {
-                    ray.slack[side] = if ray.has_bound(side) { slack.max(gap) } else { 0.0 };
+                    ray.slack[side] = if ray.has_bound(side) {
+                        slack.max(gap)
+                    } else {
+                        0.0
+                    };
                 }
             }
             self.pairs.push(pair);
@@ -163,7 +215,13 @@ impl Interior {
     }
 
     /// Refreshes forces, gaps and balance; returns the worst of balance and gaps, relative.
-    fn evaluate(&mut self, problem: &ConeProblem, reduced: &Reduced, state: &mut State, follow: bool) -> (f64, f64) {
+    fn evaluate(
+        &mut self,
+        problem: &ConeProblem,
+        reduced: &Reduced,
+        state: &mut State,
+        follow: bool,
+    ) -> (f64, f64) {
         self.forces.clear();
         let mut apart = 0.0_f64;
         for (index, row) in problem.rows.iter().enumerate() {
@@ -176,14 +234,23 @@ impl Interior {
                 state.slip[index] = w[1].abs();
             }
             for ray in &mut pair.rays[..pair.n_rays] {
-                ray.gap = w[0] + mu * state.slip[index] + ray.sign * mu * w[1] - ray.slack[0] + ray.slack[1];
+                ray.gap = w[0] + mu * state.slip[index] + ray.sign * mu * w[1] - ray.slack[0]
+                    + ray.slack[1];
                 apart = apart.max(ray.gap.abs() / (self.scale * reduced.resistance[index].sqrt()));
             }
         }
         self.balance.resize(reduced.load.len(), 0.0);
         reduced.total_load(problem, &self.forces, &mut self.balance);
-        problem.matrix.multiply_add(-1.0, &state.a, &mut self.balance);
-        let worst = self.balance.iter().zip(&reduced.inverse_diagonal).fold(0.0_f64, |worst, (value, inverse)| worst.max(value * value * inverse));
+        problem
+            .matrix
+            .multiply_add(-1.0, &state.a, &mut self.balance);
+        let worst = self
+            .balance
+            .iter()
+            .zip(&reduced.inverse_diagonal)
+            .fold(0.0_f64, |worst, (value, inverse)| {
+                worst.max(value * value * inverse)
+            });
         (worst.sqrt() / self.scale, apart)
     }
 
@@ -192,7 +259,10 @@ impl Interior {
     }
 
     fn mean_product(&self) -> f64 {
-        let n_bounds = self.rays().map(|ray| (0..2).filter(|&side| ray.has_bound(side)).count()).sum::<usize>();
+        let n_bounds = self
+            .rays()
+            .map(|ray| (0..2).filter(|&side| ray.has_bound(side)).count())
+            .sum::<usize>();
         self.rays().map(Ray::product).sum::<f64>() / n_bounds.max(1) as f64
     }
 
@@ -202,20 +272,34 @@ impl Interior {
             let (mu, [give_n, give_t]) = (row.friction(), row.give);
             let proximal = reduced.resistance[index] / STIFFEST;
             let pair = &mut self.pairs[index];
-            let own = |ray: &Ray| proximal + ray.eliminated().0 + give_n + ray.sign * ray.sign * mu * mu * give_t;
+            let own = |ray: &Ray| {
+                proximal + ray.eliminated().0 + give_n + ray.sign * ray.sign * mu * mu * give_t
+            };
             pair.stiffness = match pair.n_rays {
                 0 => [0.0; 3],
                 1 => [1.0 / own(&pair.rays[0]), 0.0, 0.0],
                 _ => {
-                    let (first, second, cross) = (own(&pair.rays[0]), own(&pair.rays[1]), give_n - mu * mu * give_t);
+                    let (first, second, cross) = (
+                        own(&pair.rays[0]),
+                        own(&pair.rays[1]),
+                        give_n - mu * mu * give_t,
+                    );
                     let determinant = first * second - cross * cross;
-                    [second / determinant, -cross / determinant, first / determinant]
+                    [
+                        second / determinant,
+                        -cross / determinant,
+                        first / determinant,
+                    ]
                 }
             };
             let [first, cross, second] = pair.stiffness;
             let sign = pair.rays[0].sign;
             let sum = first + second;
-            self.weights.push([sum + 2.0 * cross, sign * mu * (first - second), sign * sign * mu * mu * (sum - 2.0 * cross)]);
+            self.weights.push([
+                sum + 2.0 * cross,
+                sign * mu * (first - second),
+                sign * sign * mu * mu * (sum - 2.0 * cross),
+            ]);
         }
     }
 
@@ -223,17 +307,28 @@ impl Interior {
     fn advance(&mut self, problem: &ConeProblem, system: &mut System, state: &mut State) {
         let mean = self.mean_product();
         for ray in self.pairs.iter_mut().flat_map(|pair| &mut pair.rays) {
-            ray.target = [0, 1].map(|side| if ray.has_bound(side) { ray.slack[side] * ray.room(side) } else { 0.0 });
+            ray.target = [0, 1].map(|side| {
+                if ray.has_bound(side) {
+                    ray.slack[side] * ray.room(side)
+                } else {
+                    0.0
+                }
+            });
         }
         self.find_direction(problem, system);
         let (length, mut predicted, mut n_bounds) = (self.longest().min(1.0), 0.0, 0);
         for ray in self.rays() {
             for side in (0..2).filter(|&side| ray.has_bound(side)) {
-                predicted += (ray.slack[side] + length * ray.slack_change[side]) * (ray.room(side) + length * ray.room_change(side));
+                predicted += (ray.slack[side] + length * ray.slack_change[side])
+                    * (ray.room(side) + length * ray.room_change(side));
                 n_bounds += 1;
             }
         }
-        let ratio = if mean > 0.0 { predicted / n_bounds.max(1) as f64 / mean } else { 0.0 };
+        let ratio = if mean > 0.0 {
+            predicted / n_bounds.max(1) as f64 / mean
+        } else {
+            0.0
+        };
         // a tenth at least: full steps to the edge jam on degenerate contacts
         let centre = mean * ratio.powi(3).max(0.1);
         for ray in self.pairs.iter_mut().flat_map(|pair| &mut pair.rays) {
@@ -245,7 +340,11 @@ impl Interior {
         }
         self.find_direction(problem, system);
         let length = (0.99 * self.longest()).min(1.0);
-        state.a.iter_mut().zip(&self.step).for_each(|(a, step)| *a += length * step);
+        state
+            .a
+            .iter_mut()
+            .zip(&self.step)
+            .for_each(|(a, step)| *a += length * step);
         for ray in self.pairs.iter_mut().flat_map(|pair| &mut pair.rays) {
             ray.force += length * ray.change;
             for side in 0..2 {
@@ -259,18 +358,26 @@ impl Interior {
         self.step.extend_from_slice(&self.balance);
         for (row, pair) in problem.rows.iter().zip(&self.pairs) {
             let right = pair.rays.map(|ray| ray.eliminated().1);
-            problem.push(row, -1.0, pair.combine(row.friction(), pair.stiffen(right)), &mut self.step);
+            problem.push(
+                row,
+                -1.0,
+                pair.combine(row.friction(), pair.stiffen(right)),
+                &mut self.step,
+            );
         }
         system.solve(&mut self.step);
         for (row, pair) in problem.rows.iter().zip(&mut self.pairs) {
             let (mu, along) = (row.friction(), problem.motion(row, &self.step));
-            let total = pair.rays.map(|ray| ray.eliminated().1 + along[0] + ray.sign * mu * along[1]);
+            let total = pair
+                .rays
+                .map(|ray| ray.eliminated().1 + along[0] + ray.sign * mu * along[1]);
             let change = pair.stiffen(total);
             for (ray, change) in pair.rays[..pair.n_rays].iter_mut().zip(change) {
                 ray.change = -change;
                 for side in 0..2 {
                     ray.slack_change[side] = if ray.has_bound(side) {
-                        (-ray.target[side] - ray.slack[side] * ray.room_change(side)) / ray.room(side)
+                        (-ray.target[side] - ray.slack[side] * ray.room_change(side))
+                            / ray.room(side)
                     } else {
                         0.0
                     };
@@ -284,7 +391,10 @@ impl Interior {
         let mut longest = f64::INFINITY;
         for ray in self.rays() {
             for side in (0..2).filter(|&side| ray.has_bound(side)) {
-                for (value, change) in [(ray.room(side), ray.room_change(side)), (ray.slack[side], ray.slack_change[side])] {
+                for (value, change) in [
+                    (ray.room(side), ray.room_change(side)),
+                    (ray.slack[side], ray.slack_change[side]),
+                ] {
                     if change < 0.0 {
                         longest = longest.min(-value / change);
                     }
@@ -300,12 +410,17 @@ impl Interior {
             let pair = &mut self.pairs[index];
             for ray in &mut pair.rays[..pair.n_rays] {
                 for side in 0..2 {
-                    if ray.has_bound(side) && ray.room(side) * reduced.resistance[index] < 1e-3 * ray.slack[side] {
+                    if ray.has_bound(side)
+                        && ray.room(side) * reduced.resistance[index] < 1e-3 * ray.slack[side]
+                    {
                         ray.force = ray.bounds[side];
                     }
                 }
             }
-            if let Some(force) = pair.force(row.friction()).filter(|force| force[0].is_finite() && force[1].is_finite()) {
+            if let Some(force) = pair
+                .force(row.friction())
+                .filter(|force| force[0].is_finite() && force[1].is_finite())
+            {
                 state.forces[index] = force;
             }
         }
@@ -328,6 +443,9 @@ impl Pair {
 
     fn stiffen(&self, right: [f64; 2]) -> [f64; 2] {
         let [first, cross, second] = self.stiffness;
-        [first * right[0] + cross * right[1], cross * right[0] + second * right[1]]
+        [
+            first * right[0] + cross * right[1],
+            cross * right[0] + second * right[1],
+        ]
     }
 }

@@ -9,10 +9,10 @@
 //!
 //! All solvers work on `H = A + Gᵀ S G`, as sparse as the graph of bodies that touch:
 //!
-//! 1. proximal steps from the last answer, by Newton's method ([`proximal`]);
-//! 2. if that takes more than a few factorizations, an interior point ([`interior`]),
+//! 1. proximal steps from the last answer, by Newton's method (`proximal`);
+//! 2. if that takes more than a few factorizations, an interior point (`interior`),
 //! 3. whose forces proximal steps finish;
-//! 4. the budget spent, projected gradients ([`sweep`]), which obey every bound and bring no energy, but leave gaps.
+//! 4. the budget spent, projected gradients (`sweep`), which obey every bound and bring no energy, but leave gaps.
 //!
 //! Whatever the solver, `a` is made from the forces handed back, so that `A a = r + Gᵀ p` to rounding.
 //!
@@ -57,7 +57,7 @@ pub use problem::{ConeEntry, ConeError, ConeLaw, ConeProblem, ConeRow};
 use interior::Interior;
 use law::project;
 use proximal::{Ending, Proximal};
-use reduced::Reduced;
+use reduced::{Measure, Reduced};
 use sweep::Sweep;
 use system::System;
 
@@ -83,7 +83,12 @@ pub struct ConeSettings {
 
 impl Default for ConeSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-9, gap_tolerance: 0.0, slip_tolerance: 1e-3, max_factorizations: 100 }
+        Self {
+            tolerance: 1e-9,
+            gap_tolerance: 0.0,
+            slip_tolerance: 1e-3,
+            max_factorizations: 100,
+        }
     }
 }
 
@@ -127,12 +132,17 @@ pub struct ConeSolver {
     state: State,
     start: Vec<[f64; 2]>,
     start_slip: Vec<f64>,
+    completed: Vec<[f64; 2]>,
+    completed_slip: Vec<f64>,
 }
 
 impl ConeSolver {
     /// Makes a solver without scratch; the first solve of each pattern reserves it.
     pub fn new(settings: ConeSettings) -> Self {
-        Self { settings, ..Self::default() }
+        Self {
+            settings,
+            ..Self::default()
+        }
     }
 
     /// Where each row of the last problem stands.
@@ -150,11 +160,24 @@ impl ConeSolver {
     ///
     /// # Errors
     /// If lengths disagree, a number is not finite, or `A` has no factor; the arguments are then left as they were.
-    pub fn solve(&mut self, problem: &ConeProblem, multipliers: &mut [[f64; 2]], slip: &mut [f64], acceleration: &mut Vec<f64>) -> Result<ConeOutcome, ConeError> {
+    pub fn solve(
+        &mut self,
+        problem: &ConeProblem,
+        multipliers: &mut [[f64; 2]],
+        slip: &mut [f64],
+        acceleration: &mut Vec<f64>,
+    ) -> Result<ConeOutcome, ConeError> {
         let n_rows = problem.rows.len();
-        for (what, found) in [("the multipliers", multipliers.len()), ("the slips", slip.len())] {
+        for (what, found) in [
+            ("the multipliers", multipliers.len()),
+            ("the slips", slip.len()),
+        ] {
             if found != n_rows {
-                return Err(ConeError::Length { what, found, expected: n_rows });
+                return Err(ConeError::Length {
+                    what,
+                    found,
+                    expected: n_rows,
+                });
             }
         }
         problem.check()?;
@@ -162,7 +185,7 @@ impl ConeSolver {
         self.system.prepare(problem)?;
         self.reduced.restate(problem);
         self.warm_start(problem, multipliers, slip);
-        let used_interior_point = self.improve(problem)?;
+        let used_interior_point = self.improve(problem);
         let outcome = self.hand_back(problem, multipliers, slip);
         acceleration.clone_from(&self.state.a);
         Ok(ConeOutcome {
@@ -179,13 +202,22 @@ impl ConeSolver {
         self.start_slip.clear();
         for (index, row) in problem.rows.iter().enumerate() {
             let acted = row.acted();
-            let is_usable = self.reduced.resistance[index] > 0.0 && multipliers[index].iter().all(|value| value.is_finite());
-            let given = if is_usable { multipliers[index] } else { [0.0; 2] };
-            self.start.push(project(row, [given[0] + acted[0], given[1] + acted[1]], [1.0; 2]).0);
+            let is_usable = self.reduced.resistance[index] > 0.0
+                && multipliers[index].iter().all(|value| value.is_finite());
+            let given = if is_usable {
+                multipliers[index]
+            } else {
+                [0.0; 2]
+            };
+            self.start
+                .push(project(row, [given[0] + acted[0], given[1] + acted[1]], [1.0; 2]).0);
             let is_usable = row.has_tangent() && slip[index].is_finite();
-            self.start_slip.push(if is_usable { slip[index].abs() } else { 0.0 });
+            self.start_slip
+                .push(if is_usable { slip[index].abs() } else { 0.0 });
         }
-        self.state.status.resize(problem.rows.len(), ConeStatus::Open);
+        self.state
+            .status
+            .resize(problem.rows.len(), ConeStatus::Open);
         self.restart(problem);
     }
 
@@ -198,40 +230,94 @@ impl ConeSolver {
     /// `a = A⁻¹ (load + Gᵀ P)`.
     fn move_by_forces(&mut self, problem: &ConeProblem) {
         self.state.a.resize(problem.matrix.n_dofs(), 0.0);
-        self.reduced.total_load(problem, &self.state.forces, &mut self.state.a);
+        self.reduced
+            .total_load(problem, &self.state.forces, &mut self.state.a);
         self.system.solve_bodies(&mut self.state.a);
     }
 
     /// Runs one solver after the other until one succeeds; whether the interior point was among them.
-    fn improve(&mut self, problem: &ConeProblem) -> Result<bool, ConeError> {
+    fn improve(&mut self, problem: &ConeProblem) -> bool {
         let limit = self.system.n_factorizations + self.settings.max_factorizations;
         let n_warm = N_WARM[usize::from(self.is_hard)].min(self.settings.max_factorizations);
-        let ending = self.approach(problem, &WARM, n_warm)?;
+        let (ending, _) = self.approach(problem, &WARM, n_warm);
         self.is_hard = ending == Ending::Spent;
         if ending != Ending::Spent {
-            return Ok(false);
+            return false;
         }
         self.restart(problem);
         let n_left = limit - self.system.n_factorizations.min(limit);
-        self.interior.run(problem, &self.reduced, &mut self.system, &mut self.state, n_left);
+        self.interior.run(
+            problem,
+            &self.reduced,
+            &mut self.system,
+            &mut self.state,
+            n_left,
+        );
         let n_left = limit - self.system.n_factorizations.min(limit);
-        if self.approach(problem, &POLISH, n_left)? == Ending::Spent {
-            self.restart(problem);
-            self.sweep.run(problem, &self.reduced, &mut self.system, &mut self.state);
+        let (ending, completed) = self.approach(problem, &POLISH, n_left);
+        if ending == Ending::Spent {
+            self.sweep_instead(problem, completed);
         }
-        Ok(true)
+        true
     }
 
-    fn approach(&mut self, problem: &ConeProblem, levels: &[f64], n_allowed: usize) -> Result<Ending, ConeError> {
-        let Self { proximal, reduced, system, state, settings, .. } = self;
-        Ok(proximal.run(problem, reduced, system, state, settings, levels, n_allowed)?.0)
+    /// Takes the answer of sweeps, unless the last proximal step completed was nearer. Both obey every bound.
+    fn sweep_instead(&mut self, problem: &ConeProblem, completed: Measure) {
+        self.completed.clone_from(&self.state.forces);
+        self.completed_slip.clone_from(&self.state.slip);
+        self.restart(problem);
+        self.sweep
+            .run(problem, &self.reduced, &mut self.system, &mut self.state);
+        self.move_by_forces(problem);
+        let State {
+            forces,
+            slip,
+            a,
+            status,
+        } = &mut self.state;
+        let swept = self
+            .reduced
+            .measure(problem, a, forces, slip, &self.settings, status);
+        if completed.worst() < swept.worst() {
+            forces.clone_from(&self.completed);
+            slip.clone_from(&self.completed_slip);
+        }
+    }
+
+    fn approach(
+        &mut self,
+        problem: &ConeProblem,
+        levels: &[f64],
+        n_allowed: usize,
+    ) -> (Ending, Measure) {
+        let Self {
+            proximal,
+            reduced,
+            system,
+            state,
+            settings,
+            ..
+        } = self;
+        proximal.run(problem, reduced, system, state, settings, levels, n_allowed)
     }
 
     /// Makes `a` from the forces, judges both, and writes multipliers and slips.
-    fn hand_back(&mut self, problem: &ConeProblem, multipliers: &mut [[f64; 2]], slip: &mut [f64]) -> ConeOutcome {
+    fn hand_back(
+        &mut self,
+        problem: &ConeProblem,
+        multipliers: &mut [[f64; 2]],
+        slip: &mut [f64],
+    ) -> ConeOutcome {
         self.move_by_forces(problem);
         let (settings, state) = (&self.settings, &mut self.state);
-        let measure = self.reduced.measure(problem, &state.a, &state.forces, &state.slip, settings, &mut state.status);
+        let measure = self.reduced.measure(
+            problem,
+            &state.a,
+            &state.forces,
+            &state.slip,
+            settings,
+            &mut state.status,
+        );
         for (index, row) in problem.rows.iter().enumerate() {
             let acted = row.acted();
             multipliers[index] = [0, 1].map(|k| state.forces[index][k] - acted[k]);
@@ -239,6 +325,11 @@ impl ConeSolver {
         slip.copy_from_slice(&state.slip);
         // rounding may leave a little more than the iterations saw
         let is_solved = measure.residual <= 2.0 * settings.tolerance && !measure.is_dilated;
-        ConeOutcome { residual: measure.residual, dilation: measure.dilation, is_solved, ..ConeOutcome::default() }
+        ConeOutcome {
+            residual: measure.residual,
+            dilation: measure.dilation,
+            is_solved,
+            ..ConeOutcome::default()
+        }
     }
 }

@@ -91,13 +91,17 @@ pub enum ConeError {
         value: f64,
     },
     /// An entry of the matrix is infinite or not a number.
-    #[error("the matrix holds a number that is not finite in the row of node {node}: look for a state that has blown up")]
+    #[error(
+        "the matrix holds a number that is not finite in the row of node {node}: look for a state that has blown up"
+    )]
     Matrix {
         /// The node.
         node: usize,
     },
     /// A number of a row is infinite or not a number, or `give` or `scale` is negative.
-    #[error("row {row} holds {value} as {what}: give a finite number, and no negative give or scale")]
+    #[error(
+        "row {row} holds {value} as {what}: give a finite number, and no negative give or scale"
+    )]
     Row {
         /// The row.
         row: usize,
@@ -115,7 +119,9 @@ pub enum ConeError {
         entry: usize,
     },
     /// A coefficient of friction is negative or not finite.
-    #[error("row {row} has the coefficient of friction {coefficient}: give a finite one, zero or more")]
+    #[error(
+        "row {row} has the coefficient of friction {coefficient}: give a finite one, zero or more"
+    )]
     Friction {
         /// The row.
         row: usize,
@@ -169,7 +175,12 @@ impl ConeRow {
     }
 
     fn check(&self, row: usize) -> Result<(), ConeError> {
-        let numbers = [("free", self.free, false), ("acted", self.acted, false), ("give", self.give, true), ("scale", self.scale, true)];
+        let numbers = [
+            ("free", self.free, false),
+            ("acted", self.acted, false),
+            ("give", self.give, true),
+            ("scale", self.scale, true),
+        ];
         for (what, pair, is_positive) in numbers {
             for value in pair {
                 if !value.is_finite() || (is_positive && value < 0.0) {
@@ -179,9 +190,14 @@ impl ConeRow {
         }
         match self.law {
             ConeLaw::Contact { friction } if !(friction.is_finite() && friction >= 0.0) => {
-                Err(ConeError::Friction { row, coefficient: friction })
+                Err(ConeError::Friction {
+                    row,
+                    coefficient: friction,
+                })
             }
-            ConeLaw::Box { low, high } if !(low <= 0.0 && high >= 0.0) => Err(ConeError::Bounds { row, low, high }),
+            ConeLaw::Box { low, high } if !(low <= 0.0 && high >= 0.0) => {
+                Err(ConeError::Bounds { row, low, high })
+            }
             _ => Ok(()),
         }
     }
@@ -192,12 +208,27 @@ impl<'a> ConeProblem<'a> {
     pub(super) fn check(&self) -> Result<(), ConeError> {
         let n_dofs = self.matrix.n_dofs();
         if self.load.len() != n_dofs {
-            return Err(ConeError::Length { what: "the load", found: self.load.len(), expected: n_dofs });
+            return Err(ConeError::Length {
+                what: "the load",
+                found: self.load.len(),
+                expected: n_dofs,
+            });
         }
-        if let Some((dof, &value)) = self.load.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+        if let Some((dof, &value)) = self
+            .load
+            .iter()
+            .enumerate()
+            .find(|(_, value)| !value.is_finite())
+        {
             return Err(ConeError::Load { dof, value });
         }
-        let is_finite = |node: &usize| self.matrix.row_blocks(*node).iter().flatten().all(|value| value.is_finite());
+        let is_finite = |node: &usize| {
+            self.matrix
+                .row_blocks(*node)
+                .iter()
+                .flatten()
+                .all(|value| value.is_finite())
+        };
         if let Some(node) = (0..self.matrix.n_nodes()).find(|node| !is_finite(node)) {
             return Err(ConeError::Matrix { node });
         }
@@ -210,14 +241,24 @@ impl<'a> ConeProblem<'a> {
 
     fn check_entries(&self, row: usize, data: &ConeRow) -> Result<(), ConeError> {
         let (start, end) = (data.entries.0 as usize, data.entries.1 as usize);
-        let entries = self.entries.get(start..end).ok_or(ConeError::Entry { row, entry: end })?;
+        let entries = self
+            .entries
+            .get(start..end)
+            .ok_or(ConeError::Entry { row, entry: end })?;
         for (k, entry) in entries.iter().enumerate() {
             if entry.node as usize >= self.matrix.n_nodes() {
-                return Err(ConeError::Entry { row, entry: start + k });
+                return Err(ConeError::Entry {
+                    row,
+                    entry: start + k,
+                });
             }
             for value in entry.normal.into_iter().chain(entry.tangent) {
                 if !value.is_finite() {
-                    return Err(ConeError::Row { row, what: "a coefficient", value });
+                    return Err(ConeError::Row {
+                        row,
+                        what: "a coefficient",
+                        value,
+                    });
                 }
             }
         }

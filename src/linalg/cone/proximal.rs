@@ -10,14 +10,19 @@ use super::reduced::{Measure, Reduced};
 use super::slip::SlipIteration;
 use super::system::{Fit, System};
 use super::{ConeSettings, State};
-use crate::linalg::cholesky::CholeskyError;
 
 /// Proximal steps at most, those that follow the slip included.
 const MOST_STEPS: usize = 80;
 /// Newton steps at most within one proximal step; they end by themselves, since pieces are finite in number.
 const MOST_NEWTON_STEPS: usize = 80;
+/// Imbalance at which a proximal step ends, beside the tolerance: soft bodies answer it with more than its share of motion.
+const SMALL: f64 = 1e-2;
+/// Newton steps with the factor of a slightly other geometry before a new one is made.
+const MOST_KEPT: usize = 5;
+/// Penalties up to this one are raised even while rows still change sides.
+const MODERATE: f64 = 1e4;
 /// Proximal steps without a residual lower by a tenth after which there is no use in more.
-const PATIENCE: usize = 8;
+const PATIENCE: usize = 6;
 
 /// Imbalance, relative to forces, that rounding may keep up: stiff penalties times the digits of a number.
 const ROUNDING: f64 = 1e-7;
@@ -29,7 +34,7 @@ pub(super) enum Ending {
     Solved,
     /// Nothing gets better any more: rows that contradict each other, or slips that chase each other.
     Stalled,
-    /// Newton's method needed more factorizations than allowed; the forces are those of the last step completed.
+    /// Newton's method needed more factorizations than allowed, or one failed; the forces are those of the last step completed.
     Spent,
 }
 
@@ -49,6 +54,8 @@ pub(super) struct Proximal {
     energy: f64,
     step: Vec<f64>,
     product: Vec<f64>,
+    /// `A⁻¹ (load + Gᵀ P)`.
+    settled: Vec<f64>,
     saved: Vec<[f64; 2]>,
     saved_slip: Vec<f64>,
     slips: SlipIteration,
@@ -65,66 +72,121 @@ fn metric(give: [f64; 2], inverse_penalty: f64) -> [f64; 2] {
 impl Proximal {
     /// Improves `state` by proximal steps until it is solved, stalls, or `n_allowed` factorizations are spent.
     ///
-    /// - `levels`: penalties times `W_ii`; the next one is taken where a step with a kept factor gains too little.
-    pub fn run(&mut self, problem: &ConeProblem, reduced: &Reduced, system: &mut System, state: &mut State, settings: &ConeSettings, levels: &[f64], n_allowed: usize) -> Result<(Ending, Measure), CholeskyError> {
+    /// The measure is that of the last step completed, infinite if the budget did not last for one.
+    ///
+    /// - `levels`: penalties times `W_ii`; the next one is taken where a step gains too little.
+    pub fn run(
+        &mut self,
+        problem: &ConeProblem,
+        reduced: &Reduced,
+        system: &mut System,
+        state: &mut State,
+        settings: &ConeSettings,
+        levels: &[f64],
+        n_allowed: usize,
+    ) -> (Ending, Measure) {
         let limit = system.n_factorizations + n_allowed;
-        let mut level = 0;
+        let (mut level, mut is_lowered) = (0, false);
         self.penalize(reduced, levels[0]);
         let mut refined: Option<Measure> = None;
         let (mut best, mut last, mut n_idle) = (f64::INFINITY, f64::INFINITY, 0);
-        let mut measure = reduced.measure(problem, &state.a, &state.forces, &state.slip, settings, &mut state.status);
+        let mut measure = reduced.measure(
+            problem,
+            &state.a,
+            &state.forces,
+            &state.slip,
+            settings,
+            &mut state.status,
+        );
         if measure.residual <= settings.tolerance && !measure.is_dilated {
-            return Ok((Ending::Solved, measure));
+            return (Ending::Solved, measure);
         }
         self.status.clone_from(&state.status);
         self.slips.forget();
+        let mut completed = Measure {
+            residual: f64::INFINITY,
+            ..measure
+        };
         for _ in 0..MOST_STEPS {
             let n_before = system.n_factorizations;
             // what is solved is only refined as far as the factor at hand goes
             let most = if refined.is_some() { n_before } else { limit };
-            self.predict(problem, reduced, system, state, most)?;
-            if !self.newton(problem, reduced, system, state, settings.tolerance, most)? {
-                return Ok(match refined {
+            self.predict(problem, reduced, system, state, most);
+            if !self.newton(problem, reduced, system, state, settings.tolerance, most) {
+                if completed.residual.is_finite() {
+                    state.slip.copy_from_slice(&self.saved_slip);
+                }
+                return match refined {
                     Some(measure) => (self.restore(state), measure),
-                    None => (Ending::Spent, measure),
-                });
+                    None => (Ending::Spent, completed),
+                };
             }
             state.forces.copy_from_slice(&self.trial);
-            measure = reduced.measure(problem, &state.a, &state.forces, &state.slip, settings, &mut state.status);
-            if std::env::var("DBG").is_ok() { println!(" step res {:.2e} dil {:.2e} facts {}", measure.residual, measure.relative_dilation, system.n_factorizations); }
+            // judged by the motion that the forces cause, as the answer will be
+            reduced.total_load(problem, &state.forces, &mut self.settled);
+            system.solve_bodies(&mut self.settled);
+            measure = reduced.measure(
+                problem,
+                &self.settled,
+                &state.forces,
+                &state.slip,
+                settings,
+                &mut state.status,
+            );
+            completed = measure;
+            if refined.is_none() {
+                self.saved_slip.clone_from(&state.slip);
+            }
             let is_solved = measure.residual <= settings.tolerance && !measure.is_dilated;
             if is_solved && measure.relative_dilation <= settings.tolerance {
-                return Ok((Ending::Solved, measure));
+                return (Ending::Solved, measure);
             }
-            if is_solved && refined.is_none_or(|best| measure.relative_dilation < best.relative_dilation) {
+            if is_solved
+                && refined.is_none_or(|best| measure.relative_dilation < best.relative_dilation)
+            {
                 self.saved.clone_from(&state.forces);
                 self.saved_slip.clone_from(&state.slip);
                 refined = Some(measure);
             }
-            let merit = measure.residual.max(measure.relative_dilation);
+            let merit = measure.worst();
             if merit < 0.9 * best {
                 (best, n_idle) = (merit, 0);
             } else {
                 n_idle += 1;
             }
-            if n_idle == PATIENCE {
+            if n_idle == PATIENCE && (level == 0 || is_lowered) {
                 break;
+            }
+            // what a stiff penalty leaves is rounding, which it magnifies: a softer one finishes
+            if n_idle == PATIENCE {
+                (level, n_idle, is_lowered) = (level - 1, 0, true);
+                self.penalize(reduced, levels[level]);
             }
             let is_slow = measure.residual > settings.tolerance && measure.residual > 0.2 * last;
             last = measure.residual;
-            if is_slow && level + 1 < levels.len() && refined.is_none() {
+            let may_stiffen = system.n_factorizations == n_before
+                || levels.get(level + 1).is_some_and(|&next| next <= MODERATE);
+            if is_slow
+                && may_stiffen
+                && !is_lowered
+                && level + 1 < levels.len()
+                && refined.is_none()
+            {
                 level += 1;
                 self.penalize(reduced, levels[level]);
                 (last, n_idle) = (f64::INFINITY, 0);
             }
-            if measure.is_dilated || refined.is_some() || measure.relative_dilation > measure.residual {
+            if measure.is_dilated
+                || refined.is_some()
+                || measure.relative_dilation > measure.residual
+            {
                 self.move_slips(problem, reduced, state);
             }
         }
-        Ok(match refined {
+        match refined {
             Some(measure) => (self.restore(state), measure),
             None => (Ending::Stalled, measure),
-        })
+        }
     }
 
     /// Follows the slips, with an eye on the past as long as rows stay on their pieces.
@@ -136,9 +198,23 @@ impl Proximal {
         reduced.follow_slip(problem, &state.a, &state.forces, &mut self.found);
         self.slip_weights.clear();
         // open contacts slip freely, without a say
-        let weight = |((row, resistance), force): ((&ConeRow, &f64), &[f64; 2])| if force[0] > 0.0 { row.friction() / resistance.sqrt() } else { 0.0 };
-        self.slip_weights.extend(problem.rows.iter().zip(&reduced.resistance).zip(&state.forces).map(weight));
-        self.slips.advance(&mut state.slip, &self.found, &self.slip_weights);
+        let weight = |((row, resistance), force): ((&ConeRow, &f64), &[f64; 2])| {
+            if force[0] > 0.0 {
+                row.friction() / resistance.sqrt()
+            } else {
+                0.0
+            }
+        };
+        self.slip_weights.extend(
+            problem
+                .rows
+                .iter()
+                .zip(&reduced.resistance)
+                .zip(&state.forces)
+                .map(weight),
+        );
+        self.slips
+            .advance(&mut state.slip, &self.found, &self.slip_weights);
     }
 
     fn restore(&self, state: &mut State) -> Ending {
@@ -149,7 +225,13 @@ impl Proximal {
 
     /// Chooses `D` as a power of two, so that the same factor serves while estimates move a little.
     fn penalize(&mut self, reduced: &Reduced, level: f64) {
-        let inverse = |&resistance: &f64| if resistance > 0.0 { (resistance / level).log2().round().exp2() } else { 1.0 };
+        let inverse = |&resistance: &f64| {
+            if resistance > 0.0 {
+                (resistance / level).log2().round().exp2()
+            } else {
+                1.0
+            }
+        };
         self.penalty.clear();
         self.penalty.extend(reduced.resistance.iter().map(inverse));
     }
@@ -157,13 +239,20 @@ impl Proximal {
     /// Solves on the pieces of the law that rows were on last, and keeps that if it is nearer to the answer.
     ///
     /// A stiff penalty magnifies small changes of slip or geometry until rows seem to change sides, though they do not.
-    fn predict(&mut self, problem: &ConeProblem, reduced: &Reduced, system: &mut System, state: &mut State, most: usize) -> Result<(), CholeskyError> {
+    fn predict(
+        &mut self,
+        problem: &ConeProblem,
+        reduced: &Reduced,
+        system: &mut System,
+        state: &mut State,
+        most: usize,
+    ) {
         self.weigh(problem);
         if system.fit(problem, &self.weights) == Fit::None {
-            if system.n_factorizations >= most {
-                return Ok(());
+            if system.n_factorizations >= most || system.factorize(problem, &self.weights).is_err()
+            {
+                return;
             }
-            system.factorize(problem, &self.weights)?;
         }
         reduced.total_load(problem, &[], &mut self.step);
         for (index, row) in problem.rows.iter().enumerate() {
@@ -182,37 +271,55 @@ impl Proximal {
         system.solve(&mut self.step);
         self.evaluate(problem, reduced, state);
         let before = self.energy;
-        state.a.iter_mut().zip(&self.step).for_each(|(a, step)| *a += step);
+        state
+            .a
+            .iter_mut()
+            .zip(&self.step)
+            .for_each(|(a, step)| *a += step);
         self.evaluate(problem, reduced, state);
         if self.energy > before {
-            state.a.iter_mut().zip(&self.step).for_each(|(a, step)| *a -= step);
+            state
+                .a
+                .iter_mut()
+                .zip(&self.step)
+                .for_each(|(a, step)| *a -= step);
         }
-        Ok(())
     }
 
     /// Newton's method with exact line search on one proximal step, from the present `a`; `trial` becomes `P(a)`.
     ///
-    /// False if that takes more than `most` factorizations in all.
-    fn newton(&mut self, problem: &ConeProblem, reduced: &Reduced, system: &mut System, state: &mut State, tolerance: f64, most: usize) -> Result<bool, CholeskyError> {
+    /// False if that takes more than `most` factorizations in all, or one that fails.
+    fn newton(
+        &mut self,
+        problem: &ConeProblem,
+        reduced: &Reduced,
+        system: &mut System,
+        state: &mut State,
+        tolerance: f64,
+        most: usize,
+    ) -> bool {
         let (mut norm, mut is_full) = (self.evaluate(problem, reduced, state), false);
         let (mut n_kept, mut least_norm, mut n_idle) = (0, norm, 0);
         for _ in 0..MOST_NEWTON_STEPS {
-            if norm <= 0.1 * tolerance * reduced.force_scale(&self.trial) {
-                return Ok(true);
+            if norm <= SMALL * tolerance * reduced.force_scale(&self.trial) {
+                return true;
             }
             self.weigh(problem);
             match system.fit(problem, &self.weights) {
                 Fit::Exact => {
                     // the piece it was made for has been solved: what is left is rounding
                     if is_full {
-                        return Ok(true);
+                        return true;
                     }
                 }
-                Fit::Near if n_kept < 3 => n_kept += 1,
-                _ if system.n_factorizations >= most => return Ok(false),
+                Fit::Near if n_kept < MOST_KEPT => n_kept += 1,
+                _ if system.n_factorizations >= most => return false,
                 _ => {
                     n_kept = 0;
-                    system.factorize(problem, &self.weights)?;
+                    // `A` has a factor: what fails here is a penalty too stiff for the digits of a number
+                    if system.factorize(problem, &self.weights).is_err() {
+                        return false;
+                    }
                 }
             }
             let is_exact = n_kept == 0;
@@ -220,37 +327,57 @@ impl Proximal {
             self.step.extend(self.imbalance.iter().map(|value| -value));
             system.solve(&mut self.step);
             let length = self.search(problem, reduced, state);
-            state.a.iter_mut().zip(&self.step).for_each(|(a, step)| *a += length * step);
+            state
+                .a
+                .iter_mut()
+                .zip(&self.step)
+                .for_each(|(a, step)| *a += length * step);
             let before = norm;
-            if std::env::var("DBG").is_ok() { println!("   newton norm {norm:.2e} len {length:.3e} facts {} fs {:.2e}", system.n_factorizations, reduced.force_scale(&self.trial)); }
             norm = self.evaluate(problem, reduced, state);
             is_full = is_exact && norm > 0.5 * before && (length - 1.0).abs() < 1e-6;
             if n_kept > 0 && norm > 0.3 * before {
-                n_kept = 3;
+                n_kept = MOST_KEPT;
             }
-            n_idle = if norm < 0.9 * least_norm { 0 } else { n_idle + 1 };
+            n_idle = if norm < 0.9 * least_norm {
+                0
+            } else {
+                n_idle + 1
+            };
             least_norm = least_norm.min(norm);
             // rows at the edge between two pieces change sides with every rounding error
             if n_idle >= 4 && norm <= ROUNDING * reduced.force_scale(&self.trial) {
-                return Ok(true);
+                return true;
             }
         }
-        Ok(false)
+        false
     }
 
     /// Finds `P(a)` and the imbalance `A a - load - Gᵀ P(a)`; returns its size as square root of an energy.
     fn evaluate(&mut self, problem: &ConeProblem, reduced: &Reduced, state: &State) -> f64 {
         self.imbalance.resize(reduced.load.len(), 0.0);
         problem.matrix.multiply(&state.a, &mut self.imbalance);
-        self.imbalance.iter_mut().zip(&reduced.load).for_each(|(value, load)| *value -= load);
-        self.energy = state.a.iter().zip(self.imbalance.iter().zip(&reduced.load)).map(|(a, (value, load))| 0.5 * a * (value - load)).sum();
+        self.imbalance
+            .iter_mut()
+            .zip(&reduced.load)
+            .for_each(|(value, load)| *value -= load);
+        self.energy = state
+            .a
+            .iter()
+            .zip(self.imbalance.iter().zip(&reduced.load))
+            .map(|(a, (value, load))| 0.5 * a * (value - load))
+            .sum();
         self.trial.clear();
         self.status.clear();
         for (index, row) in problem.rows.iter().enumerate() {
             let (force, status) = if reduced.resistance[index] > 0.0 {
-                let (b, metric) = (self.request(problem, reduced, state, index), metric(row.give, self.penalty[index]));
+                let (b, metric) = (
+                    self.request(problem, reduced, state, index),
+                    metric(row.give, self.penalty[index]),
+                );
                 let (force, status) = project(row, b, metric);
-                self.energy += (0..2).map(|k| force[k] * (b[k] - 0.5 * metric[k] * force[k])).sum::<f64>();
+                self.energy += (0..2)
+                    .map(|k| force[k] * (b[k] - 0.5 * metric[k] * force[k]))
+                    .sum::<f64>();
                 (force, status)
             } else {
                 (state.forces[index], ConeStatus::Open)
@@ -259,22 +386,37 @@ impl Proximal {
             self.trial.push(force);
             self.status.push(status);
         }
-        let energy = self.imbalance.iter().zip(&reduced.inverse_diagonal).map(|(value, inverse)| value * value * inverse);
+        let energy = self
+            .imbalance
+            .iter()
+            .zip(&reduced.inverse_diagonal)
+            .map(|(value, inverse)| value * value * inverse);
         energy.sum::<f64>().sqrt()
     }
 
     /// `b = P_k/D - (free + G a + mu sigma)`.
-    fn request(&self, problem: &ConeProblem, reduced: &Reduced, state: &State, index: usize) -> [f64; 2] {
+    fn request(
+        &self,
+        problem: &ConeProblem,
+        reduced: &Reduced,
+        state: &State,
+        index: usize,
+    ) -> [f64; 2] {
         let gap = reduced.gap(problem, index, &state.a);
         let (force, inverse) = (state.forces[index], self.penalty[index]);
         let dilation = problem.rows[index].friction() * state.slip[index];
-        [force[0] * inverse - gap[0] - dilation, force[1] * inverse - gap[1]]
+        [
+            force[0] * inverse - gap[0] - dilation,
+            force[1] * inverse - gap[1],
+        ]
     }
 
     fn weigh(&mut self, problem: &ConeProblem) {
         self.weights.clear();
         let rows = problem.rows.iter().zip(&self.status).zip(&self.penalty);
-        self.weights.extend(rows.map(|((row, &status), &penalty)| slope(row, status, metric(row.give, penalty))));
+        self.weights.extend(
+            rows.map(|((row, &status), &penalty)| slope(row, status, metric(row.give, penalty))),
+        );
     }
 
     /// The length of the Newton step at which the convex energy is least, to a tenth of its first slope.
@@ -297,7 +439,12 @@ impl Proximal {
             for (index, row) in problem.rows.iter().enumerate() {
                 let [at, along] = self.lines[index];
                 let force = if reduced.resistance[index] > 0.0 {
-                    project(row, [0, 1].map(|k| at[k] + length * along[k]), metric(row.give, self.penalty[index])).0
+                    project(
+                        row,
+                        [0, 1].map(|k| at[k] + length * along[k]),
+                        metric(row.give, self.penalty[index]),
+                    )
+                    .0
                 } else {
                     state.forces[index]
                 };
@@ -324,7 +471,11 @@ fn least(slope: impl Fn(f64) -> f64) -> f64 {
     let mut length = high;
     for round in 0..40 {
         // a bisection now and then: the secant alone may creep along one piece
-        length = if round % 3 == 2 { 0.5 * (low + high) } else { low - at_low * (high - low) / (at_high - at_low) };
+        length = if round % 3 == 2 {
+            0.5 * (low + high)
+        } else {
+            low - at_low * (high - low) / (at_high - at_low)
+        };
         let here = slope(length);
         if here.abs() < 0.02 * start.abs() {
             break;

@@ -32,6 +32,13 @@ pub(super) struct Measure {
     pub is_dilated: bool,
 }
 
+impl Measure {
+    /// The worse of both defects.
+    pub fn worst(&self) -> f64 {
+        self.residual.max(self.relative_dilation)
+    }
+}
+
 impl Reduced {
     pub fn restate(&mut self, problem: &ConeProblem) {
         self.load.clear();
@@ -41,17 +48,33 @@ impl Reduced {
         for row in problem.rows {
             let acted = row.acted();
             problem.push(row, -1.0, acted, &mut self.load);
-            self.free.push([0, 1].map(|k| row.free[k] - row.give[k] * acted[k]));
+            self.free
+                .push([0, 1].map(|k| row.free[k] - row.give[k] * acted[k]));
             let normal = row.scale[0] + row.give[0];
-            let tangential = if row.has_tangent() { row.scale[1] + row.give[1] } else { 0.0 };
+            let tangential = if row.has_tangent() {
+                row.scale[1] + row.give[1]
+            } else {
+                0.0
+            };
             self.resistance.push(normal.max(tangential));
         }
         self.inverse_diagonal.clear();
         for node in 0..problem.matrix.n_nodes() {
-            let diagonal = problem.matrix.block(node, node).map_or([1.0; 2], |block| [block[0], block[3]]);
-            self.inverse_diagonal.extend(diagonal.map(|value| 1.0 / value));
+            let diagonal = problem
+                .matrix
+                .block(node, node)
+                .map_or([1.0; 2], |block| [block[0], block[3]]);
+            self.inverse_diagonal
+                .extend(diagonal.map(|value| 1.0 / value));
         }
-        self.largest_load = self.load.iter().zip(&self.inverse_diagonal).fold(0.0_f64, |most, (load, inverse)| most.max(load * load * inverse)).sqrt();
+        self.largest_load = self
+            .load
+            .iter()
+            .zip(&self.inverse_diagonal)
+            .fold(0.0_f64, |most, (load, inverse)| {
+                most.max(load * load * inverse)
+            })
+            .sqrt();
     }
 
     /// `free + G a` of one row.
@@ -68,23 +91,54 @@ impl Reduced {
     }
 
     /// Where the natural map sends the force of one row; `w` with the dilation `mu sigma` in it.
-    pub fn natural(&self, row: &ConeRow, index: usize, force: [f64; 2], w: [f64; 2]) -> ([f64; 2], ConeStatus) {
+    pub fn natural(
+        &self,
+        row: &ConeRow,
+        index: usize,
+        force: [f64; 2],
+        w: [f64; 2],
+    ) -> ([f64; 2], ConeStatus) {
         let resistance = self.resistance[index];
-        project(row, [resistance * force[0] - w[0], resistance * force[1] - w[1]], [resistance; 2])
+        project(
+            row,
+            [resistance * force[0] - w[0], resistance * force[1] - w[1]],
+            [resistance; 2],
+        )
     }
 
     /// The size of forces, in square roots of energy: `max sqrt(W_ii) |P|`, or a fraction of the load if that is more, so
     /// that forces next to nothing are not judged by themselves.
     pub fn force_scale(&self, forces: &[[f64; 2]]) -> f64 {
-        let pressing = forces.iter().zip(&self.resistance).map(|(force, resistance)| f64::sqrt(*resistance) * f64::max(force[0].abs(), force[1].abs()));
+        let pressing = forces
+            .iter()
+            .zip(&self.resistance)
+            .map(|(force, resistance)| {
+                f64::sqrt(*resistance) * f64::max(force[0].abs(), force[1].abs())
+            });
         let scale = pressing.fold(1e-3 * self.largest_load, f64::max);
         // rounding of a large free gap is no force
-        let free = self.free.iter().zip(&self.resistance).filter(|(_, resistance)| **resistance > 0.0);
-        free.map(|(free, resistance)| 1e-6 * f64::max(free[0].abs(), free[1].abs()) / f64::sqrt(*resistance)).fold(scale, f64::max).max(f64::MIN_POSITIVE)
+        let free = self
+            .free
+            .iter()
+            .zip(&self.resistance)
+            .filter(|(_, resistance)| **resistance > 0.0);
+        free.map(|(free, resistance)| {
+            1e-6 * f64::max(free[0].abs(), free[1].abs()) / f64::sqrt(*resistance)
+        })
+        .fold(scale, f64::max)
+        .max(f64::MIN_POSITIVE)
     }
 
     /// Judges forces and the motion they cause, and reads the status of each row.
-    pub fn measure(&self, problem: &ConeProblem, a: &[f64], forces: &[[f64; 2]], slip: &[f64], settings: &ConeSettings, status: &mut [ConeStatus]) -> Measure {
+    pub fn measure(
+        &self,
+        problem: &ConeProblem,
+        a: &[f64],
+        forces: &[[f64; 2]],
+        slip: &[f64],
+        settings: &ConeSettings,
+        status: &mut [ConeStatus],
+    ) -> Measure {
         let mut measure = Measure::default();
         let scale = self.force_scale(forces);
         for (index, row) in problem.rows.iter().enumerate() {
@@ -92,31 +146,53 @@ impl Reduced {
             if self.resistance[index] <= 0.0 {
                 continue;
             }
-            let (force, mu, weight) = (forces[index], row.friction(), self.resistance[index].sqrt());
+            let (force, mu, weight) =
+                (forces[index], row.friction(), self.resistance[index].sqrt());
             let mut w = self.slack(problem, index, a, force);
             let slipped = w[1].abs();
             w[0] += mu * slip[index];
             let (mapped, now) = self.natural(row, index, force, w);
             status[index] = now;
-            let term = weight * (force[0] - mapped[0]).abs().max((force[1] - mapped[1]).abs()) / scale;
+            let term = weight
+                * (force[0] - mapped[0])
+                    .abs()
+                    .max((force[1] - mapped[1]).abs())
+                / scale;
             // `f64::max` would pass over a NaN
-            measure.residual = if term.is_finite() { measure.residual.max(term) } else { f64::INFINITY };
+            measure.residual = if term.is_finite() {
+                measure.residual.max(term)
+            } else {
+                f64::INFINITY
+            };
             if row.has_tangent() && force[0] > 0.0 {
                 let error = (slipped - slip[index]).abs();
                 measure.dilation = measure.dilation.max(mu * error);
-                measure.relative_dilation = measure.relative_dilation.max(mu * error / (weight * scale));
-                let excess = mu * (error - settings.slip_tolerance * slipped) - settings.gap_tolerance;
-                measure.is_dilated |= excess > 0.0 && mu * error > settings.tolerance * weight * scale;
+                measure.relative_dilation =
+                    measure.relative_dilation.max(mu * error / (weight * scale));
+                let excess =
+                    mu * (error - settings.slip_tolerance * slipped) - settings.gap_tolerance;
+                measure.is_dilated |=
+                    excess > 0.0 && mu * error > settings.tolerance * weight * scale;
             }
         }
         measure
     }
 
     /// Sets `sigma = |w_t|` on every row with friction.
-    pub fn follow_slip(&self, problem: &ConeProblem, a: &[f64], forces: &[[f64; 2]], slip: &mut Vec<f64>) {
+    pub fn follow_slip(
+        &self,
+        problem: &ConeProblem,
+        a: &[f64],
+        forces: &[[f64; 2]],
+        slip: &mut Vec<f64>,
+    ) {
         slip.clear();
         slip.extend(problem.rows.iter().enumerate().map(|(index, row)| {
-            if row.has_tangent() { self.slack(problem, index, a, forces[index])[1].abs() } else { 0.0 }
+            if row.has_tangent() {
+                self.slack(problem, index, a, forces[index])[1].abs()
+            } else {
+                0.0
+            }
         }));
     }
 

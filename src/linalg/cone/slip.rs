@@ -32,7 +32,13 @@ impl SlipIteration {
     /// - `weights`: what makes slips comparable.
     pub fn advance(&mut self, slip: &mut [f64], found: &[f64], weights: &[f64]) {
         self.defect.clear();
-        self.defect.extend(found.iter().zip(&*slip).zip(weights).map(|((found, slip), weight)| weight * (found - slip)));
+        self.defect.extend(
+            found
+                .iter()
+                .zip(&*slip)
+                .zip(weights)
+                .map(|((found, slip), weight)| weight * (found - slip)),
+        );
         if self.has_last {
             self.n_changes = (self.n_changes + 1).min(DEPTH);
             self.changes.rotate_right(1);
@@ -70,15 +76,24 @@ impl SlipIteration {
                 continue;
             }
             let pivot_row = gram[pivot];
-            for (_, row) in gram.iter_mut().enumerate().take(n).filter(|(i, _)| *i != pivot) {
+            for (_, row) in gram
+                .iter_mut()
+                .enumerate()
+                .take(n)
+                .filter(|(i, _)| *i != pivot)
+            {
                 let factor = row[pivot] / pivot_row[pivot];
-                row.iter_mut().zip(pivot_row).for_each(|(entry, above)| *entry -= factor * above);
+                row.iter_mut()
+                    .zip(pivot_row)
+                    .for_each(|(entry, above)| *entry -= factor * above);
             }
         }
         for (row, pivot) in gram.iter().zip(0..n) {
             if row[pivot] > 0.0 {
                 let share = row[DEPTH] / row[pivot];
-                slip.iter_mut().zip(&self.changes[pivot].1).for_each(|(slip, change)| *slip -= share * change);
+                slip.iter_mut()
+                    .zip(&self.changes[pivot].1)
+                    .for_each(|(slip, change)| *slip -= share * change);
             }
         }
     }

@@ -23,20 +23,47 @@ pub(super) struct Sweep {
 
 impl Sweep {
     /// Sweeps from the forces of `state`, which must obey their bounds.
-    pub fn run(&mut self, problem: &ConeProblem, reduced: &Reduced, system: &mut System, state: &mut State) {
+    pub fn run(
+        &mut self,
+        problem: &ConeProblem,
+        reduced: &Reduced,
+        system: &mut System,
+        state: &mut State,
+    ) {
         let n_rows = problem.rows.len();
-        for buffer in [&mut self.ahead, &mut self.ahead_slack, &mut self.next, &mut self.next_slack, &mut self.slack] {
+        for buffer in [
+            &mut self.ahead,
+            &mut self.ahead_slack,
+            &mut self.next,
+            &mut self.next_slack,
+            &mut self.slack,
+        ] {
             buffer.resize(n_rows, [0.0; 2]);
         }
-        respond(problem, reduced, system, &mut state.a, &state.forces, &mut self.slack);
+        respond(
+            problem,
+            reduced,
+            system,
+            &mut state.a,
+            &state.forces,
+            &mut self.slack,
+        );
         self.ahead.copy_from_slice(&state.forces);
         self.ahead_slack.copy_from_slice(&self.slack);
         let (mut stiffness, mut momentum) = (1.0_f64, 1.0_f64);
         for sweep in 0..N_SWEEPS {
             for (index, row) in problem.rows.iter().enumerate() {
-                self.next[index] = self.project_row(reduced, row, index, state.slip[index], stiffness);
+                self.next[index] =
+                    self.project_row(reduced, row, index, state.slip[index], stiffness);
             }
-            respond(problem, reduced, system, &mut state.a, &self.next, &mut self.next_slack);
+            respond(
+                problem,
+                reduced,
+                system,
+                &mut state.a,
+                &self.next,
+                &mut self.next_slack,
+            );
             let (curved, length, uphill) = self.compare(reduced, &state.forces);
             if curved > stiffness * length * (1.0 + 1e-12) {
                 stiffness = (1.05 * curved / length).max(1.5 * stiffness);
@@ -56,20 +83,36 @@ impl Sweep {
             self.slack.copy_from_slice(&self.next_slack);
             if sweep % 10 == 9 {
                 for (index, row) in problem.rows.iter().enumerate() {
-                    state.slip[index] = if row.has_tangent() { self.slack[index][1].abs() } else { 0.0 };
+                    state.slip[index] = if row.has_tangent() {
+                        self.slack[index][1].abs()
+                    } else {
+                        0.0
+                    };
                 }
             }
         }
     }
 
-    fn project_row(&self, reduced: &Reduced, row: &super::ConeRow, index: usize, slip: f64, stiffness: f64) -> [f64; 2] {
+    fn project_row(
+        &self,
+        reduced: &Reduced,
+        row: &super::ConeRow,
+        index: usize,
+        slip: f64,
+        stiffness: f64,
+    ) -> [f64; 2] {
         let metric = stiffness * reduced.resistance[index];
         if metric <= 0.0 {
             return self.ahead[index];
         }
         let (force, mut slack) = (self.ahead[index], self.ahead_slack[index]);
         slack[0] += row.friction() * slip;
-        project(row, [0, 1].map(|k| metric * force[k] - slack[k]), [metric; 2]).0
+        project(
+            row,
+            [0, 1].map(|k| metric * force[k] - slack[k]),
+            [metric; 2],
+        )
+        .0
     }
 
     /// Of the change `next - ahead`: its energy, its square in the metric, and whether it turns against the change of forces.
@@ -88,7 +131,14 @@ impl Sweep {
 }
 
 /// Writes `a = A⁻¹ (load + Gᵀ P)` and `w` of every row.
-fn respond(problem: &ConeProblem, reduced: &Reduced, system: &mut System, a: &mut Vec<f64>, forces: &[[f64; 2]], slack: &mut [[f64; 2]]) {
+fn respond(
+    problem: &ConeProblem,
+    reduced: &Reduced,
+    system: &mut System,
+    a: &mut Vec<f64>,
+    forces: &[[f64; 2]],
+    slack: &mut [[f64; 2]],
+) {
     reduced.total_load(problem, forces, a);
     system.solve_bodies(a);
     for (index, slack) in slack.iter_mut().enumerate() {

@@ -47,15 +47,23 @@ pub(super) struct System {
 impl System {
     /// Makes the pattern cover the rows and the factor of `A` fit its values.
     pub fn prepare(&mut self, problem: &ConeProblem) -> Result<(), CholeskyError> {
-        let has_pattern = self.analysis.as_ref().is_some_and(|analysis| analysis.matrix.has_pattern_of(problem.matrix));
+        let has_pattern = self
+            .analysis
+            .as_ref()
+            .is_some_and(|analysis| analysis.matrix.has_pattern_of(problem.matrix));
         if !has_pattern || !self.place_rows(problem) {
             self.analyze(problem, has_pattern);
             self.place_rows(problem);
         }
-        let Some(analysis) = &mut self.analysis else { return Ok(()) };
+        let Some(analysis) = &mut self.analysis else {
+            return Ok(());
+        };
         if !self.has_bodies || analysis.matrix.blocks() != problem.matrix.blocks() {
             self.has_bodies = false;
-            analysis.matrix.blocks_mut().copy_from_slice(problem.matrix.blocks());
+            analysis
+                .matrix
+                .blocks_mut()
+                .copy_from_slice(problem.matrix.blocks());
             analysis.bodies.factorize(problem.matrix)?;
             self.has_bodies = true;
         }
@@ -68,19 +76,36 @@ impl System {
         let mut members: Vec<usize> = Vec::new();
         let mut ends = vec![0];
         for node in 0..matrix.n_nodes() {
-            for &other in matrix.neighbours(node).iter().filter(|&&other| other as usize > node) {
+            for &other in matrix
+                .neighbours(node)
+                .iter()
+                .filter(|&&other| other as usize > node)
+            {
                 members.extend([node, other as usize]);
                 ends.push(members.len());
             }
         }
         for row in problem.rows {
-            members.extend(problem.entries_of(row).iter().map(|entry| entry.node as usize));
+            members.extend(
+                problem
+                    .entries_of(row)
+                    .iter()
+                    .map(|entry| entry.node as usize),
+            );
             ends.push(members.len());
         }
-        let hull = BlockMatrix::from_cells(matrix.n_nodes(), ends.windows(2).map(|ends| &members[ends[0]..ends[1]]));
+        let hull = BlockMatrix::from_cells(
+            matrix.n_nodes(),
+            ends.windows(2).map(|ends| &members[ends[0]..ends[1]]),
+        );
         let mut matrix_places = Vec::with_capacity(matrix.blocks().len());
         for node in 0..matrix.n_nodes() {
-            matrix_places.extend(matrix.neighbours(node).iter().filter_map(|&other| place(&hull, node as u32, other)));
+            matrix_places.extend(
+                matrix
+                    .neighbours(node)
+                    .iter()
+                    .filter_map(|&other| place(&hull, node as u32, other)),
+            );
         }
         let factor = BlockCholesky::analyze(&hull);
         self.spans.clear();
@@ -88,22 +113,33 @@ impl System {
         self.n_analyses += 1;
         match &mut self.analysis {
             Some(analysis) if has_pattern => {
-                (analysis.hull, analysis.factor, analysis.matrix_places) = (hull, factor, matrix_places);
+                (analysis.hull, analysis.factor, analysis.matrix_places) =
+                    (hull, factor, matrix_places);
             }
             slot => {
                 self.has_bodies = false;
                 let (matrix, bodies) = (matrix.clone(), BlockCholesky::analyze(matrix));
-                *slot = Some(Box::new(Analysis { matrix, bodies, hull, factor, matrix_places }));
+                *slot = Some(Box::new(Analysis {
+                    matrix,
+                    bodies,
+                    hull,
+                    factor,
+                    matrix_places,
+                }));
             }
         }
     }
 
     /// Finds the blocks of every row; false if the pattern lacks one.
     fn place_rows(&mut self, problem: &ConeProblem) -> bool {
-        let Some(analysis) = &self.analysis else { return false };
+        let Some(analysis) = &self.analysis else {
+            return false;
+        };
         let spans = problem.rows.iter().map(|row| row.entries);
         let nodes = problem.entries.iter().map(|entry| entry.node);
-        if spans.clone().eq(self.spans.iter().copied()) && nodes.clone().eq(self.nodes.iter().copied()) {
+        if spans.clone().eq(self.spans.iter().copied())
+            && nodes.clone().eq(self.nodes.iter().copied())
+        {
             return true;
         }
         // weights are kept row by row: a factor belongs to the rows it was made of
@@ -136,16 +172,31 @@ impl System {
             let span = row.entries.0 as usize..row.entries.1 as usize;
             *weight == [0.0; 3] || self.entries[span.clone()] == problem.entries[span]
         };
-        if self.values == problem.matrix.blocks() && problem.rows.iter().zip(weights).all(is_same) { Fit::Exact } else { Fit::Near }
+        if self.values == problem.matrix.blocks() && problem.rows.iter().zip(weights).all(is_same) {
+            Fit::Exact
+        } else {
+            Fit::Near
+        }
     }
 
     /// Makes the factor of `A + Gᵀ S G`.
     ///
     /// - `weights`: `S` of each row, `[nn, nt, tt]`.
-    pub fn factorize(&mut self, problem: &ConeProblem, weights: &[[f64; 3]]) -> Result<(), CholeskyError> {
-        let Some(analysis) = &mut self.analysis else { return Ok(()) };
+    pub fn factorize(
+        &mut self,
+        problem: &ConeProblem,
+        weights: &[[f64; 3]],
+    ) -> Result<(), CholeskyError> {
+        let Some(analysis) = &mut self.analysis else {
+            return Ok(());
+        };
         self.has_factor = false;
-        let Analysis { hull, factor, matrix_places, .. } = &mut **analysis;
+        let Analysis {
+            hull,
+            factor,
+            matrix_places,
+            ..
+        } = &mut **analysis;
         hull.fill_zero();
         let blocks = hull.blocks_mut();
         for (&place, block) in matrix_places.iter().zip(problem.matrix.blocks()) {
@@ -166,7 +217,8 @@ impl System {
                 for (second, &place) in entries.iter().zip(&mut places) {
                     let block = &mut blocks[place as usize];
                     for (k, value) in block.iter_mut().enumerate() {
-                        *value += normal[k / 2] * second.normal[k % 2] + tangent[k / 2] * second.tangent[k % 2];
+                        *value += normal[k / 2] * second.normal[k % 2]
+                            + tangent[k / 2] * second.tangent[k % 2];
                     }
                 }
             }
@@ -199,6 +251,9 @@ impl System {
 }
 
 fn place(matrix: &BlockMatrix, row: u32, column: u32) -> Option<u32> {
-    let found = matrix.neighbours(row as usize).binary_search(&column).ok()?;
+    let found = matrix
+        .neighbours(row as usize)
+        .binary_search(&column)
+        .ok()?;
     u32::try_from(matrix.row_start(row as usize) + found).ok()
 }

@@ -1,0 +1,216 @@
+//! Gathering: the pairs of a component. Flexible surfaces are led along a path; what is shown to hooks, or overlaps to begin with, and
+//! pairs of rigid bodies become candidates.
+
+use super::candidates::{self, Names};
+use super::claim::{ClaimedPair, Claims};
+use super::filter::claimable_parent;
+use super::gather::{GatherSettings, Gatherer, PlacedCollider};
+use super::hooks::{HookBook, HookedPair};
+use super::reading::{GatherError, at_rest, law_of, offset_of, owner_of};
+use super::rigid_pairs::RigidPair;
+use super::sets::RapierSets;
+use super::shapes::pose_of;
+use super::ways::{self, RigidSurface};
+use crate::constraint::contact::{ContactLaw, Owner};
+use crate::constraint::geometry::Pose2;
+use crate::kkt::Island;
+use crate::rapier::prelude::*;
+use crate::system::RigidBlock;
+
+impl Gatherer {
+    pub(super) fn add_pair(
+        &mut self,
+        pair: ClaimedPair,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        claims: &mut Claims,
+        island: &mut Island,
+    ) -> Result<(), GatherError> {
+        let component = settings.component;
+        match pair {
+            ClaimedPair::FlexRigid(flex, collider)
+                if claims.component_of_flex(flex) == component =>
+            {
+                let own = claims.flex[flex];
+                let Some(block) = self.flex_blocks.get(&flex).copied() else {
+                    return Ok(());
+                };
+                let Some(placed) = self.place(collider, settings, sets, island) else {
+                    return Ok(());
+                };
+                let names = Names {
+                    one: Owner::Flex(own.index),
+                    other: owner_of(collider),
+                };
+                let mut law = law_of(sets.colliders, own.collider, collider)?;
+                if settings.uses_path && !HookBook::asks([own.collider, collider], sets) {
+                    let led = self.lead(
+                        collider,
+                        block,
+                        (&placed, own.reach()),
+                        (names, law),
+                        sets,
+                        island,
+                    );
+                    match led {
+                        Ok(()) => return Ok(()),
+                        Err(gap) => law.skin += gap,
+                    }
+                }
+                let first = island.candidates.len();
+                candidates::flex_rigid(
+                    island,
+                    block,
+                    placed.block,
+                    placed.parts.clone(),
+                    names,
+                    law,
+                    own.edge + 2.0 * law.skin,
+                );
+                self.hook([own.collider, collider], names, first, sets, island)?;
+            }
+            ClaimedPair::FlexFlex(one, other) if claims.component_of_flex(one) == component => {
+                // The finer surface is the contactor; the first by place if they are equal.
+                let is_finer = claims.flex[other].edge < claims.flex[one].edge * (1.0 - 1e-9);
+                let (contactor, target) = if is_finer { (other, one) } else { (one, other) };
+                let blocks = [contactor, target].map(|flex| self.flex_blocks.get(&flex).copied());
+                let [Some(points), Some(surface)] = blocks else {
+                    return Ok(());
+                };
+                let (points_of, surface_of) = (claims.flex[contactor], claims.flex[target]);
+                let names = Names {
+                    one: Owner::Flex(points_of.index),
+                    other: Owner::Flex(surface_of.index),
+                };
+                let mut law = law_of(sets.colliders, points_of.collider, surface_of.collider)?;
+                let edge = points_of.edge.max(surface_of.edge) + 2.0 * law.skin;
+                let colliders = [points_of.collider, surface_of.collider];
+                if settings.uses_path && !HookBook::asks(colliders, sets) {
+                    match ways::flex_flex(island, [points, surface], names, law) {
+                        Ok(()) => return Ok(()),
+                        Err(gap) => law.skin += gap,
+                    }
+                }
+                let first = island.candidates.len();
+                candidates::flex_flex(island, points, surface, names, law, edge);
+                self.hook(colliders, names, first, sets, island)?;
+            }
+            ClaimedPair::RigidRigid(one, other) => {
+                if self.component_of_pair([one, other], sets, claims) != Some(component) {
+                    return Ok(());
+                }
+                let Some(first) = self.place(one, settings, sets, island) else {
+                    return Ok(());
+                };
+                let Some(second) = self.place(other, settings, sets, island) else {
+                    return Ok(());
+                };
+                let names = Names {
+                    one: owner_of(one),
+                    other: owner_of(other),
+                };
+                let law = law_of(sets.colliders, one, other)?;
+                let blocks = [first.block, second.block];
+                let parts = [first.parts, second.parts];
+                let first = island.candidates.len();
+                let pair = RigidPair {
+                    blocks,
+                    parts,
+                    names,
+                    law,
+                    prediction: settings.prediction + law.skin,
+                    agitation: &self.agitation,
+                };
+                pair.add_candidates(island, &mut self.references);
+                self.hook([one, other], names, first, sets, island)?;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Leads a flexible block along a path that keeps it apart from a collider; see [`ways::flex_rigid`].
+    fn lead(
+        &mut self,
+        handle: ColliderHandle,
+        flex: usize,
+        (placed, reach): (&PlacedCollider, f64),
+        (names, law): (Names, ContactLaw),
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) -> Result<(), f64> {
+        let Some(collider) = sets.colliders.get(handle) else {
+            return Err(0.0);
+        };
+        let surface = RigidSurface {
+            block: placed.block,
+            outline: self.outlines.outline(handle, collider),
+            offset: placed.offset,
+        };
+        ways::flex_rigid(island, flex, &surface, names, law, reach, &mut self.draft)
+    }
+
+    /// Shows the candidates from the `first` on to the user's hook.
+    fn hook(
+        &mut self,
+        colliders: [ColliderHandle; 2],
+        names: Names,
+        first: usize,
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) -> Result<(), GatherError> {
+        let owners = [names.one, names.other];
+        let pair = HookedPair { colliders, owners };
+        self.hooks.modify(pair, first, sets, island)
+    }
+
+    fn component_of_pair(
+        &self,
+        pair: [ColliderHandle; 2],
+        sets: &RapierSets<'_>,
+        claims: &mut Claims,
+    ) -> Option<usize> {
+        pair.iter()
+            .filter_map(|&handle| claimable_parent(sets, sets.colliders.get(handle)?))
+            .find_map(|body| claims.component_of_rigid(body))
+    }
+
+    /// The block and parts of a collider, added to the island when first met.
+    fn place(
+        &mut self,
+        handle: ColliderHandle,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) -> Option<PlacedCollider> {
+        if let Some(placed) = self.placed.get(&handle) {
+            return Some(placed.clone());
+        }
+        let collider = sets.colliders.get(handle)?;
+        let parent = collider
+            .parent()
+            .and_then(|parent| Some((parent, sets.bodies.get(parent)?)));
+        let (block, offset) = match parent {
+            None => {
+                let pose = pose_of(collider.position());
+                let motion = at_rest(&pose);
+                (
+                    self.push_rigid(RigidBlock::prescribed(motion, motion), None, island),
+                    Pose2::identity(),
+                )
+            }
+            Some((parent, body)) => {
+                let block = self.block_of(parent, settings, sets, island)?;
+                (block, offset_of(collider, body))
+            }
+        };
+        let parts = candidates::add_parts(island, self.shapes.parts(handle, collider), offset);
+        let placed = PlacedCollider {
+            block,
+            parts,
+            offset,
+        };
+        self.placed.insert(handle, placed.clone());
+        Some(placed)
+    }
+}
