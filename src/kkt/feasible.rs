@@ -71,6 +71,8 @@ pub struct FeasiblePath {
     motion: Motion,
     search: Path,
     pairs: Vec<MemberPair>,
+    pub part: f64,
+    pub first: Option<Hit>,
     ways: Vec<Way>,
     carriers: Vec<Carrier>,
     points: Vec<SurfacePoint>,
@@ -286,6 +288,8 @@ impl FeasiblePath {
             self.search
                 .time_of_impact(&self.surfaces, &self.motion, &self.pairs, &mut self.hits);
         let part = impact.t.min(1.0).min(self.turning_part(blocks));
+        self.part = part;
+        self.first = impact.first;
         self.go(part, blocks);
         part >= 1.0
     }

@@ -15,7 +15,7 @@ use crate::math::exp;
 const MOST_PASSES: usize = 40;
 
 /// Pass from which the laws need only hold to [`CLOSE_ENOUGH`].
-const EASED_FROM: usize = 8;
+const EASED_FROM: usize = 20;
 
 /// Share of the margin by which true gaps may miss what the law asks for (-).
 const CLOSE_ENOUGH: f64 = 0.05;
@@ -81,11 +81,9 @@ impl Island {
                 CLOSE_ENOUGH * self.path.least_margin()
             };
             let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
-            if std::env::var("DBG").is_ok() {
-                eprintln!(
-                    "pass {pass} misleads {misleads} arrives {arrives} error {error:.2e} turned {turned:.1e} more {has_more} contacts {}",
-                    self.contacts.len()
-                );
+            if std::env::var("DBG").is_ok() && pass > 6 {
+                let w = self.contacts.iter().filter(|c| c.base.is_some()).max_by(|a, b| a.kinematics.gap.abs().total_cmp(&b.kinematics.gap.abs()));
+                eprintln!("pass {pass} arrives {arrives} part {:.3e} error {error:.2e} turned {turned:.1e} more {has_more} contacts {} hit {:?} lost {} worst {:?}", self.path.part, self.contacts.len(), self.path.first, self.contacts.iter().filter(|c| c.is_lost).count(), w.map(|w| (w.kinematics.gap, w.multiplier, w.kinematics.normal, w.slip, w.status)));
             }
             if arrives && is_close && !has_more {
                 self.keep_applied_rows();

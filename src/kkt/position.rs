@@ -297,8 +297,8 @@ impl ActiveContact {
         self.kinematics.gap = gap;
         self.slip = self.kinematics.tangent().dot(&(base.moved + onward));
         if self.is_lost {
-            // Its force is still in the iterate.
-            return f64::INFINITY;
+            // Its force is still in the iterate: far from holding, but a number.
+            return f64::MAX;
         }
         self.law_error(gap, friction)
     }
