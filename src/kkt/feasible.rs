@@ -83,6 +83,8 @@ pub struct FeasiblePath {
     base: Vec<BlockBase>,
     /// Nodes of the flexible blocks at the base, interleaved (m).
     nodes: Vec<f64>,
+    kept_base: Vec<BlockBase>,
+    kept_nodes: Vec<f64>,
     scratch: Vec<Vec2>,
     edges: Vec<[u32; 2]>,
 }
@@ -263,26 +265,9 @@ impl FeasiblePath {
     /// Moves the base towards the blocks' iterate, as far as the surfaces stay apart; returns whether it arrives.
     pub(super) fn advance(&mut self, blocks: &[Block]) -> bool {
         self.motion.rest(&self.surfaces);
-        for (member, carrier) in self.carriers.iter().enumerate() {
-            match (&blocks[carrier.block], self.surfaces.members()[member].kind) {
-                (Block::Flex(body), _) => {
-                    let first = self.surfaces.members()[member].points.start;
-                    let ends = self.motion.ends_mut(&self.surfaces, member);
-                    for (slot, end) in ends.iter_mut().enumerate() {
-                        if let Point::Node(node) = self.points[first + slot].point {
-                            *end = body.position(node);
-                        }
-                    }
-                }
-                (Block::Rigid(body), MotionKind::Rigid) => {
-                    let base = self.base[carrier.block];
-                    let end = body.current();
-                    let (shift, turn) = (end.centre - base.centre, end.angle - base.angle);
-                    self.motion
-                        .move_rigid(&self.surfaces, member, base.centre, shift, turn);
-                }
-                _ => {}
-            }
+        for member in 0..self.carriers.len() {
+            let base = self.base[self.carriers[member].block];
+            self.aim(member, (base.centre, base.angle), blocks);
         }
         let impact =
             self.search
@@ -292,6 +277,85 @@ impl FeasiblePath {
         self.first = impact.first;
         self.go(part, blocks);
         part >= 1.0
+    }
+
+    /// Whether the straight way of two members from the beginning of the step to the blocks' iterate leads through one another: then the
+    /// path has led around, where no motion of one step leads.
+    pub(super) fn leads_around(&mut self, way: usize, blocks: &[Block]) -> bool {
+        self.scratch.clear();
+        self.scratch.extend_from_slice(self.surfaces.points());
+        let members = self.ways[way].members;
+        for member in members {
+            let carrier = self.carriers[member];
+            if self.surfaces.members()[member].kind == MotionKind::Still {
+                continue;
+            }
+            let points = self.surfaces.members()[member].points.clone();
+            let places = self.surfaces.points_mut(member).iter_mut();
+            for (place, own) in places.zip(&self.points[points]) {
+                *place = blocks[carrier.block].start_position(own.point);
+            }
+        }
+        self.motion.rest(&self.surfaces);
+        for member in members {
+            let start = match &blocks[self.carriers[member].block] {
+                Block::Rigid(body) => (body.start().centre, body.start().angle),
+                Block::Flex(_) => (Vec2::zeros(), 0.0),
+            };
+            self.aim(member, start, blocks);
+        }
+        let pair = &self.pairs[way..=way];
+        let impact =
+            self.search
+                .time_of_impact(&self.surfaces, &self.motion, pair, &mut self.hits);
+        for member in members {
+            if self.surfaces.members()[member].kind != MotionKind::Still {
+                let points = self.surfaces.members()[member].points.clone();
+                let base = &self.scratch[points];
+                self.surfaces.points_mut(member).copy_from_slice(base);
+            }
+        }
+        impact.t < 1.0
+    }
+
+    /// Moves a member to where its block's iterate is; a rigid one from this centre and angle.
+    fn aim(&mut self, member: usize, (centre, angle): (Vec2, f64), blocks: &[Block]) {
+        let carrier = self.carriers[member];
+        match (&blocks[carrier.block], self.surfaces.members()[member].kind) {
+            (Block::Flex(body), _) => {
+                let first = self.surfaces.members()[member].points.start;
+                let ends = self.motion.ends_mut(&self.surfaces, member);
+                for (slot, end) in ends.iter_mut().enumerate() {
+                    if let Point::Node(node) = self.points[first + slot].point {
+                        *end = body.position(node);
+                    }
+                }
+            }
+            (Block::Rigid(body), MotionKind::Rigid) => {
+                let end = body.current();
+                let (shift, turn) = (end.centre - centre, end.angle - angle);
+                self.motion
+                    .move_rigid(&self.surfaces, member, centre, shift, turn);
+            }
+            _ => {}
+        }
+    }
+
+    /// Lists the ways of contacts that are lost and that have no near pairs any more.
+    pub(super) fn list_left(&self, lost: impl Iterator<Item = ContactKey>, left: &mut Vec<usize>) {
+        left.clear();
+        for key in lost {
+            let owners = key.owners();
+            let is_named = |way: &Way| {
+                let [one, other] = way.owners;
+                [one.min(other), one.max(other)] == owners
+            };
+            let named = (0..self.ways.len()).filter(|&way| is_named(&self.ways[way]));
+            left.extend(named);
+        }
+        left.sort_unstable();
+        left.dedup();
+        left.retain(|way| !self.near.iter().any(|near| near.pair == *way));
     }
 
     /// The part of the way on which no block with near pairs turns too far.
@@ -346,6 +410,18 @@ impl FeasiblePath {
                 }
             }
         }
+    }
+
+    /// Keeps a copy of the base.
+    pub(super) fn keep_base(&mut self) {
+        self.kept_base.clone_from(&self.base);
+        self.kept_nodes.clone_from(&self.nodes);
+    }
+
+    /// Goes back to the copy kept; surfaces stay where they are.
+    pub(super) fn return_to_kept(&mut self) {
+        self.base.clone_from(&self.kept_base);
+        self.nodes.clone_from(&self.kept_nodes);
     }
 
     /// Leaves the blocks at the base, with what else the iterate found.

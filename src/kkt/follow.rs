@@ -7,12 +7,21 @@
 
 use super::island::{ActiveContact, AtBase, Island, IslandSummary, SolveSettings};
 use super::iterate::{ANGLE_TOLERANCE, ROWS_KEPT_FROM};
+use super::joint_rows::ActiveJoint;
 use super::position::PARTING_RATE;
 use crate::constraint::contact::{Candidate, ContactMemory, Pair, Remembered};
+use crate::constraint::joint::JointGrip;
 use crate::math::exp;
 
 /// Passes in a step. The scenes of the tests take one to four; what needs more is cut.
 const MOST_PASSES: usize = 40;
+
+/// Passes of a step that stop short of where the forces lead. Every one of them goes on with forces that do not know what comes after: bodies
+/// that are stopped that often meet in ways that the step does not resolve.
+const MOST_STOPS: usize = 6;
+
+/// Share of the margin within which the laws hold where the contacts are many (-): a hundred-thousandth moves no force that counts.
+const LARGE_TOLERANCE: f64 = 1e-5;
 
 /// Pass from which the laws need only hold to [`CLOSE_ENOUGH`].
 const EASED_FROM: usize = 20;
@@ -22,6 +31,15 @@ const CLOSE_ENOUGH: f64 = 0.05;
 
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
+
+/// The state at the first impact of a step.
+#[derive(Debug, Default)]
+pub(super) struct Impact {
+    is_known: bool,
+    contacts: Vec<ActiveContact>,
+    ties: Vec<ActiveJoint>,
+    grips: Vec<JointGrip>,
+}
 
 /// How the near pairs of a base are listed.
 #[derive(Clone, Copy)]
@@ -36,7 +54,7 @@ struct Listing<'a> {
 }
 
 impl Island {
-    /// Solves the positions along the path; returns whether the laws hold.
+    /// Solves the positions along the path; returns whether the laws hold. If not, the base and the forces are those of the first impact.
     pub(super) fn follow_path(
         &mut self,
         settings: &SolveSettings,
@@ -44,10 +62,25 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) -> bool {
-        let kept = exp(-PARTING_RATE * settings.dt);
         self.path.rest(&self.blocks);
         self.path
             .list_pressed(&self.pressed_owners, &mut self.pressed_before);
+        self.impact.is_known = false;
+        let is_solved = self.try_passes(settings, memory, tolerance, summary);
+        if !is_solved && self.impact.is_known {
+            self.return_to_impact();
+        }
+        is_solved
+    }
+
+    fn try_passes(
+        &mut self,
+        settings: &SolveSettings,
+        memory: &ContactMemory,
+        tolerance: f64,
+        summary: &mut IslandSummary,
+    ) -> bool {
+        let kept = exp(-PARTING_RATE * settings.dt);
         let mut listing = Listing {
             memory: Some(memory),
             keeps_rows: false,
@@ -57,6 +90,7 @@ impl Island {
         self.list_near(&listing);
         listing.memory = None;
         let mut turned = self.correct();
+        let mut n_stopped = 0;
         for pass in 0..MOST_PASSES {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
@@ -64,45 +98,89 @@ impl Island {
             let misleads = is_guess && self.measure(true) > NEAR * tolerance;
             let mut arrives = false;
             let mut error = 0.0;
+            if self.leads_around() {
+                return false;
+            }
             if !misleads {
                 arrives = self.path.advance(&self.blocks);
+                n_stopped += usize::from(!arrives);
                 listing.keeps_rows = pass >= ROWS_KEPT_FROM;
                 self.list_near(&listing);
                 error = self.measure(false);
             }
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
-            let enough = if pass < EASED_FROM {
-                if self.is_large() {
-                    tolerance.max(1e-5 * self.path.least_margin())
-                } else {
-                    tolerance
-                }
-            } else {
-                CLOSE_ENOUGH * self.path.least_margin()
-            };
+            let enough = self.enough(pass, tolerance);
             let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
-            if std::env::var("DBG").is_ok() && pass > 6 {
-                let w = self.contacts.iter().filter(|c| c.base.is_some()).max_by(|a, b| a.kinematics.gap.abs().total_cmp(&b.kinematics.gap.abs()));
-                eprintln!("pass {pass} arrives {arrives} part {:.3e} error {error:.2e} turned {turned:.1e} more {has_more} contacts {} hit {:?} lost {} worst {:?}", self.path.part, self.contacts.len(), self.path.first, self.contacts.iter().filter(|c| c.is_lost).count(), w.map(|w| (w.kinematics.gap, w.multiplier, w.kinematics.normal, w.slip, w.status)));
-            }
             if arrives && is_close && !has_more {
                 self.keep_applied_rows();
                 return true;
             }
-            if !(error + turned).is_finite() {
+            if !(error + turned).is_finite() || n_stopped > MOST_STOPS {
                 return false;
             }
             if !self.ties.is_empty() && pass > 0 && pass % 5 == 0 {
                 self.restiffen_turns(settings);
             }
+            self.note_left();
             self.turn_signed_rows(!misleads && !listing.keeps_rows);
             let solved = self.solve_multipliers(settings, true, tolerance, summary);
             if solved.is_err() {
                 return false;
             }
+            if n_stopped > 0 && !self.impact.is_known {
+                self.keep_impact();
+            }
             turned = self.correct();
         }
         false
+    }
+
+    /// How far the laws may be from holding at the end of a pass (m).
+    fn enough(&self, pass: usize, tolerance: f64) -> f64 {
+        if pass >= EASED_FROM {
+            CLOSE_ENOUGH * self.path.least_margin()
+        } else if self.is_large() {
+            tolerance.max(LARGE_TOLERANCE * self.path.least_margin())
+        } else {
+            tolerance
+        }
+    }
+
+    /// Keeps the base of the first impact of a step, and the forces that answer it.
+    fn keep_impact(&mut self) {
+        self.impact.is_known = true;
+        self.impact.contacts.clone_from(&self.contacts);
+        self.impact.ties.clone_from(&self.ties);
+        self.impact.grips.clone_from(&self.joint_grips);
+        self.path.keep_base();
+    }
+
+    /// Goes back to the first impact: what met there ends the step where it met, with the velocities of the forces that answer it.
+    fn return_to_impact(&mut self) {
+        self.contacts.clone_from(&self.impact.contacts);
+        self.ties.clone_from(&self.impact.ties);
+        self.joint_grips.clone_from(&self.impact.grips);
+        self.path.return_to_kept();
+        self.correct();
+    }
+
+    /// Notes what has slid off the other body of its contact within the step: its force is taken out by the next solve.
+    fn note_left(&mut self) {
+        let lost = self.contacts.iter().filter(|contact| contact.is_lost);
+        let keys = lost.map(|contact| self.candidates[contact.candidate].key);
+        self.path.list_left(keys, &mut self.left);
+    }
+
+    /// Whether something that has slid off ends, without that contact's force, behind what it met: it would have gone around within the
+    /// step.
+    fn leads_around(&mut self) -> bool {
+        let left = std::mem::take(&mut self.left);
+        let is_led = left
+            .iter()
+            .any(|way| self.path.leads_around(*way, &self.blocks));
+        self.left = left;
+        self.left.clear();
+        is_led
     }
 
     /// Whether the contacts at hand are solved as a sparse problem.

@@ -3,6 +3,7 @@
 use super::constraint_function::{ContactMethod, Newton};
 use super::delassus::RowDirection;
 use super::feasible::FeasiblePath;
+use super::follow::Impact;
 use super::impact::ImpactTreatment;
 use super::joint_rows::ActiveJoint;
 use super::sparse::Sparse;
@@ -215,6 +216,9 @@ pub struct Island {
     pub(super) near_candidates: HashMap<ContactKey, usize>,
     pub(super) contacts_before: Vec<ActiveContact>,
     pub(super) slot_of: Vec<u32>,
+    pub(super) impact: Impact,
+    /// Ways that a contact has slid off from.
+    pub(super) left: Vec<usize>,
     /// The working set after a solve.
     pub contacts: Vec<ActiveContact>,
     /// Rows of joints.
