@@ -201,6 +201,9 @@ pub(super) fn draw_inwards(vertices: &[Vec2], offset: f64, inset: &mut Vec<Vec2>
     for edge in 0..n {
         let length = (vertices[(edge + 1) % n] - vertices[edge]).norm();
         most = most.min(KEPT * length / (bend(edge) + bend((edge + 1) % n)));
+        // How far the tip of a corner stands out of its rounding, per unit.
+        let tip = (1.0 + bend(edge).powi(2)).sqrt() - 1.0;
+        most = most.min(TIP * offset / tip.max(TIP));
     }
     for vertex in 0..n {
         let along = direction(vertex);
@@ -208,6 +211,9 @@ pub(super) fn draw_inwards(vertices: &[Vec2], offset: f64, inset: &mut Vec<Vec2>
     }
     most
 }
+
+/// What the tip of a corner may stand out of its rounding, relative to the offset: as much as that of a right angle does.
+const TIP: f64 = std::f64::consts::SQRT_2 - 1.0;
 
 /// Share of an edge that drawing inwards may take: a quarter leaves a core that is no sliver, whatever the polygon.
 const KEPT: f64 = 0.25;

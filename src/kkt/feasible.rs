@@ -10,6 +10,9 @@ use std::collections::HashSet;
 /// Between half of it and twice only the number of passes changes.
 const REACH: f64 = 10.0;
 
+/// How much farther than a face a sharp corner may reach, relative to the margin: that of a right angle does.
+const MOST_CORNER: f64 = std::f64::consts::SQRT_2 - 1.0;
+
 /// Turn of a member with near pairs within a pass (rad): rows are straight where arcs are not.
 const MOST_TURN: f64 = 0.5;
 
@@ -277,6 +280,14 @@ impl FeasiblePath {
         self.first = impact.first;
         self.go(part, blocks);
         part >= 1.0
+    }
+
+    pub(super) fn debug(&self) {
+        let Some(hit) = self.first else { return };
+        let pair = &self.pairs[hit.pair];
+        let e = self.surfaces.edges()[hit.edge].map(|e| (e, self.surfaces.points()[e as usize], self.motion.ends()[e as usize]));
+        eprintln!("   hit {hit:?} pair {pair:?} guard {:.4e} point {:?} end {:?} edge {e:?} members {:?}", pair.guard(), self.surfaces.points()[hit.point], self.motion.ends()[hit.point], self.surfaces.members().iter().map(|m| (m.kind, m.points.clone())).collect::<Vec<_>>());
+        for n in &self.near { if n.pair == hit.pair { eprintln!("   near {n:?}"); } }
     }
 
     /// Whether the straight way of two members from the beginning of the step to the blocks' iterate leads through one another: then the
@@ -549,7 +560,9 @@ impl FeasiblePath {
             Target::Vertex(vertex) => reach(vertex, met, near.normal),
         };
         let margin = self.ways[near.pair].margin;
-        of_point.max(of_target).max(margin) - margin
+        // The tips of acute corners stand out farther than the path could make up for.
+        let most = MOST_CORNER * margin;
+        (of_point.max(of_target) - margin).clamp(0.0, most)
     }
 
     /// Position of a point of a block at the base (m).

@@ -66,6 +66,7 @@ impl Island {
         self.path
             .list_pressed(&self.pressed_owners, &mut self.pressed_before);
         self.impact.is_known = false;
+        self.left.clear();
         let is_solved = self.try_passes(settings, memory, tolerance, summary);
         if !is_solved && self.impact.is_known {
             self.return_to_impact();
@@ -90,7 +91,7 @@ impl Island {
         self.list_near(&listing);
         listing.memory = None;
         let mut turned = self.correct();
-        let mut n_stopped = 0;
+        let (mut n_stopped, mut n_arrived) = (0, 0);
         for pass in 0..MOST_PASSES {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
@@ -104,13 +105,20 @@ impl Island {
             if !misleads {
                 arrives = self.path.advance(&self.blocks);
                 n_stopped += usize::from(!arrives);
-                listing.keeps_rows = pass >= ROWS_KEPT_FROM;
+                n_arrived = if arrives { n_arrived + 1 } else { 0 };
+                // Where the base has been stopped, geometry is not what the rows were measured in.
+                listing.keeps_rows = n_arrived > ROWS_KEPT_FROM;
                 self.list_near(&listing);
                 error = self.measure(false);
             }
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
             let enough = self.enough(pass, tolerance);
             let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
+            if std::env::var("DBG").is_ok() {
+                if pass == 6 && !arrives { self.path.debug(); for c in &self.contacts { eprintln!("   row key {:?} base {:?} gap {:.3e} p {:?} n {:?} status {:?} allowance {:.2e}", self.candidates[c.candidate].key, c.base.map(|b| b.gap), c.kinematics.gap, c.multiplier, c.kinematics.normal, c.status, c.allowance); } }
+                let w = self.contacts.iter().filter(|c| c.base.is_some()).max_by(|a, b| a.kinematics.gap.abs().total_cmp(&b.kinematics.gap.abs()));
+                eprintln!("pass {pass} mis {misleads} arrives {arrives} part {:.3e} error {error:.2e} turned {turned:.1e} more {has_more} contacts {} hit {:?} lost {} worst {:?}", self.path.part, self.contacts.len(), self.path.first, self.contacts.iter().filter(|c| c.is_lost).count(), w.map(|w| (w.kinematics.gap, w.multiplier, w.kinematics.normal, w.slip, w.status)));
+            }
             if arrives && is_close && !has_more {
                 self.keep_applied_rows();
                 return true;
