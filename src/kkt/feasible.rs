@@ -74,8 +74,6 @@ pub struct FeasiblePath {
     motion: Motion,
     search: Path,
     pairs: Vec<MemberPair>,
-    pub part: f64,
-    pub first: Option<Hit>,
     ways: Vec<Way>,
     carriers: Vec<Carrier>,
     points: Vec<SurfacePoint>,
@@ -276,18 +274,8 @@ impl FeasiblePath {
             self.search
                 .time_of_impact(&self.surfaces, &self.motion, &self.pairs, &mut self.hits);
         let part = impact.t.min(1.0).min(self.turning_part(blocks));
-        self.part = part;
-        self.first = impact.first;
         self.go(part, blocks);
         part >= 1.0
-    }
-
-    pub(super) fn debug(&self) {
-        let Some(hit) = self.first else { return };
-        let pair = &self.pairs[hit.pair];
-        let e = self.surfaces.edges()[hit.edge].map(|e| (e, self.surfaces.points()[e as usize], self.motion.ends()[e as usize]));
-        eprintln!("   hit {hit:?} pair {pair:?} guard {:.4e} point {:?} end {:?} edge {e:?} members {:?}", pair.guard(), self.surfaces.points()[hit.point], self.motion.ends()[hit.point], self.surfaces.members().iter().map(|m| (m.kind, m.points.clone())).collect::<Vec<_>>());
-        for n in &self.near { if n.pair == hit.pair { eprintln!("   near {n:?}"); } }
     }
 
     /// Whether the straight way of two members from the beginning of the step to the blocks' iterate leads through one another: then the

@@ -18,7 +18,7 @@ const MOST_PASSES: usize = 40;
 
 /// Passes of a step that stop short of where the forces lead. Every one of them goes on with forces that do not know what comes after: bodies
 /// that are stopped that often meet in ways that the step does not resolve.
-const MOST_STOPS: usize = 6;
+const MOST_STOPS: usize = 20;
 
 /// Share of the margin within which the laws hold where the contacts are many (-): a hundred-thousandth moves no force that counts.
 const LARGE_TOLERANCE: f64 = 1e-5;
@@ -32,13 +32,26 @@ const CLOSE_ENOUGH: f64 = 0.05;
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
 
-/// The state at the first impact of a step.
+/// How a step along the path has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Passed {
+    /// The laws hold where the forces lead.
+    Solved,
+    /// The forces lead to a place that the path reaches, where gaps miss the laws by less than the margin.
+    Arrived,
+    /// The base was stopped on the way.
+    Stopped,
+}
+
+/// A state on the way, with the forces that belong to it.
 #[derive(Debug, Default)]
-pub(super) struct Impact {
+pub(super) struct Stage {
     is_known: bool,
     contacts: Vec<ActiveContact>,
     ties: Vec<ActiveJoint>,
     grips: Vec<JointGrip>,
+    /// How far the laws are from holding (m).
+    error: f64,
 }
 
 /// How the near pairs of a base are listed.
@@ -54,24 +67,40 @@ struct Listing<'a> {
 }
 
 impl Island {
-    /// Solves the positions along the path; returns whether the laws hold. If not, the base and the forces are those of the first impact.
+    /// Solves the positions along the path. Where the laws cannot be made to hold, the best place that was reached by the whole of the step
+    /// counts, or else the first impact.
     pub(super) fn follow_path(
         &mut self,
         settings: &SolveSettings,
         memory: &ContactMemory,
         tolerance: f64,
         summary: &mut IslandSummary,
-    ) -> bool {
+    ) -> Passed {
         self.path.rest(&self.blocks);
         self.path
             .list_pressed(&self.pressed_owners, &mut self.pressed_before);
         self.impact.is_known = false;
+        self.arrival.is_known = false;
         self.left.clear();
-        let is_solved = self.try_passes(settings, memory, tolerance, summary);
-        if !is_solved && self.impact.is_known {
-            self.return_to_impact();
+        if self.try_passes(settings, memory, tolerance, summary) {
+            return Passed::Solved;
         }
-        is_solved
+        if self.arrival.is_known {
+            let stage = std::mem::take(&mut self.arrival);
+            self.return_to(&stage);
+            self.keep_applied_rows();
+            self.arrival = stage;
+            self.correct();
+            return Passed::Arrived;
+        }
+        if self.impact.is_known {
+            let stage = std::mem::take(&mut self.impact);
+            self.return_to(&stage);
+            self.impact = stage;
+            self.path.return_to_kept();
+            self.correct();
+        }
+        Passed::Stopped
     }
 
     fn try_passes(
@@ -114,14 +143,12 @@ impl Island {
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
             let enough = self.enough(pass, tolerance);
             let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
-            if std::env::var("DBG").is_ok() {
-                if pass == 6 && !arrives { self.path.debug(); for c in &self.contacts { eprintln!("   row key {:?} base {:?} gap {:.3e} p {:?} n {:?} status {:?} allowance {:.2e}", self.candidates[c.candidate].key, c.base.map(|b| b.gap), c.kinematics.gap, c.multiplier, c.kinematics.normal, c.status, c.allowance); } }
-                let w = self.contacts.iter().filter(|c| c.base.is_some()).max_by(|a, b| a.kinematics.gap.abs().total_cmp(&b.kinematics.gap.abs()));
-                eprintln!("pass {pass} mis {misleads} arrives {arrives} part {:.3e} error {error:.2e} turned {turned:.1e} more {has_more} contacts {} hit {:?} lost {} worst {:?}", self.path.part, self.contacts.len(), self.path.first, self.contacts.iter().filter(|c| c.is_lost).count(), w.map(|w| (w.kinematics.gap, w.multiplier, w.kinematics.normal, w.slip, w.status)));
-            }
             if arrives && is_close && !has_more {
                 self.keep_applied_rows();
                 return true;
+            }
+            if arrives && !has_more && turned <= CLOSE_ENOUGH {
+                self.keep_arrival(error);
             }
             if !(error + turned).is_finite() || n_stopped > MOST_STOPS {
                 return false;
@@ -156,20 +183,34 @@ impl Island {
 
     /// Keeps the base of the first impact of a step, and the forces that answer it.
     fn keep_impact(&mut self) {
-        self.impact.is_known = true;
-        self.impact.contacts.clone_from(&self.contacts);
-        self.impact.ties.clone_from(&self.ties);
-        self.impact.grips.clone_from(&self.joint_grips);
+        let mut stage = std::mem::take(&mut self.impact);
+        self.keep(&mut stage, 0.0);
+        self.impact = stage;
         self.path.keep_base();
     }
 
-    /// Goes back to the first impact: what met there ends the step where it met, with the velocities of the forces that answer it.
-    fn return_to_impact(&mut self) {
-        self.contacts.clone_from(&self.impact.contacts);
-        self.ties.clone_from(&self.impact.ties);
-        self.joint_grips.clone_from(&self.impact.grips);
-        self.path.return_to_kept();
-        self.correct();
+    /// Keeps a place that the whole of the step has reached, if it is the best so far.
+    fn keep_arrival(&mut self, error: f64) {
+        let is_better = !self.arrival.is_known || error < self.arrival.error;
+        if error < self.path.least_margin() && is_better {
+            let mut stage = std::mem::take(&mut self.arrival);
+            self.keep(&mut stage, error);
+            self.arrival = stage;
+        }
+    }
+
+    fn keep(&self, stage: &mut Stage, error: f64) {
+        stage.is_known = true;
+        stage.error = error;
+        stage.contacts.clone_from(&self.contacts);
+        stage.ties.clone_from(&self.ties);
+        stage.grips.clone_from(&self.joint_grips);
+    }
+
+    fn return_to(&mut self, stage: &Stage) {
+        self.contacts.clone_from(&stage.contacts);
+        self.ties.clone_from(&stage.ties);
+        self.joint_grips.clone_from(&stage.grips);
     }
 
     /// Notes what has slid off the other body of its contact within the step: its force is taken out by the next solve.

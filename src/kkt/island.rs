@@ -3,7 +3,7 @@
 use super::constraint_function::{ContactMethod, Newton};
 use super::delassus::RowDirection;
 use super::feasible::FeasiblePath;
-use super::follow::Impact;
+use super::follow::Stage;
 use super::impact::ImpactTreatment;
 use super::joint_rows::ActiveJoint;
 use super::sparse::Sparse;
@@ -177,8 +177,10 @@ pub struct IslandSummary {
     pub is_doubtful: bool,
     /// Whether Newton's iterations failed and a linearised step was taken.
     pub is_linearized: bool,
-    /// Whether the step was cut at a state on its feasible path.
+    /// Whether the step ended where gaps miss the laws by up to the margin of the path.
     pub is_cut: bool,
+    /// Whether the step was stopped at a state on its feasible path.
+    pub is_stopped: bool,
     /// Whether even that threw a body about, so that the island stayed where it was, at rest.
     pub is_held: bool,
     /// Largest overlap left at a candidate (m).
@@ -216,7 +218,9 @@ pub struct Island {
     pub(super) near_candidates: HashMap<ContactKey, usize>,
     pub(super) contacts_before: Vec<ActiveContact>,
     pub(super) slot_of: Vec<u32>,
-    pub(super) impact: Impact,
+    /// The first impact of a step, and the best place that the whole of the step has reached.
+    pub(super) impact: Stage,
+    pub(super) arrival: Stage,
     /// Ways that a contact has slid off from.
     pub(super) left: Vec<usize>,
     /// The working set after a solve.

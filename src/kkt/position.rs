@@ -5,6 +5,7 @@
 //! hold, finds new multipliers from `b = g / b0 - W p`. A contact at rest so costs one solve.
 
 use super::constraint_function::{ContactMethod, Trial};
+use super::follow::Passed;
 use super::island::{ActiveContact, AtBase, Island, IslandSummary, SolveSettings};
 use crate::constraint::contact::{Candidate, ContactMemory, Kinematics, Remembered, Scene};
 use crate::linalg::complementarity::Status;
@@ -47,9 +48,15 @@ impl Island {
             if !is_solved || self.is_astray() {
                 self.fall_back(settings, memory, tolerance, summary);
             }
-        } else if !self.follow_path(settings, memory, tolerance, summary) {
-            summary.is_cut = true;
-            self.path.stop(&mut self.blocks);
+        } else {
+            match self.follow_path(settings, memory, tolerance, summary) {
+                Passed::Solved => {}
+                Passed::Arrived => summary.is_cut = true,
+                Passed::Stopped => {
+                    summary.is_stopped = true;
+                    self.path.stop(&mut self.blocks);
+                }
+            }
             for contact in &mut self.contacts {
                 contact.is_lost = false;
             }

@@ -16,7 +16,8 @@ pub enum Quality {
     /// The laws of contact hold at its end.
     #[default]
     Solved,
-    /// It was solved in pieces of the step.
+    /// All surfaces are apart and the whole of the step was taken, with forces under which gaps miss the laws by up to the offset of the
+    /// surfaces, a hundredth of an edge.
     Cut,
     /// Its budget ran out. Surfaces on a feasible path are apart where it was stopped, velocities come from the last forces; what lies on
     /// no path (pairs of rigid bodies, pairs shown to hooks, what was put into each other) may overlap.
@@ -41,8 +42,10 @@ pub struct Unsolved {
 impl IslandSummary {
     /// How well the island was solved.
     pub(super) fn quality(&self) -> Quality {
-        if self.is_cut || self.is_linearized || self.is_held {
+        if self.is_stopped || self.is_linearized || self.is_held {
             Quality::Unfinished
+        } else if self.is_cut {
+            Quality::Cut
         } else {
             Quality::Solved
         }
