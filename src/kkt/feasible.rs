@@ -304,9 +304,9 @@ impl FeasiblePath {
             self.aim(member, start, blocks);
         }
         let pair = &self.pairs[way..=way];
-        let impact =
-            self.search
-                .time_of_impact(&self.surfaces, &self.motion, pair, &mut self.hits);
+        let impact = self
+            .search
+            .time_of_impact(&self.surfaces, &self.motion, pair, &mut self.hits);
         for member in members {
             if self.surfaces.members()[member].kind != MotionKind::Still {
                 let points = self.surfaces.members()[member].points.clone();

@@ -94,10 +94,7 @@ impl Island {
             return Passed::Arrived;
         }
         if self.impact.is_known {
-            let stage = std::mem::take(&mut self.impact);
-            self.return_to(&stage);
-            self.impact = stage;
-            self.path.return_to_kept();
+            self.return_to_first_stop();
             self.correct();
         }
         Passed::Stopped
@@ -187,6 +184,18 @@ impl Island {
         self.keep(&mut stage, 0.0);
         self.impact = stage;
         self.path.keep_base();
+    }
+
+    /// Goes back to the first impact, or if there was none to the beginning of the step.
+    pub(super) fn return_to_first_stop(&mut self) {
+        if self.impact.is_known {
+            let stage = std::mem::take(&mut self.impact);
+            self.return_to(&stage);
+            self.impact = stage;
+            self.path.return_to_kept();
+        } else {
+            self.path.rest(&self.blocks);
+        }
     }
 
     /// Keeps a place that the whole of the step has reached, if it is the best so far.

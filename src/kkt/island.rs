@@ -310,10 +310,15 @@ impl Island {
         summary.work = self.actual_work(settings) + joint_work;
         summary.start_energy = before;
         summary.end_energy = self.end_energy();
+        if self.has_gained(allowance + reserve.max(0.0), &summary) {
+            self.end_gently(settings, &mut summary)?;
+        }
         if treatment.limits_energy() {
             let stored = reserve.max(0.0);
             self.limit_energy(settings, allowance, reserve, &mut summary);
-            self.hold_if_flung(settings, allowance + stored, &mut summary);
+            if self.path.is_empty() {
+                self.hold_if_flung(settings, allowance + stored, &mut summary);
+            }
         }
         self.publish_forces(settings.dt);
         Ok(summary)

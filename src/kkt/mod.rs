@@ -13,6 +13,7 @@ mod fallback;
 mod feasible;
 mod follow;
 mod forward;
+mod gentle;
 mod impact;
 mod island;
 mod iterate;

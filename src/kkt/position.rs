@@ -229,7 +229,7 @@ impl Island {
         self.contacts.len() > before
     }
 
-    fn gap_violation(&self) -> f64 {
+    pub(super) fn gap_violation(&self) -> f64 {
         self.contacts
             .iter()
             .filter(|contact| !contact.is_lost || contact.multiplier[0] > 0.0)

@@ -17,6 +17,8 @@ pub struct RigidBlock {
     pub smooth_start: [f64; 3],
     /// See [`RigidBlock::smooth_start`].
     pub smooth_end: [f64; 3],
+    /// What [`RigidBlock::smooth_end`] is without contact.
+    smooth_free: [f64; 3],
     inverse_mass: [f64; 3],
     pub(super) mass: [f64; 3],
     inverse_effective: [f64; 3],
@@ -60,6 +62,7 @@ impl RigidBlock {
             free: end,
             smooth_start: [0.0; 3],
             smooth_end: [0.0; 3],
+            smooth_free: [0.0; 3],
             inverse_mass: [0.0; 3],
             mass: [0.0; 3],
             inverse_effective: [0.0; 3],
@@ -123,6 +126,7 @@ impl RigidBlock {
             free,
             smooth_start,
             smooth_end,
+            smooth_free: smooth_end,
             inverse_mass: load.inverse_mass,
             mass,
             inverse_effective,
@@ -158,6 +162,7 @@ impl RigidBlock {
         self.free = free;
         self.smooth_start = acceleration;
         self.smooth_end = acceleration;
+        self.smooth_free = acceleration;
         self.link = Some(response);
     }
 
@@ -307,6 +312,11 @@ impl RigidBlock {
         self.current = self.free;
         self.current.centre += Vec2::new(step[0], step[1]);
         self.current.angle += step[2];
+    }
+
+    /// Forgets what contact did to the acceleration at the end.
+    pub fn forget_contact(&mut self) {
+        self.smooth_end = self.smooth_free;
     }
 
     /// Along which of its dofs forces move the body.
