@@ -50,5 +50,5 @@ pub(crate) use reading::{GatherError, is_held_motion};
 #[cfg(feature = "serde-serialize")]
 pub(crate) use record::CouplingRecord;
 pub use sets::RapierSets;
-pub(crate) use shapes::rounding;
+pub(crate) use shapes::{ShapeFault, rounding};
 pub(crate) use sleep::{is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving};

@@ -1,7 +1,7 @@
 //! Why a step was not taken.
 
 use crate::body::{AttachmentHandle, FlexBodyError, FlexBodyHandle};
-use crate::coupling::GatherError;
+use crate::coupling::{GatherError, ShapeFault};
 use crate::integrator::IntegratorError;
 use crate::kkt::KktError;
 use crate::linalg::cholesky::CholeskyError;
@@ -96,6 +96,18 @@ pub enum StepError {
         "{0:?} touches a flexible body, and its friction or restitution is not finite: set both to finite numbers"
     )]
     Coefficient(ColliderHandle),
+    /// A collider that a flexible body meets, or a body that it touches, has a shape of numbers that no body can have.
+    #[error(
+        "{collider:?} meets a flexible body, or what touches one, and its shape has {fault}: {cure}, or disable the collider"
+    )]
+    Shape {
+        /// The collider.
+        collider: ColliderHandle,
+        /// What is wrong with its shape.
+        fault: &'static str,
+        /// What to do.
+        cure: &'static str,
+    },
     /// `modify_solver_contacts` left numbers that are not finite.
     #[error(
         "the hook `modify_solver_contacts` left a normal, distance or coefficient that is not finite, or a normal of no length, between {0:?} and {1:?}: leave finite numbers, or clear the solver contacts"
@@ -110,6 +122,11 @@ impl From<GatherError> for StepError {
             GatherError::RigidBody(handle) => Self::RigidBody(handle),
             GatherError::Joint(handle) => Self::Joint(handle),
             GatherError::Coefficient(handle) => Self::Coefficient(handle),
+            GatherError::Shape(collider, ShapeFault { fault, cure }) => Self::Shape {
+                collider,
+                fault,
+                cure,
+            },
             GatherError::Hook([one, other]) => Self::Hook(one, other),
         }
     }
