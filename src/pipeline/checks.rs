@@ -42,6 +42,7 @@ fn check_margins(sets: &RapierSets<'_>, marked: &[ColliderHandle]) -> Result<(),
 impl FlexPipeline {
     /// Refuses a step length or gravity that nothing can be stepped with, before anything is touched.
     pub(super) fn check(&self, sets: &RapierSets<'_>) -> Result<Step, StepError> {
+        self.parameters.check()?;
         let dt = f64::from(sets.integration_parameters.dt);
         if dt != 0.0 && !(SHORTEST..=LONGEST).contains(&dt) {
             return Err(StepError::StepLength(dt));
@@ -92,7 +93,7 @@ impl FlexPipeline {
         if is_explicit && !matches!(body.model().mass(), MassMatrix::Lumped(_)) {
             return Err(IntegratorError::ConsistentMass);
         }
-        if self.insists || integrator.is_unconditionally_stable() {
+        if self.parameters.insists || integrator.is_unconditionally_stable() {
             return Ok(());
         }
         let frequency = if is_explicit {

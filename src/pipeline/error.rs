@@ -53,6 +53,16 @@ pub enum StepError {
         "the step length is {0:e} s: set `integration_parameters.dt` to zero or a positive number from 1e-8 s to 1e4 s"
     )]
     StepLength(f64),
+    /// A parameter of the pipeline is out of its range.
+    #[error("the pipeline's parameter `{name}` is {value}: {cure}")]
+    Parameter {
+        /// Which field of [`FlexParameters`](super::FlexParameters).
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What to do.
+        cure: &'static str,
+    },
     /// Gravity is not finite or too large for rapier's precision.
     #[error("gravity is {0:?} m/s^2: set `gravity` to finite numbers")]
     Gravity([f64; 2]),

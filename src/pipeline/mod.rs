@@ -22,5 +22,6 @@ pub use flex_pipeline::FlexPipeline;
 pub use report::{
     ContactReport, EnergyReport, Held, JointReport, Participant, StageTimes, StepReport,
 };
+pub use settings::FlexParameters;
 #[cfg(feature = "serde-serialize")]
 pub use snapshot::{Snapshot, SnapshotError};
