@@ -56,6 +56,7 @@ impl FlexBodyBuilder {
         );
         body.set_initial_velocity(&self.initial_velocity(&body, &rest)?);
         body.load(nodal_force, self.body_force, self.gravity_scale);
+        body.n_idle_pins = self.n_idle_pins;
         Ok(body)
     }
 

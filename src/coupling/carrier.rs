@@ -15,6 +15,9 @@ use crate::rapier::prelude::*;
 impl FlexBodySet {
     /// Builds a body and inserts it into the set and the world.
     ///
+    /// Bodies that are put into others part from them by and by; the report of the first step lists them:
+    /// [`StepReport::insertion_notes`](crate::pipeline::StepReport::insertion_notes).
+    ///
     /// # Errors
     /// If the description is wrong; the set and the world are then unchanged.
     pub fn insert(

@@ -23,6 +23,7 @@ mod masters;
 mod multibody;
 mod multibody_rows;
 mod nearby;
+mod newcomers;
 mod places;
 mod quarantine;
 mod reading;
@@ -37,7 +38,7 @@ mod sleep;
 
 pub(crate) use carrier::{is_carried, sync_settings, write_surface};
 pub(crate) use changes::WorldChange;
-pub(crate) use claim::Claims;
+pub(crate) use claim::{ClaimedPair, Claims};
 pub(crate) use events::{EventBook, PressedPoint};
 pub(crate) use gather::{GatherSettings, Gatherer};
 pub(crate) use hand_back::{Landing, hand_back, land};

@@ -247,6 +247,7 @@ impl FlexPipeline {
         }
         self.claims.walk(sets);
         self.gatherer.retain(sets, flex_bodies);
+        self.note_newcomers(sets, flex_bodies);
         clock.lap(&mut self.report.times.claim);
         if let Err(error) = self.solve_islands(step, sets, flex_bodies, &mut clock) {
             self.undo(flex_bodies, dissipated);
@@ -416,6 +417,7 @@ impl FlexPipeline {
                 sets.integration_parameters,
             );
             stop_if_asleep(body, sets.bodies);
+            body.greet();
         }
     }
 }

@@ -8,6 +8,7 @@ mod debug_render;
 mod error;
 mod flex_pipeline;
 mod joint_accounts;
+mod notes;
 mod quarantine;
 mod report;
 mod rest;
@@ -19,6 +20,7 @@ mod snapshot;
 pub use debug_render::FlexDebugRender;
 pub use error::StepError;
 pub use flex_pipeline::FlexPipeline;
+pub use notes::InsertionNote;
 pub use report::{
     ContactReport, EnergyReport, Held, JointReport, Participant, StageTimes, StepReport,
 };

@@ -1,5 +1,6 @@
 //! What a step tells about itself.
 
+use super::notes::InsertionNote;
 use crate::body::{AttachmentHandle, FlexBodyHandle};
 use crate::coupling::RapierSets;
 use crate::rapier::prelude::{ColliderHandle, ImpulseJointHandle, RigidBodyHandle};
@@ -210,6 +211,7 @@ pub struct StepReport {
     pub(super) quarantined_flex_bodies: Vec<FlexBodyHandle>,
     pub(super) quarantined_bodies: Vec<RigidBodyHandle>,
     pub(super) quarantined_colliders: Vec<ColliderHandle>,
+    pub(super) insertion_notes: Vec<InsertionNote>,
 }
 
 impl StepReport {
@@ -344,6 +346,12 @@ impl StepReport {
     /// Colliders that rapier disabled because their shape or pose was not finite.
     pub fn quarantined_colliders(&self) -> &[ColliderHandle] {
         &self.quarantined_colliders
+    }
+
+    /// What is likely a mistake in the description of bodies that took their first step in this one: pins that choose no node, bodies put
+    /// into each other.
+    pub fn insertion_notes(&self) -> &[InsertionNote] {
+        &self.insertion_notes
     }
 
     /// Sum of the normal and tangential contact forces on a participant (N).
