@@ -1059,6 +1059,26 @@ fn margins_that_no_box_can_grow_by_are_refused_wherever_the_collider_is() {
     }
 }
 
+/// Where all sleeps there is nothing to do, but rapier looks at what was written to.
+#[test]
+fn a_margin_set_on_the_surface_of_a_sleeper_is_refused() {
+    let mut scene = Scene::new();
+    scene.world.remove_body(scene.crate_body);
+    for _ in 0..1200 {
+        scene.step().expect("a sound step");
+    }
+    assert_eq!(scene.flex.report().n_asleep(), 1, "the block sleeps");
+    let surface = scene.flex_bodies[scene.block].collider_handle();
+    scene.world.colliders[surface].set_contact_skin(-1.0);
+    for _ in 0..2 {
+        let error = scene.step().expect_err("a negative skin");
+        assert_eq!(error, StepError::Margin(surface));
+    }
+    scene.world.colliders[surface].set_contact_skin(0.0);
+    scene.assert_flexible_state_is_finite();
+    scene.step().expect("a sound step");
+}
+
 #[test]
 fn margins_of_a_disabled_collider_stop_nothing() {
     let mut scene = Scene::new();

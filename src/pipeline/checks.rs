@@ -57,14 +57,18 @@ impl FlexPipeline {
         })
     }
 
-    /// Refuses colliders that rapier cannot step, and bodies that are awake and cannot be stepped, before anything is touched.
+    /// Refuses colliders that rapier cannot step, before anything is touched.
+    pub(super) fn check_colliders(&self, sets: &RapierSets<'_>) -> Result<(), StepError> {
+        check_margins(sets, self.claims.marked_colliders())
+    }
+
+    /// Refuses bodies that are awake and cannot be stepped, before anything is touched.
     pub(super) fn check_bodies(
         &self,
         dt: f64,
         sets: &RapierSets<'_>,
         flex_bodies: &FlexBodySet,
     ) -> Result<(), StepError> {
-        check_margins(sets, self.claims.marked_colliders())?;
         for (handle, body) in flex_bodies.iter() {
             if body.is_quarantined() || is_asleep(body, sets.bodies) {
                 continue;

@@ -204,6 +204,7 @@ impl FlexPipeline {
         let step = self.check(sets)?;
         drop_orphans(sets, flex_bodies);
         let change = self.claims.look_for_changes(sets, flex_bodies);
+        self.check_colliders(sets)?;
         let is_quiet = step.dt > 0.0 && change == WorldChange::None;
         if is_quiet && self.claims.is_all_asleep(sets, flex_bodies) {
             self.step_asleep(sets, flex_bodies.len());
