@@ -38,5 +38,5 @@ pub mod prelude {
     pub use crate::fe::model::MassKind;
     pub use crate::integrator::Beta2;
     pub use crate::kkt::{ConstraintFunction, ContactMethod, ImpactTreatment};
-    pub use crate::pipeline::{FlexPipeline, StepReport};
+    pub use crate::pipeline::{FlexParameters, FlexPipeline, StepReport};
 }

@@ -23,6 +23,11 @@ fn square() -> FlexBodyBuilder {
     FlexBodyBuilder::rectangle([1.0, 1.0], [3, 3]).material(rubber())
 }
 
+/// A square of this size (m).
+fn square_of(size: f64) -> FlexBodyBuilder {
+    FlexBodyBuilder::rectangle([size, size], [3, 3]).material(rubber())
+}
+
 /// Builds nodes and cells of one kind into a body.
 fn raw<const N: usize>(
     nodes: &[[f64; 2]],
@@ -428,16 +433,31 @@ fn numbers_that_are_not_finite_are_refused_by_the_mesh_generators() {
 
 #[test]
 fn numbers_that_rapier_cannot_hold_are_refused() {
-    // 1e300 is a finite f64 and an infinite f32; in the f64 build rapier's own boxes overflow when they are measured.
-    let far: [(&str, FlexBodyBuilder); 4] = [
+    // 1e300 is a finite f64 and an infinite f32; in the f64 build rapier's own boxes overflow when they are measured. Bodies that were
+    // taken with such velocities overflowed in their first step, and rapier's islands with them.
+    let far: [(&str, FlexBodyBuilder); 14] = [
         ("translation", square().translation([1e300, 0.0])),
         ("translation", square().translation([0.0, -1e300])),
+        ("rotation", square().rotation(1e300)),
+        ("linvel", square().linvel([1e100, 0.0])),
+        ("linvel", square().linvel([0.0, 1e20])),
+        ("angvel", square().angvel(1e100)),
+        // A number that can be held, and velocities of nodes that cannot.
+        ("velocity of a node", square_of(100.0).angvel(1e18)),
+        (
+            "velocity of a node",
+            square().velocities(vec![[1e20, 0.0]; 16]),
+        ),
+        ("body_force", square().body_force([1e100, 0.0])),
+        ("gravity_scale", square().gravity_scale(-1e100)),
+        ("skin", square().contact_skin(1e300)),
+        (
+            "threshold",
+            square().contact_force_event_threshold(f64::NAN),
+        ),
         ("friction", square().friction(1e300)),
         ("restitution", square().restitution(1e300)),
     ];
-    if cfg!(feature = "f64") {
-        return;
-    }
     for (culprit, builder) in far {
         assert_refused(builder, |_| true, &[culprit]);
     }
@@ -1039,6 +1059,26 @@ fn margins_that_no_box_can_grow_by_are_refused_wherever_the_collider_is() {
     }
 }
 
+/// Where all sleeps there is nothing to do, but rapier looks at what was written to.
+#[test]
+fn a_margin_set_on_the_surface_of_a_sleeper_is_refused() {
+    let mut scene = Scene::new();
+    scene.world.remove_body(scene.crate_body);
+    for _ in 0..1200 {
+        scene.step().expect("a sound step");
+    }
+    assert_eq!(scene.flex.report().n_asleep(), 1, "the block sleeps");
+    let surface = scene.flex_bodies[scene.block].collider_handle();
+    scene.world.colliders[surface].set_contact_skin(-1.0);
+    for _ in 0..2 {
+        let error = scene.step().expect_err("a negative skin");
+        assert_eq!(error, StepError::Margin(surface));
+    }
+    scene.world.colliders[surface].set_contact_skin(0.0);
+    scene.assert_flexible_state_is_finite();
+    scene.step().expect("a sound step");
+}
+
 #[test]
 fn margins_of_a_disabled_collider_stop_nothing() {
     let mut scene = Scene::new();
@@ -1052,6 +1092,85 @@ fn margins_of_a_disabled_collider_stop_nothing() {
     assert_eq!(error, StepError::Margin(stone));
     scene.world.colliders[stone].set_contact_skin(0.0);
     scene.assert_goes_on();
+}
+
+/// Rapier steps such shapes, or takes them out, so long as nothing of ours has to measure a distance to them.
+#[test]
+fn shapes_that_no_body_can_have_are_refused_by_name_where_they_are_met() {
+    let nan = Real::NAN;
+    let at = Vector::new;
+    let shapes: [(&str, SharedShape); 9] = [
+        ("normal", SharedShape::halfspace(at(0.0, 0.0))),
+        ("normal", SharedShape::halfspace(at(nan, 1.0))),
+        ("radius", SharedShape::ball(-1.0)),
+        ("radius", SharedShape::capsule_x(0.5, -0.1)),
+        ("radius", SharedShape::capsule_x(0.5, nan)),
+        ("vertex", SharedShape::segment(at(nan, 0.0), at(1.0, 0.0))),
+        (
+            "vertex",
+            SharedShape::triangle(at(0.0, 0.0), at(nan, 0.0), at(0.0, 1.0)),
+        ),
+        (
+            "vertex",
+            SharedShape::polyline(vec![at(-1.0, 0.0), at(nan, 0.1), at(1.0, 0.0)], None),
+        ),
+        ("half extent", SharedShape::cuboid(-0.5, 0.5)),
+    ];
+    for (index, (fault, shape)) in shapes.into_iter().enumerate() {
+        for warm_up in [0, 10] {
+            for is_crate in [false, true] {
+                let mut scene = Scene::new();
+                let stone = if is_crate {
+                    scene.world.bodies[scene.crate_body].colliders()[0]
+                } else {
+                    let stone = ColliderBuilder::cuboid(0.1, 0.1).translation(at(0.5, 0.0));
+                    scene.world.insert_collider(stone, None)
+                };
+                for _ in 0..warm_up {
+                    scene.step().expect("a sound step");
+                }
+                let case = format!("{fault} of shape {index} after {warm_up} steps");
+                let state = scene.state();
+                let kept = scene.world.colliders[stone].shared_shape().clone();
+                scene.world.colliders[stone].set_shape(shape.clone());
+                for _ in 0..2 {
+                    match scene.step() {
+                        // Where rapier finds no box that is near, it meets nothing.
+                        Ok(()) => {}
+                        Err(error) => {
+                            assert!(
+                                matches!(error, StepError::Shape { collider, .. } if collider == stone),
+                                "{case}: {error}"
+                            );
+                            let said = error.to_string();
+                            assert!(said.contains(fault), "{case}: {said}");
+                            assert_eq!(state, scene.state(), "{case}");
+                        }
+                    }
+                }
+                scene.assert_flexible_state_is_finite();
+                scene.world.colliders[stone].set_shape(kept);
+                scene.world.colliders[stone].set_enabled(true);
+                scene.assert_flexible_state_is_finite();
+            }
+        }
+    }
+    // At least what has a place is met, and told of.
+    for shape in [
+        SharedShape::halfspace(at(0.0, 0.0)),
+        SharedShape::capsule_x(0.5, -0.1),
+    ] {
+        let mut scene = Scene::new();
+        let stone = ColliderBuilder::new(shape).translation(at(0.5, 0.0));
+        let stone = scene.world.insert_collider(stone, None);
+        let error = scene.step().expect_err("the shape is met");
+        assert!(
+            matches!(error, StepError::Shape { collider, .. } if collider == stone),
+            "{error}"
+        );
+        scene.world.remove_collider(stone);
+        scene.assert_goes_on();
+    }
 }
 
 #[test]

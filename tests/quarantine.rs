@@ -191,3 +191,46 @@ fn a_carrier_given_no_number_is_put_right_and_its_body_leaves() {
         }
     }
 }
+
+/// Rapier 0.36 panics when a body goes between a step without length, with which a world begins, and its first full one.
+#[test]
+fn bodies_that_go_before_the_first_full_step_leave_a_world_that_goes_on() {
+    type Spoil = fn(&mut Scene, FlexBodyHandle, RigidBodyHandle);
+    let spoils: [(&str, Spoil); 3] = [
+        ("overloaded", |scene, sick, _| {
+            overload(scene, sick);
+            scene.step();
+            assert_eq!(scene.report().quarantined_flex_bodies(), [sick]);
+        }),
+        ("a step of no length", |scene, sick, _| {
+            let dt = std::mem::take(&mut scene.world.integration_parameters.dt);
+            scene.step();
+            scene.world.integration_parameters.dt = dt;
+            scene.bodies.remove(sick, &mut scene.world).expect("a body");
+        }),
+        ("a refused step", |scene, _, lower| {
+            scene.world.bodies[lower].add_force(vec2(f64::NAN, 0.0), true);
+            scene.try_step().expect_err("a force that is no number");
+            scene.world.remove_body(lower);
+        }),
+    ];
+    for (name, spoil) in spoils {
+        let mut scene = Scene::new(1.0 / 60.0);
+        scene.ground(0.5);
+        let sick = scene.flexible(block(0.0, 0.001));
+        let mut ball = |y| {
+            let body = RigidBodyBuilder::dynamic().translation(vec2(0.5, y));
+            scene
+                .rigid(body, ColliderBuilder::ball(real(0.25)).density(real(500.0)))
+                .0
+        };
+        let (lower, _) = (ball(1.252), ball(30.0));
+        spoil(&mut scene, sick, lower);
+        for _ in 0..60 {
+            scene
+                .try_step()
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
+            assert_all_finite(&scene);
+        }
+    }
+}

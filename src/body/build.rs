@@ -56,6 +56,7 @@ impl FlexBodyBuilder {
         );
         body.set_initial_velocity(&self.initial_velocity(&body, &rest)?);
         body.load(nodal_force, self.body_force, self.gravity_scale);
+        body.n_idle_pins = self.n_idle_pins;
         Ok(body)
     }
 
@@ -96,10 +97,24 @@ impl FlexBodyBuilder {
                 });
             }
         }
+        if self.contact.contact_force_event_threshold.is_nan() {
+            return Err(BuildError::Number {
+                name: "contact_force_event_threshold",
+                value: f64::NAN,
+                cure: "give a number, or infinity for no events",
+            });
+        }
         // In rapier's precision a large number, or its square, may be infinite.
         let held = [
             ("translation.x", self.translation.x),
             ("translation.y", self.translation.y),
+            ("rotation", self.rotation),
+            ("linvel.x", self.linvel.x),
+            ("linvel.y", self.linvel.y),
+            ("angvel", self.angvel),
+            ("body_force.x", self.body_force.x),
+            ("body_force.y", self.body_force.y),
+            ("gravity_scale", self.gravity_scale),
             ("friction", self.contact.friction),
             ("restitution", self.contact.restitution),
             ("contact_skin", self.contact.contact_skin),
@@ -220,6 +235,13 @@ impl FlexBodyBuilder {
                     v[axis] += own[axis];
                 }
             }
+        }
+        if let Some(&value) = velocity.iter().find(|&&value| !is_held(value)) {
+            return Err(BuildError::Number {
+                name: "the velocity of a node",
+                value,
+                cure: "give a linvel, angvel and velocities that come to no more than 1e18 m/s at any node",
+            });
         }
         Ok(velocity)
     }

@@ -55,6 +55,8 @@ pub struct FlexBodyBuilder {
     pub(super) angvel: f64,
     pub(super) velocities: Option<Vec<[f64; 2]>>,
     pub(super) pins: Vec<(usize, Pin)>,
+    /// Calls of `pin_where` that chose no node.
+    pub(super) n_idle_pins: usize,
     pub(super) body_force: Vec2,
     pub(super) nodal_forces: Vec<(usize, Vec2)>,
     pub(super) gravity_scale: f64,
@@ -116,6 +118,7 @@ impl FlexBodyBuilder {
             angvel: 0.0,
             velocities: None,
             pins: Vec::new(),
+            n_idle_pins: 0,
             body_force: Vec2::zeros(),
             nodal_forces: Vec::new(),
             gravity_scale: 1.0,
@@ -192,6 +195,9 @@ impl FlexBodyBuilder {
     }
 
     /// Pins all nodes chosen by their mesh coordinates (m).
+    ///
+    /// If it chooses none, the body is as free as without it, and the report of its first step says so:
+    /// [`StepReport::insertion_notes`](crate::pipeline::StepReport::insertion_notes).
     pub fn pin_where(mut self, choose: impl Fn([f64; 2]) -> bool, pin: Pin) -> Self {
         if let Ok(mesh) = &self.mesh {
             let chosen = mesh
@@ -199,7 +205,9 @@ impl FlexBodyBuilder {
                 .iter()
                 .enumerate()
                 .filter(|(_, at)| choose(**at));
+            let n_pins = self.pins.len();
             self.pins.extend(chosen.map(|(node, _)| (node, pin)));
+            self.n_idle_pins += usize::from(self.pins.len() == n_pins);
         }
         self
     }

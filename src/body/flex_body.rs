@@ -35,6 +35,10 @@ pub struct FlexBody {
     pub(super) collider: ColliderHandle,
     pub(super) is_disturbed: bool,
     pub(super) is_quarantined: bool,
+    /// Whether no step has been taken with it.
+    pub(super) is_new: bool,
+    /// Calls of `pin_where` that chose no node.
+    pub(super) n_idle_pins: usize,
 }
 
 impl FlexBody {
@@ -68,6 +72,8 @@ impl FlexBody {
             collider: ColliderHandle::invalid(),
             is_disturbed: false,
             is_quarantined: false,
+            is_new: true,
+            n_idle_pins: 0,
             model,
         }
     }
@@ -96,6 +102,21 @@ impl FlexBody {
         self.nodal_force = nodal_force;
         self.body_force = body_force;
         self.gravity_scale = gravity_scale;
+    }
+
+    /// Whether no step has been taken with the body.
+    pub(crate) fn is_new(&self) -> bool {
+        self.is_new
+    }
+
+    /// Notes that a step has been taken with it.
+    pub(crate) fn greet(&mut self) {
+        self.is_new = false;
+    }
+
+    /// How many calls of `pin_where` chose no node.
+    pub(crate) fn n_idle_pins(&self) -> usize {
+        self.n_idle_pins
     }
 
     /// The assembled model.

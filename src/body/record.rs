@@ -36,6 +36,8 @@ struct BodyRecord {
     collider: ColliderHandle,
     is_disturbed: bool,
     is_quarantined: bool,
+    is_new: bool,
+    n_idle_pins: usize,
 }
 
 impl BodyRecord {
@@ -59,6 +61,8 @@ impl BodyRecord {
             collider: body.collider,
             is_disturbed: body.is_disturbed,
             is_quarantined: body.is_quarantined,
+            is_new: body.is_new,
+            n_idle_pins: body.n_idle_pins,
         })
     }
 
@@ -104,6 +108,8 @@ impl BodyRecord {
             collider: self.collider,
             is_disturbed: self.is_disturbed,
             is_quarantined: self.is_quarantined,
+            is_new: self.is_new,
+            n_idle_pins: self.n_idle_pins,
         })
     }
 }

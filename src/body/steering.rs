@@ -19,9 +19,9 @@ impl FlexBody {
     /// Sets the force per mass besides gravity (m/s²).
     ///
     /// # Errors
-    /// If it is not finite.
+    /// If it is not finite, or rapier's precision cannot hold it.
     pub fn set_body_force(&mut self, acceleration: [f64; 2]) -> Result<(), FlexBodyError> {
-        check_finite("the body force", &acceleration)?;
+        check_held("the body force", &acceleration)?;
         self.body_force = acceleration.into();
         self.is_disturbed = true;
         Ok(())
@@ -30,9 +30,9 @@ impl FlexBody {
     /// Sets the factor on the world's gravity (-).
     ///
     /// # Errors
-    /// If it is not finite.
+    /// If it is not finite, or rapier's precision cannot hold it.
     pub fn set_gravity_scale(&mut self, scale: f64) -> Result<(), FlexBodyError> {
-        check_finite("the gravity scale", &[scale])?;
+        check_held("the gravity scale", &[scale])?;
         self.gravity_scale = scale;
         self.is_disturbed = true;
         Ok(())

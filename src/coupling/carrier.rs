@@ -15,6 +15,9 @@ use crate::rapier::prelude::*;
 impl FlexBodySet {
     /// Builds a body and inserts it into the set and the world.
     ///
+    /// Bodies that are put into others part from them by and by; the report of the first step lists them:
+    /// [`StepReport::insertion_notes`](crate::pipeline::StepReport::insertion_notes).
+    ///
     /// # Errors
     /// If the description is wrong; the set and the world are then unchanged.
     pub fn insert(
@@ -72,11 +75,45 @@ impl FlexBodySet {
         handle: FlexBodyHandle,
         world: &mut PhysicsWorld,
     ) -> Result<FlexBody, FlexBodyError> {
-        if !is_carried(self.try_get(handle)?, &world.bodies, &world.colliders) {
+        self.remove_with_sets(
+            handle,
+            &mut world.islands,
+            &mut world.bodies,
+            &mut world.colliders,
+            &mut world.impulse_joints,
+            &mut world.multibody_joints,
+            &mut world.soft_bodies,
+        )
+    }
+
+    /// [`FlexBodySet::remove`] for programs that keep rapier's sets apart.
+    ///
+    /// # Errors
+    /// As [`FlexBodySet::remove`].
+    #[expect(clippy::too_many_arguments, reason = "they are rapier's")]
+    pub fn remove_with_sets(
+        &mut self,
+        handle: FlexBodyHandle,
+        islands: &mut IslandManager,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+        impulse_joints: &mut ImpulseJointSet,
+        multibody_joints: &mut MultibodyJointSet,
+        soft_bodies: &mut SoftBodySet,
+    ) -> Result<FlexBody, FlexBodyError> {
+        if !is_carried(self.try_get(handle)?, bodies, colliders) {
             return Err(FlexBodyError::NoCarrier(handle));
         }
         let body = self.take_body(handle)?;
-        world.remove_body(body.rigid_body_handle());
+        bodies.remove(
+            body.rigid_body_handle(),
+            islands,
+            colliders,
+            impulse_joints,
+            multibody_joints,
+            soft_bodies,
+            true,
+        );
         Ok(body)
     }
 

@@ -1,6 +1,7 @@
 //! What has been changed since rapier's last step, by the flags with which rapier knows it itself.
 //!
-//! Every write through rapier's sets marks what it touches. What is neither marked nor awake is where rapier's tree has it, so
+//! Every write through rapier's sets marks what it touches. Rapier's lists of what is marked are not for others to read, so
+//! the marks themselves are looked at, and at nothing else of what is not marked. What is neither marked nor awake is where rapier's tree has it, so
 //! that it need not be asked.
 
 use super::claim::Claims;
@@ -20,6 +21,8 @@ pub(super) struct Changes {
     pub bodies: Vec<RigidBodyHandle>,
     /// Marked colliders and those of marked bodies; some twice.
     pub colliders: Vec<ColliderHandle>,
+    /// Those of them that are no surfaces, for as long as the claim looks for what is near.
+    pub strangers: Vec<ColliderHandle>,
     pub n_colliders: usize,
     pub gravity: Vector,
 }
@@ -54,6 +57,11 @@ impl Changes {
 }
 
 impl Claims {
+    /// Colliders that were marked since rapier's last step, or whose body was; some twice.
+    pub fn marked_colliders(&self) -> &[ColliderHandle] {
+        &self.changes.colliders
+    }
+
     /// Gathers what was changed since rapier's last step, and says whether it may concern what sleeps. Where nothing sleeps, nothing
     /// does.
     pub fn look_for_changes(

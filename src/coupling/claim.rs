@@ -80,8 +80,10 @@ pub(crate) struct Claims {
     pub(super) neighbours: Vec<ColliderHandle>,
     /// How far the fastest body goes in the step (m).
     pub(super) farthest: Real,
-    /// Flexible bodies that sleep, and take no part.
+    /// Flexible bodies that sleep, and take no part, in the order of their slots.
     pub(super) asleep: Vec<Sleeper>,
+    /// Their surfaces.
+    pub(super) sleeping_surfaces: HashSet<ColliderHandle>,
     pub(super) woken: Vec<RigidBodyHandle>,
     pub(super) changes: Changes,
     /// What the user's filter said of pairs that it was asked about.
@@ -118,11 +120,13 @@ impl Claims {
         self.flex.clear();
         self.flex_of_collider.clear();
         self.asleep.clear();
+        self.sleeping_surfaces.clear();
         for (handle, body) in flex_bodies
             .iter()
             .filter(|(_, body)| !body.is_quarantined())
         {
             if let Some(sleeper) = Sleeper::new(handle.into_raw_parts().0, body, sets) {
+                self.sleeping_surfaces.insert(sleeper.collider);
                 self.asleep.push(sleeper);
                 continue;
             }

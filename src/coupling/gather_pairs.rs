@@ -35,7 +35,7 @@ impl Gatherer {
                 let Some(block) = self.flex_blocks.get(&flex).copied() else {
                     return Ok(());
                 };
-                let Some(placed) = self.place(collider, settings, sets, island) else {
+                let Some(placed) = self.place(collider, settings, sets, island)? else {
                     return Ok(());
                 };
                 let names = Names {
@@ -99,10 +99,10 @@ impl Gatherer {
                 if self.component_of_pair([one, other], sets, claims) != Some(component) {
                     return Ok(());
                 }
-                let Some(first) = self.place(one, settings, sets, island) else {
+                let Some(first) = self.place(one, settings, sets, island)? else {
                     return Ok(());
                 };
-                let Some(second) = self.place(other, settings, sets, island) else {
+                let Some(second) = self.place(other, settings, sets, island)? else {
                     return Ok(());
                 };
                 let names = Names {
@@ -182,11 +182,13 @@ impl Gatherer {
         settings: &GatherSettings,
         sets: &RapierSets<'_>,
         island: &mut Island,
-    ) -> Option<PlacedCollider> {
+    ) -> Result<Option<PlacedCollider>, GatherError> {
         if let Some(placed) = self.placed.get(&handle) {
-            return Some(placed.clone());
+            return Ok(Some(placed.clone()));
         }
-        let collider = sets.colliders.get(handle)?;
+        let Some(collider) = sets.colliders.get(handle) else {
+            return Ok(None);
+        };
         let parent = collider
             .parent()
             .and_then(|parent| Some((parent, sets.bodies.get(parent)?)));
@@ -200,17 +202,21 @@ impl Gatherer {
                 )
             }
             Some((parent, body)) => {
-                let block = self.block_of(parent, settings, sets, island)?;
+                let Some(block) = self.block_of(parent, settings, sets, island) else {
+                    return Ok(None);
+                };
                 (block, offset_of(collider, body))
             }
         };
-        let parts = candidates::add_parts(island, self.shapes.parts(handle, collider), offset);
+        let shape = self.shapes.parts(handle, collider);
+        let shape = shape.map_err(|fault| GatherError::Shape(handle, fault))?;
+        let parts = candidates::add_parts(island, shape, offset);
         let placed = PlacedCollider {
             block,
             parts,
             offset,
         };
         self.placed.insert(handle, placed.clone());
-        Some(placed)
+        Ok(Some(placed))
     }
 }

@@ -24,6 +24,7 @@ mod masters;
 mod multibody;
 mod multibody_rows;
 mod nearby;
+mod newcomers;
 mod outlines;
 mod places;
 mod quarantine;
@@ -40,7 +41,7 @@ mod ways;
 
 pub(crate) use carrier::{is_carried, sync_settings, write_surface};
 pub(crate) use changes::WorldChange;
-pub(crate) use claim::Claims;
+pub(crate) use claim::{ClaimedPair, Claims};
 pub(crate) use events::{EventBook, PressedPoint};
 pub(crate) use gather::{GatherSettings, Gatherer};
 pub(crate) use hand_back::{Landing, hand_back, land};
@@ -53,5 +54,5 @@ pub(crate) use reading::{GatherError, is_held_motion};
 #[cfg(feature = "serde-serialize")]
 pub(crate) use record::CouplingRecord;
 pub use sets::RapierSets;
-pub(crate) use shapes::rounding;
+pub(crate) use shapes::{ShapeFault, rounding};
 pub(crate) use sleep::{is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving};

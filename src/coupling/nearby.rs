@@ -19,6 +19,12 @@ impl Claims {
     pub fn needs_detection(&mut self, sets: &RapierSets<'_>) -> bool {
         let mut hits = std::mem::take(&mut self.swept_hits);
         hits.clear();
+        // Surfaces are marked in every step, by ourselves.
+        let mut strangers = std::mem::take(&mut self.changes.strangers);
+        strangers.clear();
+        let changed = self.changes.colliders.iter().copied();
+        strangers.extend(changed.filter(|&handle| !self.is_surface(handle)));
+        self.changes.strangers = strangers;
         let needs = self.meets_unsettled(sets) || self.meets_settled(sets, &mut hits);
         self.swept_hits = hits;
         if !needs {
@@ -79,7 +85,7 @@ impl Claims {
             }
             // The tree may be out, and does not know what was changed.
             if meets_itself {
-                let changed = self.changes.colliders.iter();
+                let changed = self.changes.strangers.iter();
                 changed
                     .filter_map(|&handle| Some((handle, sets.colliders.get(handle)?)))
                     .for_each(|(handle, collider)| visit(handle, collider));
@@ -113,11 +119,10 @@ impl Claims {
             return;
         }
         let mut meets_itself = false;
-        let (flex_of_collider, asleep) = (&self.flex_of_collider, &self.asleep);
+        let (flex_of_collider, sleeping) = (&self.flex_of_collider, &self.sleeping_surfaces);
         let neighbours = &mut self.neighbours;
         let mut visit = |handle: ColliderHandle, other: &Collider| {
-            let is_surface = flex_of_collider.contains_key(&handle)
-                || asleep.iter().any(|sleeper| sleeper.collider == handle);
+            let is_surface = flex_of_collider.contains_key(&handle) || sleeping.contains(&handle);
             if handle != own
                 && !is_surface
                 && other.parent() != collider.parent()
@@ -145,10 +150,13 @@ impl Claims {
         }
     }
 
-    /// Meets flexible bodies with each other.
+    /// Meets flexible bodies with each other; they are in the order of their left ends.
     fn meet_each_other(&mut self) {
         for (index, one) in self.flex.iter().enumerate() {
             for other in &self.flex[index + 1..] {
+                if other.swept.mins.x > one.swept.maxs.x {
+                    break;
+                }
                 if one.swept.intersects(&other.swept) {
                     self.swept_hits.push((index, other.collider));
                 }

@@ -1,7 +1,7 @@
 //! Reading rapier: loads, prescribed motions and contact laws of rigid bodies, refused if they are not finite.
 
 use super::masters::{local_centre, read_motion};
-use super::shapes::pose_of;
+use super::shapes::{ShapeFault, pose_of};
 use crate::body::FlexBodyHandle;
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
@@ -31,6 +31,9 @@ pub(crate) enum GatherError {
     /// A collider's friction, restitution or skin is not finite.
     #[error("a coefficient of {0:?} is not finite")]
     Coefficient(ColliderHandle),
+    /// A collider's shape holds numbers that no part can be made of.
+    #[error("{0:?} has {fault}", fault = .1.fault)]
+    Shape(ColliderHandle, ShapeFault),
     /// A hook left numbers that are not finite, or no normal.
     #[error("the hook leaves numbers that are not finite between {0:?}")]
     Hook([ColliderHandle; 2]),

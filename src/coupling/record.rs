@@ -83,6 +83,7 @@ impl ClaimRecord {
         let mut claims = Claims::default();
         claims.flex_of_collider = self.surfaces.into_iter().collect();
         claims.rigid_index = self.claimed.into_iter().collect();
+        claims.sleeping_surfaces = self.asleep.iter().map(|sleeper| sleeper.collider).collect();
         claims.asleep = self.asleep;
         claims.changes.n_colliders = self.n_colliders;
         claims.changes.gravity = self.gravity;
@@ -97,8 +98,8 @@ impl ClaimRecord {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct EventRecord {
     ahead: Vec<PairName>,
-    /// The two colliders, whether they started to touch, and rapier's flags.
-    held: Vec<(PairName, bool, u32)>,
+    held: Vec<EventEntry>,
+    left: Vec<EventEntry>,
     pressed: Vec<(PairName, bool)>,
 }
 
@@ -107,33 +108,42 @@ impl EventRecord {
         let heard = book.heard.lock().unwrap_or_else(PoisonError::into_inner);
         let mut ahead: Vec<PairName> = heard.ahead.iter().copied().collect();
         ahead.sort_unstable_by_key(|name| name.number());
-        let held = heard.held.iter().map(|event| match *event {
-            CollisionEvent::Started(one, other, flags) => ([one, other], true, flags.bits()),
-            CollisionEvent::Stopped(one, other, flags) => ([one, other], false, flags.bits()),
-        });
         Self {
             ahead,
-            held: held.collect(),
+            held: heard.held.iter().map(entry_of).collect(),
+            left: heard.left.iter().map(entry_of).collect(),
             pressed: listed(&book.pressed),
         }
     }
 
     fn build(self) -> EventBook {
-        let held = self.held.into_iter().map(|([one, other], starts, bits)| {
-            let flags = CollisionEventFlags::from_bits_truncate(bits);
-            if starts {
-                CollisionEvent::Started(one, other, flags)
-            } else {
-                CollisionEvent::Stopped(one, other, flags)
-            }
-        });
         let mut book = EventBook::default();
         book.pressed = self.pressed.into_iter().collect();
         let mut heard = book.heard.lock().unwrap_or_else(PoisonError::into_inner);
         heard.ahead = self.ahead.into_iter().collect();
-        heard.held = held.collect();
+        heard.held = self.held.into_iter().map(event_of).collect();
+        heard.left = self.left.into_iter().map(event_of).collect();
         drop(heard);
         book
+    }
+}
+
+/// The two colliders, whether they started to touch, and rapier's flags.
+type EventEntry = (PairName, bool, u32);
+
+fn entry_of(event: &CollisionEvent) -> EventEntry {
+    match *event {
+        CollisionEvent::Started(one, other, flags) => ([one, other], true, flags.bits()),
+        CollisionEvent::Stopped(one, other, flags) => ([one, other], false, flags.bits()),
+    }
+}
+
+fn event_of(([one, other], starts, bits): EventEntry) -> CollisionEvent {
+    let flags = CollisionEventFlags::from_bits_truncate(bits);
+    if starts {
+        CollisionEvent::Started(one, other, flags)
+    } else {
+        CollisionEvent::Stopped(one, other, flags)
     }
 }
 

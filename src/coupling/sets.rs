@@ -77,9 +77,44 @@ impl<'a> RapierSets<'a> {
 
     /// [`RapierSets::detect`] with other hooks and another handler than the user's.
     pub(crate) fn detect_through(&mut self, hooks: &dyn PhysicsHooks, events: &dyn EventHandler) {
+        self.found_islands();
         let mut parameters = *self.integration_parameters;
         parameters.dt = 0.0;
         self.step_with(&parameters, hooks, events);
+    }
+
+    /// Lets rapier found its islands before the first step of a world if that has no length.
+    ///
+    /// Rapier 0.36 numbers its islands anew at the end of the first step that has one, and then reads what it noted under the old
+    /// numbers: a body that is disabled or removed after a step without length, and before any other, leaves them out of range and
+    /// rapier panics. A step of empty sets founds the islands while there is nothing to number.
+    ///
+    /// Worlds with joints or soft bodies are left alone: one that was restored from a snapshot knows of these links only by founding its
+    /// islands with them.
+    fn found_islands(&mut self) {
+        let mut all = self.bodies.iter();
+        let is_new = self.islands.active_bodies().next().is_none()
+            && !all.any(|(_, body)| body.is_sleeping());
+        let has_links = self.impulse_joints.iter().next().is_some()
+            || self.multibody_joints.iter().next().is_some()
+            || self.soft_bodies.iter().next().is_some();
+        if is_new && !has_links {
+            PhysicsPipeline::new().step(
+                Vector::ZERO,
+                &IntegrationParameters::default(),
+                self.islands,
+                &mut BroadPhaseBvh::new(),
+                &mut NarrowPhase::new(),
+                &mut RigidBodySet::new(),
+                &mut ColliderSet::new(),
+                &mut ImpulseJointSet::new(),
+                &mut MultibodyJointSet::new(),
+                &mut SoftBodySet::new(),
+                &mut CCDSolver::new(),
+                &(),
+                &(),
+            );
+        }
     }
 
     fn step_with(

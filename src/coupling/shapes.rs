@@ -1,8 +1,8 @@
 //! Rapier's shapes as rounded convex parts, converted once and kept until the shape changes.
 
 use crate::constraint::geometry::{ConvexPart, Pose2};
-use crate::math::{Vec2, atan2, from_rapier};
-use crate::rapier::math::Pose;
+use crate::math::{atan2, from_rapier, is_held};
+use crate::rapier::math::{Pose, Real};
 use crate::rapier::parry::shape::{Shape, TypedShape};
 use crate::rapier::prelude::*;
 use std::collections::HashMap;
@@ -16,6 +16,35 @@ pub struct ShapePart {
     /// Where it sits on the collider.
     pub pose: Pose2,
 }
+
+/// What a shape is made of that no part can be made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ShapeFault {
+    /// What is wrong.
+    pub fault: &'static str,
+    /// What to do.
+    pub cure: &'static str,
+}
+
+const VERTICES: ShapeFault = ShapeFault {
+    fault: "a vertex, or the place of a part, that is not finite or too large",
+    cure: "give the shape finite vertices (m)",
+};
+
+const SIZE: ShapeFault = ShapeFault {
+    fault: "a half extent that is negative, not finite or too large",
+    cure: "give the shape half extents that are zero or positive (m)",
+};
+
+const RADIUS: ShapeFault = ShapeFault {
+    fault: "a radius that is negative, not finite or too large",
+    cure: "give the shape a radius that is zero or positive (m)",
+};
+
+const NORMAL: ShapeFault = ShapeFault {
+    fault: "a normal without a direction",
+    cure: "give the half-space a finite normal that is not zero",
+};
 
 /// Converted shapes of all colliders met so far.
 #[derive(Default)]
@@ -39,7 +68,14 @@ impl std::fmt::Debug for ShapeCache {
 
 impl ShapeCache {
     /// The parts of a collider's shape.
-    pub fn parts(&mut self, handle: ColliderHandle, collider: &Collider) -> &[ShapePart] {
+    ///
+    /// # Errors
+    /// If a number of the shape is none that a part can be made of.
+    pub fn parts(
+        &mut self,
+        handle: ColliderHandle,
+        collider: &Collider,
+    ) -> Result<&[ShapePart], ShapeFault> {
         let shape = collider.shared_shape();
         let is_current = self
             .entries
@@ -47,7 +83,7 @@ impl ShapeCache {
             .is_some_and(|entry| Arc::ptr_eq(&entry.shape.0, &shape.0));
         if !is_current {
             let mut parts = Vec::new();
-            convert(shape.as_ref(), Pose2::identity(), &mut parts);
+            convert(shape.as_ref(), Pose2::identity(), &mut parts)?;
             self.entries.insert(
                 handle,
                 Entry {
@@ -56,7 +92,7 @@ impl ShapeCache {
                 },
             );
         }
-        &self.entries[&handle].parts
+        Ok(&self.entries[&handle].parts)
     }
 
     /// Drops shapes of colliders that no longer exist.
@@ -82,28 +118,30 @@ pub(crate) fn rounding(shape: &dyn Shape) -> f64 {
     }
 }
 
-pub(super) fn convert(shape: &dyn Shape, pose: Pose2, parts: &mut Vec<ShapePart>) {
-    let mut push = |part: ConvexPart| {
+pub(super) fn convert(
+    shape: &dyn Shape,
+    pose: Pose2,
+    parts: &mut Vec<ShapePart>,
+) -> Result<(), ShapeFault> {
+    let mut push = |part: Result<ConvexPart, ShapeFault>| {
         parts.push(ShapePart {
-            part: Arc::new(part),
+            part: Arc::new(part?),
             pose,
-        })
+        });
+        Ok(())
     };
     match shape.as_typed_shape() {
-        TypedShape::Ball(ball) => push(ConvexPart::ball(Vec2::zeros(), f64::from(ball.radius))),
-        TypedShape::Cuboid(cuboid) => push(box_part(from_rapier(cuboid.half_extents), 0.0)),
-        TypedShape::RoundCuboid(round) => {
-            push(box_part(
-                from_rapier(round.inner_shape.half_extents),
-                f64::from(round.border_radius),
-            ));
-        }
-        TypedShape::Capsule(capsule) => push(ConvexPart::capsule(
-            from_rapier(capsule.segment.a),
-            from_rapier(capsule.segment.b),
-            f64::from(capsule.radius),
+        TypedShape::Ball(ball) => push(points_part(&[Vector::ZERO], ball.radius)),
+        TypedShape::Cuboid(cuboid) => push(box_part(cuboid.half_extents, 0.0)),
+        TypedShape::RoundCuboid(round) => push(box_part(
+            round.inner_shape.half_extents,
+            round.border_radius,
         )),
-        TypedShape::Segment(segment) => push(segment_part(segment)),
+        TypedShape::Capsule(capsule) => push(points_part(
+            &[capsule.segment.a, capsule.segment.b],
+            capsule.radius,
+        )),
+        TypedShape::Segment(segment) => push(points_part(&[segment.a, segment.b], 0.0)),
         TypedShape::Triangle(triangle) => {
             push(points_part(&[triangle.a, triangle.b, triangle.c], 0.0))
         }
@@ -111,64 +149,76 @@ pub(super) fn convert(shape: &dyn Shape, pose: Pose2, parts: &mut Vec<ShapePart>
             let inner = &round.inner_shape;
             push(points_part(
                 &[inner.a, inner.b, inner.c],
-                f64::from(round.border_radius),
-            ));
+                round.border_radius,
+            ))
         }
         TypedShape::ConvexPolygon(polygon) => push(points_part(polygon.points(), 0.0)),
         TypedShape::RoundConvexPolygon(round) => {
-            push(points_part(
-                round.inner_shape.points(),
-                f64::from(round.border_radius),
-            ));
+            push(points_part(round.inner_shape.points(), round.border_radius))
         }
-        TypedShape::HalfSpace(half_space) => {
-            push(ConvexPart::half_space(from_rapier(half_space.normal)))
-        }
-        TypedShape::TriMesh(mesh) => {
-            for triangle in mesh.triangles() {
-                push(points_part(&[triangle.a, triangle.b, triangle.c], 0.0));
-            }
-        }
-        TypedShape::Polyline(polyline) => {
-            for segment in polyline.segments() {
-                push(segment_part(&segment));
-            }
-        }
-        TypedShape::HeightField(field) => {
-            for segment in field.segments() {
-                push(segment_part(&segment));
-            }
-        }
+        TypedShape::HalfSpace(half_space) => push(half_space_part(half_space.normal)),
+        TypedShape::TriMesh(mesh) => mesh
+            .triangles()
+            .try_for_each(|triangle| push(points_part(&[triangle.a, triangle.b, triangle.c], 0.0))),
+        TypedShape::Polyline(polyline) => polyline
+            .segments()
+            .try_for_each(|segment| push(points_part(&[segment.a, segment.b], 0.0))),
+        TypedShape::HeightField(field) => field
+            .segments()
+            .try_for_each(|segment| push(points_part(&[segment.a, segment.b], 0.0))),
         TypedShape::Compound(compound) => {
-            for (local, child) in compound.shapes() {
+            compound.shapes().iter().try_for_each(|(local, child)| {
                 let local = pose_of(local);
                 let angle = atan2(pose.sin, pose.cos) + atan2(local.sin, local.cos);
-                let child_pose = Pose2::new(pose.transform(local.translation), angle);
-                convert(child.as_ref(), child_pose, parts);
-            }
+                let place = pose.transform(local.translation);
+                let is_placed = is_held(place.x) && is_held(place.y) && angle.is_finite();
+                if !is_placed {
+                    return Err(VERTICES);
+                }
+                convert(child.as_ref(), Pose2::new(place, angle), parts)
+            })
         }
         // Voxels and custom shapes have no convex parts we know of: they meet no flexible body.
-        _ => {}
+        _ => Ok(()),
     }
 }
 
-fn box_part(half: Vec2, radius: f64) -> ConvexPart {
+fn box_part(half: Vector, radius: Real) -> Result<ConvexPart, ShapeFault> {
+    if !(is_length(half.x) && is_length(half.y)) {
+        return Err(SIZE);
+    }
     let corners = [
-        Vec2::new(-half.x, -half.y),
-        Vec2::new(half.x, -half.y),
-        Vec2::new(half.x, half.y),
-        Vec2::new(-half.x, half.y),
+        Vector::new(-half.x, -half.y),
+        Vector::new(half.x, -half.y),
+        Vector::new(half.x, half.y),
+        Vector::new(-half.x, half.y),
     ];
-    ConvexPart::polygon(corners.to_vec(), radius)
+    points_part(&corners, radius)
 }
 
-fn points_part(points: &[Vector], radius: f64) -> ConvexPart {
-    ConvexPart::polygon(
-        points.iter().map(|&point| from_rapier(point)).collect(),
-        radius,
-    )
+fn points_part(points: &[Vector], radius: Real) -> Result<ConvexPart, ShapeFault> {
+    let is_placed = |point: &Vector| is_held(f64::from(point.x)) && is_held(f64::from(point.y));
+    if points.is_empty() || !points.iter().all(is_placed) {
+        return Err(VERTICES);
+    }
+    if !is_length(radius) {
+        return Err(RADIUS);
+    }
+    let points = points.iter().map(|&point| from_rapier(point));
+    Ok(ConvexPart::new(points.collect(), f64::from(radius)))
 }
 
-fn segment_part(segment: &crate::rapier::parry::shape::Segment) -> ConvexPart {
-    ConvexPart::segment(from_rapier(segment.a), from_rapier(segment.b))
+fn half_space_part(normal: Vector) -> Result<ConvexPart, ShapeFault> {
+    let normal = from_rapier(normal);
+    let length = normal.norm();
+    if length > 0.0 && is_held(length) {
+        Ok(ConvexPart::half_space(normal))
+    } else {
+        Err(NORMAL)
+    }
+}
+
+/// Whether a number is zero or positive, and no larger than what can be computed with.
+fn is_length(value: Real) -> bool {
+    value >= 0.0 && is_held(f64::from(value))
 }

@@ -81,8 +81,7 @@ impl Claims {
     }
 
     pub(super) fn is_sleeping_surface(&self, collider: ColliderHandle) -> bool {
-        let mut sleepers = self.asleep.iter();
-        sleepers.any(|sleeper| sleeper.collider == collider)
+        self.sleeping_surfaces.contains(&collider)
     }
 
     /// Wakes sleepers that something awake may meet in the step; returns whether one woke, so that the look-ahead has to begin
@@ -138,7 +137,12 @@ impl Claims {
     /// Whether an owner's body sleeps.
     pub fn sleeps(&self, sets: &RapierSets<'_>, owner: Owner) -> bool {
         match owner {
-            Owner::Flex(index) => self.asleep.iter().any(|sleeper| sleeper.index == index),
+            Owner::Flex(index) => {
+                let found = self
+                    .asleep
+                    .binary_search_by_key(&index, |sleeper| sleeper.index);
+                found.is_ok()
+            }
             Owner::Collider(index) => {
                 let collider = sets.colliders.get_unknown_gen(index);
                 let parent = collider.and_then(|(collider, _)| collider.parent());

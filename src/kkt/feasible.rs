@@ -1,10 +1,9 @@
 //! The feasible path of an island: which surfaces are kept apart, where they are at the base of the path, and what of it the rows need.
 
-use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics, Owner};
+use crate::constraint::contact::{ContactKey, ContactLaw, ContactMemory, Kinematics, Owner};
 use crate::math::{Vec2, node_vec, perp, rotation};
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces, Target};
 use crate::system::{Block, Grip, Point, RigidMotion};
-use std::collections::HashSet;
 
 /// Reach of the rows beyond the distance at which contact closes, relative to the margin: a tenth of an edge, as a margin is a hundredth.
 /// Between half of it and twice only the number of passes changes.
@@ -223,10 +222,9 @@ impl FeasiblePath {
 
     /// Lists the blocks of the ways between owners that pressed each other in the last step: their forces still act from the stored
     /// accelerations.
-    pub(super) fn list_pressed(&self, pressed: &HashSet<[Owner; 2]>, blocks: &mut Vec<[usize; 2]>) {
+    pub(super) fn list_pressed(&self, memory: &ContactMemory, blocks: &mut Vec<[usize; 2]>) {
         for way in &self.ways {
-            let [one, other] = way.owners;
-            if pressed.contains(&[one.min(other), one.max(other)]) {
+            if memory.has_pressed(way.owners) {
                 blocks.push(way.members.map(|member| self.carriers[member].block));
             }
         }

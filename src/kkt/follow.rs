@@ -13,9 +13,6 @@ use crate::constraint::contact::{Candidate, ContactMemory, Pair, Remembered};
 use crate::constraint::joint::JointGrip;
 use crate::math::exp;
 
-/// Passes in a step. The scenes of the tests take one to four; what needs more is cut.
-const MOST_PASSES: usize = 40;
-
 /// Passes of a step that stop short of where the forces lead. Every one of them goes on with forces that do not know what comes after: bodies
 /// that are stopped that often meet in ways that the step does not resolve.
 const MOST_STOPS: usize = 20;
@@ -77,8 +74,7 @@ impl Island {
         summary: &mut IslandSummary,
     ) -> Passed {
         self.path.rest(&self.blocks);
-        self.path
-            .list_pressed(&self.pressed_owners, &mut self.pressed_before);
+        self.path.list_pressed(memory, &mut self.pressed_before);
         self.impact.is_known = false;
         self.arrival.is_known = false;
         self.left.clear();
@@ -118,7 +114,7 @@ impl Island {
         listing.memory = None;
         let mut turned = self.correct();
         let (mut n_stopped, mut n_arrived) = (0, 0);
-        for pass in 0..MOST_PASSES {
+        for pass in 0..settings.max_newton {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());

@@ -15,7 +15,7 @@ use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solv
 use crate::linalg::cone::ConeError;
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use thiserror::Error;
 
 /// Why an island cannot be solved.
@@ -263,8 +263,6 @@ pub struct Island {
     pub(super) ignores_overlaps: bool,
     /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.
     pub(super) pressed_before: Vec<[usize; 2]>,
-    /// Who pressed whom in the last step.
-    pub(super) pressed_owners: HashSet<[Owner; 2]>,
     pub(super) solver: Solver,
     pub(super) newton: Newton,
 }

@@ -100,12 +100,10 @@ impl Island {
     /// Opens the working set with what pressed in the last step.
     fn remember_contacts(&mut self, slop: f64, kept: f64, memory: &ContactMemory) {
         self.pressed_before.clear();
-        self.pressed_owners.clear();
-        memory.list_pressed(&mut self.pressed_owners);
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for (index, candidate) in self.candidates.iter().enumerate() {
             // By another point too: what they stored of their forces still acts.
-            if self.pressed_owners.contains(&candidate.key.owners()) {
+            if memory.has_pressed(candidate.key.owners()) {
                 self.pressed_before.push(candidate.pair.blocks());
             }
             let remembered = memory.recall(&candidate.key);

@@ -107,13 +107,11 @@ impl FlexPipeline {
     fn report_residuals(&mut self, slot: usize) {
         let contact = &self.island.contacts[slot];
         let law = self.island.candidates[contact.candidate].law;
-        let [normal, tangent] = contact.multiplier;
         let report = &mut self.report;
         report.complementarity_residual = report
             .complementarity_residual
             .max(contact.kinematics.gap.abs());
-        let excess = (tangent.abs() - law.friction * normal).max(0.0) / normal;
-        report.cone_residual = report.cone_residual.max(excess);
+        report.cone.note(contact.multiplier, law.friction);
     }
 
     /// Notes the force of a contact for events.

@@ -8,6 +8,7 @@ use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
 use crate::kkt::KktError;
 use crate::math::{are_held, from_rapier, is_held};
+use crate::rapier::prelude::ColliderHandle;
 use crate::system::{Block, Step};
 
 /// Shortest step (s), but for what single precision makes of 1e-8. Contact forces change velocities within a step, so accelerations grow as its inverse and the
@@ -17,14 +18,19 @@ const SHORTEST: f64 = 1e-8 * (1.0 - 1e-7);
 /// Longest step (s): nothing a step resolves takes longer, and predictors grow as its square.
 const LONGEST: f64 = 1e4;
 
-/// Refuses margins that rapier cannot grow a box by: it panics, at the first collider it looks at, near or far.
-fn check_margins(sets: &RapierSets<'_>) -> Result<(), StepError> {
+/// Refuses margins that rapier cannot grow a box by: it panics, at the first collider it looks at, near or far. Only what was
+/// `marked` since rapier's last step need be asked: that step has looked at all others.
+fn check_margins(sets: &RapierSets<'_>, marked: &[ColliderHandle]) -> Result<(), StepError> {
     let is_margin = |value: f64| value >= 0.0 && is_held(value);
     let prediction = f64::from(sets.integration_parameters.prediction_distance());
     if !is_margin(prediction) {
         return Err(StepError::Prediction(prediction));
     }
-    for (handle, collider) in sets.colliders.iter_enabled() {
+    for &handle in marked {
+        let collider = sets.colliders.get(handle);
+        let Some(collider) = collider.filter(|collider| collider.is_enabled()) else {
+            continue;
+        };
         let skin = f64::from(collider.contact_skin());
         if !(is_margin(skin) && is_margin(rounding(collider.shape()))) {
             return Err(StepError::Margin(handle));
@@ -36,6 +42,7 @@ fn check_margins(sets: &RapierSets<'_>) -> Result<(), StepError> {
 impl FlexPipeline {
     /// Refuses a step length or gravity that nothing can be stepped with, before anything is touched.
     pub(super) fn check(&self, sets: &RapierSets<'_>) -> Result<Step, StepError> {
+        self.parameters.check()?;
         let dt = f64::from(sets.integration_parameters.dt);
         if dt != 0.0 && !(SHORTEST..=LONGEST).contains(&dt) {
             return Err(StepError::StepLength(dt));
@@ -50,14 +57,18 @@ impl FlexPipeline {
         })
     }
 
-    /// Refuses colliders that rapier cannot step, and bodies that are awake and cannot be stepped, before anything is touched.
+    /// Refuses colliders that rapier cannot step, before anything is touched.
+    pub(super) fn check_colliders(&self, sets: &RapierSets<'_>) -> Result<(), StepError> {
+        check_margins(sets, self.claims.marked_colliders())
+    }
+
+    /// Refuses bodies that are awake and cannot be stepped, before anything is touched.
     pub(super) fn check_bodies(
         &self,
         dt: f64,
         sets: &RapierSets<'_>,
         flex_bodies: &FlexBodySet,
     ) -> Result<(), StepError> {
-        check_margins(sets)?;
         for (handle, body) in flex_bodies.iter() {
             if body.is_quarantined() || is_asleep(body, sets.bodies) {
                 continue;
@@ -86,7 +97,7 @@ impl FlexPipeline {
         if is_explicit && !matches!(body.model().mass(), MassMatrix::Lumped(_)) {
             return Err(IntegratorError::ConsistentMass);
         }
-        if self.insists || integrator.is_unconditionally_stable() {
+        if self.parameters.insists || integrator.is_unconditionally_stable() {
             return Ok(());
         }
         let frequency = if is_explicit {

@@ -3,7 +3,7 @@
 use super::quality::Quality;
 use super::report::Participant;
 use crate::body::{AttachmentHandle, FlexBodyError, FlexBodyHandle};
-use crate::coupling::GatherError;
+use crate::coupling::{GatherError, ShapeFault};
 use crate::integrator::IntegratorError;
 use crate::kkt::KktError;
 use crate::linalg::cholesky::CholeskyError;
@@ -67,6 +67,16 @@ pub enum StepError {
         "the step length is {0:e} s: set `integration_parameters.dt` to zero or a positive number from 1e-8 s to 1e4 s"
     )]
     StepLength(f64),
+    /// A parameter of the pipeline is out of its range.
+    #[error("the pipeline's parameter `{name}` is {value}: {cure}")]
+    Parameter {
+        /// Which field of [`FlexParameters`](super::FlexParameters).
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What to do.
+        cure: &'static str,
+    },
     /// Gravity is not finite or too large for rapier's precision.
     #[error("gravity is {0:?} m/s^2: set `gravity` to finite numbers")]
     Gravity([f64; 2]),
@@ -110,6 +120,18 @@ pub enum StepError {
         "{0:?} touches a flexible body, and its friction or restitution is not finite: set both to finite numbers"
     )]
     Coefficient(ColliderHandle),
+    /// A collider that a flexible body meets, or a body that it touches, has a shape of numbers that no body can have.
+    #[error(
+        "{collider:?} meets a flexible body, or what touches one, and its shape has {fault}: {cure}, or disable the collider"
+    )]
+    Shape {
+        /// The collider.
+        collider: ColliderHandle,
+        /// What is wrong with its shape.
+        fault: &'static str,
+        /// What to do.
+        cure: &'static str,
+    },
     /// `modify_solver_contacts` left numbers that are not finite.
     #[error(
         "the hook `modify_solver_contacts` left a normal, distance or coefficient that is not finite, or a normal of no length, between {0:?} and {1:?}: leave finite numbers, or clear the solver contacts"
@@ -124,6 +146,11 @@ impl From<GatherError> for StepError {
             GatherError::RigidBody(handle) => Self::RigidBody(handle),
             GatherError::Joint(handle) => Self::Joint(handle),
             GatherError::Coefficient(handle) => Self::Coefficient(handle),
+            GatherError::Shape(collider, ShapeFault { fault, cure }) => Self::Shape {
+                collider,
+                fault,
+                cure,
+            },
             GatherError::Hook([one, other]) => Self::Hook(one, other),
         }
     }

@@ -4,6 +4,7 @@ use super::clock::Clock;
 use super::error::StepError;
 use super::joint_accounts::drop_orphans;
 use super::report::StepReport;
+use super::settings::FlexParameters;
 use crate::body::{FlexBodyHandle, FlexBodySet};
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
@@ -11,15 +12,13 @@ use crate::coupling::{
     Masters, RapierSets, WorldChange, hand_back, land, rests, stop_if_asleep, sync_settings,
     wake_disturbed, write_impulses, write_surface,
 };
-use crate::integrator::Beta2;
-use crate::kkt::{ContactMethod, ImpactTreatment, Island, SolveSettings};
-use crate::linalg::complementarity::Method;
+use crate::kkt::{Island, SolveSettings};
 use crate::rapier::prelude::*;
 use crate::system::Step;
 
 /// Steps a rapier world together with its flexible bodies.
 ///
-/// Holds settings and buffers; use one pipeline for one world.
+/// Holds [parameters](FlexParameters) and buffers; use one pipeline for one world.
 ///
 /// ```
 /// use foil2d::prelude::*;
@@ -43,14 +42,8 @@ use crate::system::Step;
 /// ```
 #[derive(Debug)]
 pub struct FlexPipeline {
-    pub(super) integrator: Beta2,
-    pub(super) impact: ImpactTreatment,
-    pub(super) contact: ContactMethod,
-    pub(super) solver: Method,
-    pub(super) restitution_threshold: f64,
-    pub(super) max_newton: usize,
-    pub(super) insists: bool,
-    pub(super) refuses_unsolved: bool,
+    /// How steps are taken; may be changed between any two of them.
+    pub parameters: FlexParameters,
     pub(super) claims: Claims,
     pub(super) gatherer: Gatherer,
     pub(super) masters: Masters,
@@ -77,14 +70,7 @@ impl FlexPipeline {
     /// A pipeline with `Beta2::damped(0.9)` and stabilized impacts.
     pub fn new() -> Self {
         Self {
-            integrator: Beta2::default(),
-            impact: ImpactTreatment::default(),
-            contact: ContactMethod::default(),
-            solver: Method::ActiveSet,
-            restitution_threshold: 0.5,
-            max_newton: 20,
-            insists: false,
-            refuses_unsolved: false,
+            parameters: FlexParameters::default(),
             claims: Claims::default(),
             gatherer: Gatherer::default(),
             masters: Masters::default(),
@@ -218,6 +204,7 @@ impl FlexPipeline {
         let step = self.check(sets)?;
         drop_orphans(sets, flex_bodies);
         let change = self.claims.look_for_changes(sets, flex_bodies);
+        self.check_colliders(sets)?;
         let is_quiet = step.dt > 0.0 && change == WorldChange::None;
         if is_quiet && self.claims.is_all_asleep(sets, flex_bodies) {
             self.step_asleep(sets, flex_bodies.len());
@@ -261,6 +248,7 @@ impl FlexPipeline {
         }
         self.claims.walk(sets);
         self.gatherer.retain(sets, flex_bodies);
+        self.note_newcomers(sets, flex_bodies);
         clock.lap(&mut self.report.times.claim);
         if let Err(error) = self.solve_islands(step, sets, flex_bodies, &mut clock) {
             self.undo(flex_bodies, dissipated);
@@ -362,7 +350,8 @@ impl FlexPipeline {
             component,
             step,
             prediction: f64::from(sets.integration_parameters.prediction_distance()),
-            uses_path: !step.is_explicit() && self.contact == ContactMethod::Lagrange,
+            uses_path: !step.is_explicit()
+                && self.parameters.contact_method == crate::kkt::ContactMethod::Lagrange,
         };
         let (claims, island) = (&mut self.claims, &mut self.island);
         let kept = (&self.masters, &self.links);
@@ -378,12 +367,12 @@ impl FlexPipeline {
             },
             b1: step.weights.b1,
             is_explicit: step.is_explicit(),
-            insists: self.insists,
-            impact: self.impact,
-            contact: self.contact,
-            solver: self.solver,
-            restitution_threshold: self.restitution_threshold,
-            max_newton: self.max_newton,
+            insists: self.parameters.insists,
+            impact: self.parameters.impact,
+            contact: self.parameters.contact_method,
+            solver: self.parameters.contact_solver,
+            restitution_threshold: self.parameters.restitution_threshold,
+            max_newton: self.parameters.max_newton,
         };
         let mut reserve = self.reserve(flex_bodies);
         let summary = self
@@ -392,7 +381,7 @@ impl FlexPipeline {
             .map_err(|error| self.name_bodies(error, flex_bodies))?;
         self.check_finite(flex_bodies)?;
         self.note(step, &summary, reserve, sets, flex_bodies);
-        if self.refuses_unsolved
+        if self.parameters.refuses_unsolved
             && let Some(unsolved) = self.report.unsolved.pop()
         {
             return Err(StepError::Unsolved {
@@ -440,6 +429,7 @@ impl FlexPipeline {
                 sets.integration_parameters,
             );
             stop_if_asleep(body, sets.bodies);
+            body.greet();
         }
     }
 }

@@ -8,6 +8,7 @@ mod debug_render;
 mod error;
 mod flex_pipeline;
 mod joint_accounts;
+mod notes;
 mod quality;
 mod quarantine;
 mod report;
@@ -20,9 +21,11 @@ mod snapshot;
 pub use debug_render::FlexDebugRender;
 pub use error::StepError;
 pub use flex_pipeline::FlexPipeline;
+pub use notes::InsertionNote;
 pub use quality::{Quality, Unsolved};
 pub use report::{
     ContactReport, EnergyReport, Held, JointReport, Participant, StageTimes, StepReport,
 };
+pub use settings::FlexParameters;
 #[cfg(feature = "serde-serialize")]
 pub use snapshot::{Snapshot, SnapshotError};

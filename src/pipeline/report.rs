@@ -1,5 +1,6 @@
 //! What a step tells about itself.
 
+use super::notes::InsertionNote;
 use super::quality::{Quality, Unsolved};
 use crate::body::{AttachmentHandle, FlexBodyHandle};
 use crate::coupling::RapierSets;
@@ -126,6 +127,54 @@ impl StageTimes {
     }
 }
 
+/// How far tangential forces leave Coulomb's cone.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub(super) struct ConeExcess {
+    /// Largest `|t| - μ n` (N).
+    excess: f64,
+    /// Largest `n` (N).
+    normal: f64,
+}
+
+impl ConeExcess {
+    /// Notes a contact of these normal and tangential forces (N) and this coefficient of friction (-).
+    pub fn note(&mut self, [normal, tangent]: [f64; 2], friction: f64) {
+        self.excess = self.excess.max(tangent.abs() - friction * normal);
+        self.normal = self.normal.max(normal);
+    }
+
+    /// The largest excess over the largest normal force (-).
+    fn residual(&self) -> f64 {
+        if self.normal > 0.0 {
+            self.excess / self.normal
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::ConeExcess;
+
+    /// A weak contact that slips a little too hard says little beside a strong one: 0.1 N of 1000 N, not of 1 N.
+    #[test]
+    fn excess_is_relative_to_the_largest_normal_force_of_the_step() {
+        let mut cone = ConeExcess::default();
+        assert_eq!(cone.residual(), 0.0);
+        cone.note([1.0, -0.6], 0.5);
+        assert!((cone.residual() - 0.1).abs() < 1e-15);
+        cone.note([1000.0, 400.0], 0.5);
+        assert!((cone.residual() - 1e-4).abs() < 1e-18);
+        cone.note([10.0, 9.0], 0.5);
+        assert!((cone.residual() - 4e-3).abs() < 1e-17);
+    }
+}
+
 /// The outcome of the last step.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -144,7 +193,7 @@ pub struct StepReport {
     pub(super) unsolved: Vec<Unsolved>,
     pub(super) gap_violation: f64,
     pub(super) complementarity_residual: f64,
-    pub(super) cone_residual: f64,
+    pub(super) cone: ConeExcess,
     pub(super) solver_residual: f64,
     pub(super) energy_limited: f64,
     pub(super) n_islands: usize,
@@ -165,6 +214,7 @@ pub struct StepReport {
     pub(super) quarantined_flex_bodies: Vec<FlexBodyHandle>,
     pub(super) quarantined_bodies: Vec<RigidBodyHandle>,
     pub(super) quarantined_colliders: Vec<ColliderHandle>,
+    pub(super) insertion_notes: Vec<InsertionNote>,
 }
 
 impl StepReport {
@@ -214,9 +264,10 @@ impl StepReport {
         self.complementarity_residual
     }
 
-    /// Largest excess of a tangential over the admissible force, relative to the largest normal force (-).
+    /// Largest excess of a tangential over the admissible force, relative to the largest normal force of the step (-), over the multipliers
+    /// of all closed contacts; zero where nothing presses.
     pub fn cone_residual(&self) -> f64 {
-        self.cone_residual
+        self.cone.residual()
     }
 
     /// Largest natural-map residual of the complementarity problems (-).
@@ -308,6 +359,12 @@ impl StepReport {
     /// Colliders that rapier disabled because their shape or pose was not finite.
     pub fn quarantined_colliders(&self) -> &[ColliderHandle] {
         &self.quarantined_colliders
+    }
+
+    /// What is likely a mistake in the description of bodies that took their first step in this one: pins that choose no node, bodies put
+    /// into each other.
+    pub fn insertion_notes(&self) -> &[InsertionNote] {
+        &self.insertion_notes
     }
 
     /// Sum of the normal and tangential contact forces on a participant (N).

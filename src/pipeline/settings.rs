@@ -1,9 +1,83 @@
 //! What a user chooses of a pipeline.
 
+use super::error::StepError;
 use super::flex_pipeline::FlexPipeline;
 use crate::integrator::Beta2;
 use crate::kkt::{ContactMethod, ImpactTreatment};
 use crate::linalg::complementarity::Method;
+
+/// How a [`FlexPipeline`] takes its steps, as rapier's `IntegrationParameters` say it of rapier: plain values, read at the beginning of each
+/// step.
+///
+/// The `with_*` methods of the pipeline set the same values.
+///
+/// ```
+/// use foil2d::prelude::*;
+/// let mut flex = FlexPipeline::new();
+/// flex.parameters.max_newton *= 2;
+/// flex.parameters.integrator = Beta2::trapezoidal();
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub struct FlexParameters {
+    /// The member of the Beta-2 family; [`Beta2::damped`]`(0.9)` by default. See [`FlexPipeline::with_integrator`].
+    pub integrator: Beta2,
+    /// What is done on impact; stabilized by default.
+    pub impact: ImpactTreatment,
+    /// How the laws of contact are enforced; by Lagrange multipliers by default. See [`FlexPipeline::with_contact_method`].
+    pub contact_method: ContactMethod,
+    /// The solver that contact problems are given to first; the active set by default.
+    pub contact_solver: Method,
+    /// Approach velocity (m/s) below which restitution is ignored, so that resting contacts do not bounce; 0.5 by default.
+    pub restitution_threshold: f64,
+    /// Most passes (Newton iterations) of an island in a step, at least 1; 40 by default. What becomes of an island that needs more is told
+    /// by [`StepReport::quality`](super::StepReport::quality).
+    pub max_newton: usize,
+    /// Whether steps longer than the critical one are taken all the same; no by default. See [`FlexPipeline::insisting`].
+    pub insists: bool,
+    /// Whether steps that are not solved are refused; no by default. See [`FlexPipeline::refusing_unsolved`].
+    pub refuses_unsolved: bool,
+}
+
+impl Default for FlexParameters {
+    fn default() -> Self {
+        Self {
+            integrator: Beta2::default(),
+            impact: ImpactTreatment::default(),
+            contact_method: ContactMethod::default(),
+            contact_solver: Method::ActiveSet,
+            restitution_threshold: 0.5,
+            max_newton: 40,
+            insists: false,
+            refuses_unsolved: false,
+        }
+    }
+}
+
+impl FlexParameters {
+    /// Refuses values that no step can be taken with.
+    pub(super) fn check(&self) -> Result<(), StepError> {
+        let threshold = self.restitution_threshold;
+        if threshold.is_nan() || threshold < 0.0 {
+            return Err(StepError::Parameter {
+                name: "restitution_threshold",
+                value: threshold,
+                cure: "set it to zero or a positive number (m/s), infinity for no restitution",
+            });
+        }
+        if self.max_newton == 0 {
+            return Err(StepError::Parameter {
+                name: "max_newton",
+                value: 0.0,
+                cure: "set it to one or more",
+            });
+        }
+        Ok(())
+    }
+}
 
 impl FlexPipeline {
     /// Chooses the member of the Beta-2 family.
@@ -12,27 +86,27 @@ impl FlexPipeline {
     /// the forward increment, and the [treatment of impacts](Self::with_impact) does not matter. Steps longer than the
     /// critical one of a body are refused, see [`Self::insisting`].
     pub fn with_integrator(mut self, integrator: Beta2) -> Self {
-        self.integrator = integrator;
+        self.parameters.integrator = integrator;
         self
     }
 
     /// Chooses what is done on impact.
     pub fn with_impact(mut self, impact: ImpactTreatment) -> Self {
-        self.impact = impact;
+        self.parameters.impact = impact;
         self
     }
 
     /// Chooses how the laws of contact are enforced: by Lagrange multipliers, or for comparison by the constraint functions of
     /// ADINA. Steps in which the latter fail are counted, see [`StepReport::n_failed`](super::StepReport::n_failed).
     pub fn with_contact_method(mut self, method: ContactMethod) -> Self {
-        self.contact = method;
+        self.parameters.contact_method = method;
         self
     }
 
     /// Chooses the solver of the contact problems: the active set, a direct method, by default;
     /// [`Method::GaussSeidel`] for the modified Gauss–Seidel method of Carpenter, Taylor and Katona.
     pub fn with_contact_solver(mut self, method: Method) -> Self {
-        self.solver = method;
+        self.parameters.contact_solver = method;
         self
     }
 
@@ -42,25 +116,25 @@ impl FlexPipeline {
     /// frequencies grow until numbers are no longer finite. The same goes for rigid bodies that are light on the surface of an
     /// explicit body.
     pub fn insisting(mut self) -> Self {
-        self.insists = true;
+        self.parameters.insists = true;
         self
     }
 
     /// Refuses steps that are not [solved](super::Quality::Solved), with [`StepError::Unsolved`](super::StepError::Unsolved), instead of
     /// taking them and telling of it in the report.
     pub fn refusing_unsolved(mut self) -> Self {
-        self.refuses_unsolved = true;
+        self.parameters.refuses_unsolved = true;
         self
     }
 
     /// Approach velocity (m/s) below which restitution is ignored, so that resting contacts do not bounce.
     pub fn with_restitution_threshold(mut self, threshold: f64) -> Self {
-        self.restitution_threshold = threshold;
+        self.parameters.restitution_threshold = threshold;
         self
     }
 
     /// The integrator.
     pub fn integrator(&self) -> Beta2 {
-        self.integrator
+        self.parameters.integrator
     }
 }

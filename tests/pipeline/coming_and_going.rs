@@ -2,6 +2,7 @@
 
 use crate::support::*;
 use foil2d::body::FlexBodyError;
+use foil2d::pipeline::{InsertionNote, Participant};
 
 #[test]
 fn bodies_come_and_go_at_run_time_and_their_handles_go_stale() -> Outcome {
@@ -123,5 +124,65 @@ fn sleeping_boxes_wake_when_a_flexible_body_touches_them_and_not_before() -> Out
         .map(|at| at[1])
         .fold(f64::INFINITY, f64::min);
     assert!(bottom > -1e-6, "{bottom} m");
+    Ok(())
+}
+
+/// What a user most likely did not mean is told once, in the first step, whatever the order of insertion; the step is taken.
+#[test]
+fn overlaps_and_pins_that_choose_nothing_are_told_in_the_first_step() -> Outcome {
+    let small = || FlexBodyBuilder::rectangle([0.2, 0.2], [2, 2]).material(rubber());
+    for rigid_first in [false, true] {
+        let mut scene = Scene::with_floor();
+        let mut rigid = None;
+        if rigid_first {
+            rigid = Some(scene.insert_box(0.3, [10.5, 5.9], 100.0));
+        }
+        let outer = scene.insert(square().translation([0.0, 5.0]))?;
+        // Wholly inside: no surfaces cross.
+        let inner = scene.insert(small().translation([0.4, 5.4]))?;
+        let crossed = scene.insert(square().translation([5.0, 5.0]))?;
+        let crossing = scene.insert(square().translation([5.8, 5.1]))?;
+        let pierced = scene.insert(square().translation([10.0, 5.0]))?;
+        // Flush neighbours and a floor that is touched: nothing is wrong with them.
+        scene.insert(square().translation([20.0, 0.0]))?;
+        scene.insert(square().translation([20.0, 1.0]))?;
+        scene.insert(square().translation([21.0, 0.0]).rotation(0.0))?;
+        let loose = scene.insert(
+            small()
+                .pin_where(|[x, _]| x == 0.4, Pin::both())
+                .translation([30.0, 5.0]),
+        )?;
+        let sunk = scene.insert(square().translation([40.0, -0.2]))?;
+        let rigid = rigid.unwrap_or_else(|| scene.insert_box(0.3, [10.5, 5.9], 100.0));
+        let rigid = scene.world.bodies[rigid].colliders()[0];
+        let floor = scene
+            .world
+            .colliders
+            .iter()
+            .find(|(_, one)| one.parent().is_none());
+        let floor = floor.expect("the floor").0;
+        let notes = scene.step()?.insertion_notes().to_vec();
+        let overlaps = |one: FlexBodyHandle, with: Participant| {
+            notes.iter().any(|note| {
+                let InsertionNote::Overlap { body, with: found } = *note else {
+                    return false;
+                };
+                (body, found) == (one, with)
+                    || (Participant::Flex(body), found) == (with, Participant::Flex(one))
+            })
+        };
+        assert!(overlaps(outer, Participant::Flex(inner)), "{notes:?}");
+        assert!(overlaps(crossed, Participant::Flex(crossing)), "{notes:?}");
+        assert!(overlaps(pierced, Participant::Rigid(rigid)), "{notes:?}");
+        assert!(overlaps(sunk, Participant::Rigid(floor)), "{notes:?}");
+        let idle = InsertionNote::NothingPinned {
+            body: loose,
+            n_calls: 1,
+        };
+        assert!(notes.contains(&idle), "{notes:?}");
+        assert!(idle.to_string().contains("pin_where"));
+        assert_eq!(notes.len(), 5, "{notes:?}");
+        assert!(scene.step()?.insertion_notes().is_empty(), "told once");
+    }
     Ok(())
 }

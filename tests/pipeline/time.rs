@@ -1,6 +1,7 @@
 //! Step lengths: none, changing, and the split form of the step.
 
 use crate::support::*;
+use foil2d::body::FlexBodyError;
 use foil2d::coupling::RapierSets;
 
 #[test]
@@ -103,6 +104,130 @@ fn a_changing_step_length_keeps_a_resting_block_at_rest_under_its_weight() -> Ou
         );
         assert!((body.centre_of_mass()[1] - height).abs() < 1e-6);
     }
+    Ok(())
+}
+
+/// Two bodies and two boxes, of which one of each goes after 45 steps.
+fn falling() -> Result<(Scene, FlexBodyHandle), BuildError> {
+    let mut scene = Scene::with_floor();
+    scene.insert(beam())?;
+    let upper = scene.insert(square().translation([0.1, 2.5]).rotation(0.4))?;
+    scene.insert_box(0.2, [-1.0, 1.6], 500.0);
+    scene.insert_box(0.2, [6.0, 0.6], 500.0);
+    Ok((scene, upper))
+}
+
+#[test]
+fn the_split_form_steps_and_removes_as_the_world_does() -> Outcome {
+    let ((mut whole, upper), (mut split, split_upper)) = (falling()?, falling()?);
+    for step in 0..90 {
+        let world = &mut split.world;
+        if step == 45 {
+            whole.flex_bodies.remove(upper, &mut whole.world)?;
+            let removed = split.flex_bodies.remove_with_sets(
+                split_upper,
+                &mut world.islands,
+                &mut world.bodies,
+                &mut world.colliders,
+                &mut world.impulse_joints,
+                &mut world.multibody_joints,
+                &mut world.soft_bodies,
+            )?;
+            assert!(!world.bodies.contains(removed.rigid_body_handle()));
+            assert!(split.flex_bodies.get(split_upper).is_none());
+        }
+        let expected = whole.step()?.clone();
+        let report = split.flex.step_split(
+            &mut split.flex_bodies,
+            &mut world.physics_pipeline,
+            world.gravity,
+            &world.integration_parameters,
+            &mut world.islands,
+            &mut world.broad_phase,
+            &mut world.narrow_phase,
+            &mut world.bodies,
+            &mut world.colliders,
+            &mut world.impulse_joints,
+            &mut world.multibody_joints,
+            &mut world.soft_bodies,
+            &mut world.ccd_solver,
+            &(),
+            &(),
+        )?;
+        assert_eq!(expected.contacts().len(), report.contacts().len());
+        assert_eq!(expected.energy(), report.energy());
+        assert_eq!(whole.bits(), split.bits(), "step {step}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_body_is_removed_from_no_sets_but_its_own() -> Outcome {
+    let ((mut one, upper), (mut other, _)) = (falling()?, falling()?);
+    one.step()?;
+    let world = &mut other.world;
+    world.bodies.iter_mut().for_each(|(_, body)| {
+        body.set_translation(vec2(1.0, 1.0), false);
+    });
+    let refused = one.flex_bodies.remove_with_sets(
+        upper,
+        &mut world.islands,
+        &mut world.bodies,
+        &mut world.colliders,
+        &mut world.impulse_joints,
+        &mut world.multibody_joints,
+        &mut world.soft_bodies,
+    );
+    assert_eq!(refused.err(), Some(FlexBodyError::NoCarrier(upper)));
+    assert_eq!(world.bodies.len(), 4);
+    one.step()?;
+    Ok(())
+}
+
+#[test]
+fn parameters_set_in_place_are_those_of_the_builder() -> Outcome {
+    let ((mut built, _), (mut set, _)) = (falling()?, falling()?);
+    built.flex = FlexPipeline::new()
+        .with_integrator(Beta2::trapezoidal())
+        .with_impact(ImpactTreatment::Projected)
+        .with_restitution_threshold(0.1);
+    let flex = &mut set.flex;
+    flex.parameters.integrator = Beta2::trapezoidal();
+    flex.parameters.impact = ImpactTreatment::Projected;
+    flex.parameters.restitution_threshold = 0.1;
+    assert_eq!(built.flex.parameters, set.flex.parameters);
+    for step in 0..60 {
+        built.step()?;
+        set.step()?;
+        assert_eq!(built.bits(), set.bits(), "step {step}");
+    }
+    Ok(())
+}
+
+#[test]
+fn parameters_out_of_range_are_refused_by_name_and_leave_no_trace() -> Outcome {
+    let (mut scene, _) = falling()?;
+    scene.step()?;
+    let before = scene.bits();
+    let sound = scene.flex.parameters;
+    type Spoil = fn(&mut FlexParameters);
+    let spoils: [(&str, Spoil); 3] = [
+        ("max_newton", |all| all.max_newton = 0),
+        ("restitution_threshold", |all| {
+            all.restitution_threshold = f64::NAN;
+        }),
+        ("restitution_threshold", |all| {
+            all.restitution_threshold = -1.0;
+        }),
+    ];
+    for (culprit, spoil) in spoils {
+        spoil(&mut scene.flex.parameters);
+        let error = scene.step().map(|_| ()).expect_err(culprit);
+        assert!(matches!(error, StepError::Parameter { name, .. } if name == culprit));
+        assert_eq!(before, scene.bits());
+        scene.flex.parameters = sound;
+    }
+    scene.step()?;
     Ok(())
 }
 

@@ -203,3 +203,54 @@ fn changes_that_wait_for_the_next_step_are_saved_too() {
     let mut resumed = straight.resumed();
     compare(&mut straight, &mut resumed, 200);
 }
+
+/// A sensor is left in the detection step of a step that is then refused: that it was left waits for a step that is taken.
+#[test]
+fn what_waits_to_be_told_of_a_sensor_is_saved_too() {
+    let log = Recorder::default();
+    let mut straight = Run::new();
+    let block = FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4]).translation([0.0, 0.001]);
+    straight.flexible(block.material(rubber()));
+    let top = straight.rigid([0.5, 1.202], ColliderBuilder::cuboid(0.2, 0.2));
+    let gate = ColliderBuilder::cuboid(0.5, 0.5)
+        .translation(vec2(8.0, 0.5))
+        .sensor(true)
+        .active_events(ActiveEvents::COLLISION_EVENTS);
+    let gate = straight.world.insert_collider(gate, None);
+    let ball = straight.rigid([8.0, 0.3], ColliderBuilder::ball(0.2));
+    (0..10).for_each(|_| straight.step(&log));
+    let met = log.collisions();
+    log.take();
+    let is_gate = |event: &CollisionEvent| [event.collider1(), event.collider2()].contains(&gate);
+    assert_eq!(
+        met.iter().filter(|event| is_gate(event)).count(),
+        1,
+        "{met:?}"
+    );
+    straight.world.bodies[ball].set_translation(vec2(20.0, 0.3), true);
+    straight.world.bodies[top].add_force(vec2(f64::NAN, 0.0), true);
+    straight
+        .flex
+        .step_with_events(
+            &mut straight.world,
+            &mut straight.flex_bodies,
+            &Ageing,
+            &log,
+        )
+        .expect_err("a force that is no number");
+    assert!(log.take().is_empty(), "nothing has happened yet");
+    let mut resumed = straight.resumed();
+    for run in [&mut straight, &mut resumed] {
+        run.world.bodies[top].reset_forces(true);
+        run.step(&log);
+        let told = log.collisions();
+        log.take();
+        let is_gate =
+            |event: &CollisionEvent| [event.collider1(), event.collider2()].contains(&gate);
+        let left = told
+            .iter()
+            .filter(|event| event.stopped() && is_gate(event));
+        assert_eq!(left.count(), 1, "{told:?}");
+    }
+    compare(&mut straight, &mut resumed, 60);
+}

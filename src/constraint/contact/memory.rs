@@ -32,6 +32,9 @@ pub struct ContactMemory {
     last: HashMap<ContactKey, Remembered>,
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
     next: HashMap<ContactKey, Remembered>,
+    /// Who pressed whom in the last step; see [`ContactKey::owners`].
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
+    pressed: HashSet<[Owner; 2]>,
 }
 
 impl ContactMemory {
@@ -40,10 +43,9 @@ impl ContactMemory {
         self.last.get(key).copied().unwrap_or_default()
     }
 
-    /// Lists who pressed whom in the last step, by any of their points; see [`ContactKey::owners`].
-    pub fn list_pressed(&self, pairs: &mut HashSet<[Owner; 2]>) {
-        let pressed = self.last.iter().filter(|(_, state)| state.normal > 0.0);
-        pairs.extend(pressed.map(|(key, _)| key.owners()));
+    /// Whether two owners pressed each other in the last step, by any of their points.
+    pub fn has_pressed(&self, [one, other]: [Owner; 2]) -> bool {
+        self.pressed.contains(&[one.min(other), one.max(other)])
     }
 
     /// Notes the state of a contact for the next step.
@@ -55,6 +57,14 @@ impl ContactMemory {
     pub fn turn_over(&mut self) {
         std::mem::swap(&mut self.last, &mut self.next);
         self.next.clear();
+        self.list_pressed();
+    }
+
+    /// Lists who presses whom, once for all islands.
+    pub fn list_pressed(&mut self) {
+        self.pressed.clear();
+        let pressed = self.last.iter().filter(|(_, state)| state.normal > 0.0);
+        self.pressed.extend(pressed.map(|(key, _)| key.owners()));
     }
 
     /// Keeps the states of the last step that nobody noted anew and that `sleeps` names.

@@ -12,20 +12,18 @@ pub use error::SnapshotError;
 
 use super::flex_pipeline::FlexPipeline;
 use super::report::StepReport;
+use super::settings::FlexParameters;
 use crate::body::{FlexBodySet, SetRecord, SetRecordError};
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::CouplingRecord;
 use crate::fe::record::KnownLaws;
-use crate::integrator::Beta2;
-use crate::kkt::{ContactMethod, ImpactTreatment};
-use crate::linalg::complementarity::Method;
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Raised with every change of what is written, rapier's own structures included.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// Bits of rapier's numbers.
 const PRECISION: u8 = 8 * size_of::<Real>() as u8;
@@ -205,13 +203,7 @@ impl WorldRecord {
 /// Settings and memory of a pipeline.
 #[derive(Clone, Serialize, Deserialize)]
 struct PipelineRecord {
-    integrator: Beta2,
-    impact: ImpactTreatment,
-    contact: ContactMethod,
-    solver: Method,
-    restitution_threshold: f64,
-    max_newton: usize,
-    insists: bool,
+    parameters: FlexParameters,
     memory: ContactMemory,
     coupling: CouplingRecord,
     report: StepReport,
@@ -220,13 +212,7 @@ struct PipelineRecord {
 impl PipelineRecord {
     fn of(flex: &FlexPipeline) -> Self {
         Self {
-            integrator: flex.integrator,
-            impact: flex.impact,
-            contact: flex.contact,
-            solver: flex.solver,
-            restitution_threshold: flex.restitution_threshold,
-            max_newton: flex.max_newton,
-            insists: flex.insists,
+            parameters: flex.parameters,
             memory: flex.memory.clone(),
             coupling: CouplingRecord::of(
                 &flex.claims,
@@ -243,14 +229,9 @@ impl PipelineRecord {
         let (claims, events, (masters, links), gatherer) =
             coupling.ok_or(SnapshotError::Inconsistent("explicit bodies"))?;
         let mut flex = FlexPipeline::new();
-        flex.integrator = self.integrator;
-        flex.impact = self.impact;
-        flex.contact = self.contact;
-        flex.solver = self.solver;
-        flex.restitution_threshold = self.restitution_threshold;
-        flex.max_newton = self.max_newton;
-        flex.insists = self.insists;
+        flex.parameters = self.parameters;
         flex.memory = self.memory;
+        flex.memory.list_pressed();
         flex.claims = claims;
         flex.events = events;
         flex.masters = masters;

@@ -1,0 +1,109 @@
+//! What a body that has just been inserted overlaps: looked at once, in its first step, when all that was inserted with it is there.
+
+use super::claim::{ClaimedPair, Claims};
+use super::places::placed_on;
+use super::sets::RapierSets;
+use crate::body::{FlexBody, FlexBodySet};
+use crate::math::{Vec2, from_rapier, node_vec};
+use crate::rapier::parry::query;
+use crate::rapier::prelude::*;
+
+/// Depth over the length of a boundary segment from which bodies count as overlapping: bodies that were laid flush overlap by the
+/// rounding of rapier's numbers, and boxes at rest in rapier by a few thousandths of their size.
+const DEEP: f64 = 1e-2;
+
+impl Claims {
+    /// The pairs of this step in which a body that has not been stepped before overlaps what it meets.
+    pub fn overlaps_of_newcomers(
+        &self,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) -> Vec<ClaimedPair> {
+        let overlaps = |pair: &ClaimedPair| match *pair {
+            ClaimedPair::FlexRigid(flex, other) => {
+                let body = self.body_of(flex, flex_bodies);
+                let body = body.filter(|body| body.is_new());
+                body.is_some_and(|body| overlaps_rigid(body, other, self.depth(flex), sets))
+            }
+            ClaimedPair::FlexFlex(one, other) => {
+                let bodies = [one, other].map(|flex| self.body_of(flex, flex_bodies));
+                let [Some(first), Some(second)] = bodies else {
+                    return false;
+                };
+                let depth = self.depth(one).min(self.depth(other));
+                (first.is_new() || second.is_new()) && overlap(first, second, depth, sets)
+            }
+            ClaimedPair::RigidRigid(..) => false,
+        };
+        self.pairs.iter().copied().filter(overlaps).collect()
+    }
+
+    fn body_of<'a>(&self, flex: usize, flex_bodies: &'a FlexBodySet) -> Option<&'a FlexBody> {
+        let found = flex_bodies.at_index(self.flex[flex].index);
+        found.map(|(_, body)| body)
+    }
+
+    /// Depth from which a body overlaps (m).
+    fn depth(&self, flex: usize) -> f64 {
+        DEEP * self.flex[flex].edge
+    }
+}
+
+/// Whether the surfaces cross, or a piece of material of one lies in the other.
+fn overlap(one: &FlexBody, other: &FlexBody, depth: f64, sets: &RapierSets<'_>) -> bool {
+    one.contains(inner_point(other).into())
+        || other.contains(inner_point(one).into())
+        || surfaces_cross(one.collider_handle(), other.collider_handle(), depth, sets)
+}
+
+fn overlaps_rigid(
+    body: &FlexBody,
+    other: ColliderHandle,
+    depth: f64,
+    sets: &RapierSets<'_>,
+) -> bool {
+    let Some(collider) = sets.colliders.get(other) else {
+        return false;
+    };
+    let middle = collider.shape().compute_local_aabb().center();
+    let is_solid = collider.shape().contains_local_point(middle);
+    let middle = pose_of(collider, sets) * middle;
+    (is_solid && body.contains(from_rapier(middle).into()))
+        || surfaces_cross(body.collider_handle(), other, depth, sets)
+}
+
+/// The middle of a cell: a point in the material, off the surface.
+fn inner_point(body: &FlexBody) -> Vec2 {
+    let nodes = body
+        .mesh()
+        .cells()
+        .next()
+        .map_or(&[][..], |cell| cell.nodes);
+    let sum: Vec2 = nodes
+        .iter()
+        .map(|&node| node_vec(body.positions(), node))
+        .sum();
+    sum / nodes.len().max(1) as f64
+}
+
+/// Whether rapier finds the shapes of two colliders in each other by more than a depth (m); shapes that it has no answer for are not.
+fn surfaces_cross(
+    one: ColliderHandle,
+    other: ColliderHandle,
+    depth: f64,
+    sets: &RapierSets<'_>,
+) -> bool {
+    let both = [one, other].map(|handle| sets.colliders.get(handle));
+    let [Some(one), Some(other)] = both else {
+        return false;
+    };
+    let poses = [one, other].map(|collider| pose_of(collider, sets));
+    let found = query::contact(&poses[0], one.shape(), &poses[1], other.shape(), 0.0);
+    let contact = found.ok().flatten();
+    contact.is_some_and(|contact| f64::from(contact.dist) < -depth)
+}
+
+fn pose_of(collider: &Collider, sets: &RapierSets<'_>) -> Pose {
+    let parent = collider.parent().and_then(|parent| sets.bodies.get(parent));
+    parent.map_or(*collider.position(), |body| placed_on(body, collider))
+}

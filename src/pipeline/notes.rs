@@ -1,0 +1,92 @@
+//! What a body's description asked for and is likely a mistake, told in the report of its first step.
+
+use super::flex_pipeline::FlexPipeline;
+use super::report::Participant;
+use crate::body::{FlexBodyHandle, FlexBodySet};
+use crate::coupling::{ClaimedPair, RapierSets};
+use std::fmt;
+
+/// Something about a body that has just been inserted. Nothing is refused: the step was taken.
+///
+/// Its `Display` says what to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub enum InsertionNote {
+    /// Calls of `pin_where` that chose no node.
+    NothingPinned {
+        /// The body.
+        body: FlexBodyHandle,
+        /// How many such calls.
+        n_calls: usize,
+    },
+    /// A body was put into another, from which it parts by and by.
+    Overlap {
+        /// The body.
+        body: FlexBodyHandle,
+        /// What it overlaps.
+        with: Participant,
+    },
+}
+
+impl fmt::Display for InsertionNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NothingPinned { body, n_calls } => write!(
+                f,
+                "{n_calls} call(s) of `pin_where` for {body:?} chose no node: compare mesh coordinates with a tolerance, and before `translation` and `rotation`"
+            ),
+            Self::Overlap { body, with } => write!(
+                f,
+                "{body:?} was inserted where {with:?} is, and parts from it by and by: insert it apart, or keep the two apart by `collision_groups`"
+            ),
+        }
+    }
+}
+
+impl FlexPipeline {
+    /// Notes what is odd about bodies that take their first step.
+    pub(super) fn note_newcomers(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
+        let mut bodies = self.claims.flex.iter();
+        let is_new = |index| {
+            flex_bodies
+                .at_index(index)
+                .is_some_and(|(_, body)| body.is_new())
+        };
+        if !bodies.any(|flex| is_new(flex.index)) {
+            return;
+        }
+        let handle = |flex: usize| {
+            let index = self.claims.flex[flex].index;
+            flex_bodies.at_index(index).map(|(handle, _)| handle)
+        };
+        let notes = &mut self.report.insertion_notes;
+        for flex in &self.claims.flex {
+            if let Some((body, found)) = flex_bodies.at_index(flex.index)
+                && found.is_new()
+                && found.n_idle_pins() > 0
+            {
+                notes.push(InsertionNote::NothingPinned {
+                    body,
+                    n_calls: found.n_idle_pins(),
+                });
+            }
+        }
+        for pair in self.claims.overlaps_of_newcomers(sets, flex_bodies) {
+            let (body, with) = match pair {
+                ClaimedPair::FlexRigid(flex, other) => {
+                    (handle(flex), Some(Participant::Rigid(other)))
+                }
+                ClaimedPair::FlexFlex(one, other) => {
+                    (handle(one), handle(other).map(Participant::Flex))
+                }
+                ClaimedPair::RigidRigid(..) => continue,
+            };
+            if let (Some(body), Some(with)) = (body, with) {
+                notes.push(InsertionNote::Overlap { body, with });
+            }
+        }
+    }
+}
