@@ -72,7 +72,7 @@ fn main() -> Outcome<()> {
         outcomes.push((scene, seen));
     }
     if is_measured {
-        table::print_growth(&outcomes);
+        table::print_growth(&outcomes, n_steps);
     }
     Ok(())
 }

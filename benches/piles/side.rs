@@ -116,12 +116,13 @@ impl Seen {
         self.times.len()
     }
 
-    /// Middle, longest, and middle time of the last second's steps (µs).
-    pub fn times(&self) -> [f64; 3] {
+    /// Middle and longest time of a step, and middle time of the last second's if all `n_steps` were taken (µs).
+    pub fn times(&self, n_steps: usize) -> [Option<f64>; 3] {
         let last = self.times.len().saturating_sub(Self::LAST);
-        let middle = |times: &[f64]| median(&mut times.to_vec()).unwrap_or(f64::NAN);
-        let worst = self.times.iter().copied().fold(0.0, f64::max);
-        [middle(&self.times), worst, middle(&self.times[last..])]
+        let middle = |times: &[f64]| median(&mut times.to_vec());
+        let worst = self.times.iter().copied().reduce(f64::max);
+        let at_rest = middle(&self.times[last..]).filter(|_| self.n_steps() == n_steps);
+        [middle(&self.times), worst, at_rest]
     }
 
     /// Factorizations a step: mean, most, and mean of the last second.

@@ -10,14 +10,11 @@ pub fn print(scene: &Scene, n_steps: usize, seen: &[Seen]) {
         "  {:<16} {:>11} {:>11} {:>11} {:>8}   times {} (median, worst, at rest)",
         "us a step", "median", "worst", "at rest", "worst/m", seen[1].label
     );
-    let reference = seen[1].times();
+    let reference = seen[1].times(n_steps);
     for side in seen {
-        let times = side.times();
-        let ratios: Vec<f64> = times
-            .iter()
-            .zip(reference)
-            .map(|(own, other)| own / other)
-            .collect();
+        let times = side.times(n_steps);
+        let ratio = |i: usize| Some(times[i]? / reference[i]?);
+        let worst_to_median = times[1].zip(times[0]).map(|(worst, median)| worst / median);
         let stopped = if side.n_steps() < n_steps {
             format!("   stopped at step {} of {n_steps}", side.n_steps())
         } else {
@@ -29,22 +26,22 @@ pub fn print(scene: &Scene, n_steps: usize, seen: &[Seen]) {
             digits(times[0]),
             digits(times[1]),
             digits(times[2]),
-            digits(times[1] / times[0]),
-            digits(ratios[0]),
-            digits(ratios[1]),
-            digits(ratios[2]),
+            digits(worst_to_median),
+            digits(ratio(0)),
+            digits(ratio(1)),
+            digits(ratio(2)),
         );
     }
     let [mean, most, last] = seen[0].factorizations();
     println!(
-        "  factorizations a step: {mean:.1}, at most {most:.0}, at rest {last:.1}; {} of {} steps not solved",
+        "  factorizations a step: {mean:.1}, at most {most:.0}, in the last second {last:.1}; {} of {} steps not solved",
         seen[0].n_unsolved(),
         seen[0].n_steps()
     );
 }
 
 /// Prints the exponent with which the resting step grows from 100 boxes to 1,000, and from each size to the next.
-pub fn print_growth(outcomes: &[(Scene, Vec<Seen>)]) {
+pub fn print_growth(outcomes: &[(Scene, Vec<Seen>)], n_steps: usize) {
     let piles: Vec<_> = outcomes
         .iter()
         .filter(|(scene, _)| scene.kind == Kind::Boxes)
@@ -52,12 +49,9 @@ pub fn print_growth(outcomes: &[(Scene, Vec<Seen>)]) {
     let exponents = |from: &(Scene, Vec<Seen>), to: &(Scene, Vec<Seen>)| {
         let by = (to.0.size as f64 / from.0.size as f64).ln();
         let growth = from.1.iter().zip(&to.1).map(|(from, to)| {
-            let exponent = (to.times()[2] / from.times()[2]).ln() / by;
-            // A side that stopped early was not at rest.
-            let is_cut =
-                to.n_steps() < to_longest(outcomes) || from.n_steps() < to_longest(outcomes);
-            let note = if is_cut { " (stopped early)" } else { "" };
-            format!("{} {exponent:.2}{note}", from.label)
+            let ends = [from, to].map(|side| side.times(n_steps)[2]);
+            let exponent = ends[0].zip(ends[1]).map(|(from, to)| (to / from).ln() / by);
+            format!("{} {}", from.label, digits(exponent))
         });
         growth.collect::<Vec<_>>().join(", ")
     };
@@ -78,17 +72,12 @@ pub fn print_growth(outcomes: &[(Scene, Vec<Seen>)]) {
     }
 }
 
-/// Steps of the longest run.
-fn to_longest(outcomes: &[(Scene, Vec<Seen>)]) -> usize {
-    let all = outcomes.iter().flat_map(|(_, seen)| seen);
-    all.map(Seen::n_steps).max().unwrap_or(0)
-}
-
-/// Three digits.
-fn digits(value: f64) -> String {
+/// Three digits, or a dash for what was not reached.
+fn digits(value: Option<f64>) -> String {
     match value {
-        _ if value < 10.0 => format!("{value:.2}"),
-        _ if value < 100.0 => format!("{value:.1}"),
-        _ => format!("{value:.0}"),
+        None => "-".to_owned(),
+        Some(value) if value < 10.0 => format!("{value:.2}"),
+        Some(value) if value < 100.0 => format!("{value:.1}"),
+        Some(value) => format!("{value:.0}"),
     }
 }

@@ -1,6 +1,7 @@
 //! An onlooker: judges every step of a scene by where things are and how they move, not by what the step says of itself.
 
 use super::*;
+use foil2d::body::AttachmentTarget;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 use std::time::Instant;
@@ -33,6 +34,21 @@ pub struct Onlooker {
     pub energy: Vec<f64>,
     /// Time of every step (s), without what the thread waited for a processor.
     pub times: Vec<f64>,
+}
+
+/// A flexible body as it stands.
+struct Flexible {
+    handle: FlexBodyHandle,
+    outline: Outline,
+    thickness: f64,
+    groups: InteractionGroups,
+}
+
+/// A rigid collider as it stands.
+struct Rigid {
+    figure: Figure,
+    groups: InteractionGroups,
+    parent: Option<RigidBodyHandle>,
 }
 
 impl Default for Onlooker {
@@ -138,7 +154,12 @@ impl Onlooker {
                     .entry(handle)
                     .or_insert_with(|| thickness_of(body));
                 let groups = scene.world.colliders[body.collider_handle()].collision_groups();
-                (Outline::of(body), thickness, groups)
+                Flexible {
+                    handle,
+                    outline: Outline::of(body),
+                    thickness,
+                    groups,
+                }
             })
             .collect();
         let surfaces: Vec<_> = scene
@@ -151,34 +172,50 @@ impl Onlooker {
             .colliders
             .iter()
             .filter(|(handle, _)| !surfaces.contains(handle))
-            .map(|(_, collider)| (Figure::of(collider), collider.collision_groups()))
+            .map(|(_, collider)| Rigid {
+                figure: Figure::of(collider),
+                groups: collider.collision_groups(),
+                parent: collider.parent(),
+            })
             .collect();
-        for (i, (outline, thickness, groups)) in flexible.iter().enumerate() {
-            for (j, (figure, other)) in rigid.iter().enumerate() {
-                if groups.test(*other) {
-                    let depth = figure.depth_of_outline(outline);
-                    note(depth, *thickness, &|| {
+        // What is attached without contacts may overlap.
+        let ties: Vec<_> = scene
+            .bodies
+            .iter_attachments()
+            .filter(|(_, tie)| !tie.contacts_enabled())
+            .map(|(_, tie)| (tie.body(), tie.target()))
+            .collect();
+        let is_tied = |body, target| ties.contains(&(body, target));
+        for (i, own) in flexible.iter().enumerate() {
+            for (j, other) in rigid.iter().enumerate() {
+                let target = other.parent.map(AttachmentTarget::RigidBody);
+                let is_tied = target.is_some_and(|target| is_tied(own.handle, target));
+                if own.groups.test(other.groups) && !is_tied {
+                    let depth = other.figure.depth_of_outline(&own.outline);
+                    note(depth, own.thickness, &|| {
                         format!("flexible {i}, rigid collider {j}")
                     });
                 }
             }
-            for (j, (other, thinner, others)) in flexible.iter().enumerate().skip(i + 1) {
-                if groups.test(*others) {
-                    let depth = outline.depth_in(other);
-                    note(depth, thickness.min(*thinner), &|| {
+            for (j, other) in flexible.iter().enumerate().skip(i + 1) {
+                let [to, back] = [other, own].map(|body| AttachmentTarget::Flexible(body.handle));
+                let is_tied = is_tied(own.handle, to) || is_tied(other.handle, back);
+                if own.groups.test(other.groups) && !is_tied {
+                    let depth = own.outline.depth_in(&other.outline);
+                    note(depth, own.thickness.min(other.thickness), &|| {
                         format!("flexible {i}, flexible {j}")
                     });
                 }
             }
         }
-        for (i, (ground, groups)) in rigid.iter().enumerate() {
-            if matches!(ground, Figure::Convex { .. }) {
+        for (i, ground) in rigid.iter().enumerate() {
+            if matches!(ground.figure, Figure::Convex { .. }) {
                 continue;
             }
-            for (j, (figure, other)) in rigid.iter().enumerate() {
-                if groups.test(*other) {
-                    let depth = ground.depth_of_figure(figure);
-                    note(depth, Self::RIGID * figure.thickness(), &|| {
+            for (j, other) in rigid.iter().enumerate() {
+                if ground.groups.test(other.groups) {
+                    let depth = ground.figure.depth_of_figure(&other.figure);
+                    note(depth, Self::RIGID * other.figure.thickness(), &|| {
                         format!("rigid collider {j} under ground {i}")
                     });
                 }

@@ -153,3 +153,37 @@ fn a_strip_that_swings_keeps_the_area_of_its_cells() {
     });
     findings.report();
 }
+
+#[test]
+fn a_strip_between_two_pins_sags_as_a_string() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let body = RigidBodyBuilder::dynamic().translation(vec2(0.5 * LENGTH, -0.2));
+    let (ball, _) = scene.rigid(body, ColliderBuilder::ball(0.2).mass(5.0));
+    let strip = scene.flexible(strip(LENGTH, 80, 1e7));
+    for x in [0.0, LENGTH] {
+        let pin = AttachmentBuilder::pin(strip);
+        let at_end = pin.where_(move |[at, _]| (at - x).abs() < 1e-9);
+        attach(&mut scene, at_end.to_world());
+    }
+    let pin = AttachmentBuilder::pin(strip);
+    let in_the_middle = pin.where_(|[x, y]| (x - 0.5 * LENGTH).abs() < 1e-6 && y < 1e-9);
+    attach(&mut scene, in_the_middle.to_rigid_body(ball));
+    let mut lowest = 0.0f64;
+    let mut onlooker = Onlooker::default();
+    onlooker.watch(&mut scene, 180, |scene| {
+        lowest = lowest.min(place_of(&scene.world.bodies[ball])[1] + 0.2);
+    });
+    let mut findings = Findings::default();
+    onlooker.check(&mut findings, "string");
+    // Two halves that turn by t stretch by t² / 2 and carry E A t³: energy E A L t⁴ / 8 against the weight of the ball and half of
+    // that of the strip on the way L t / 2. t = (4 W / (E A))^(1/3) = 0.27, 0.55 m down, less what bending carries.
+    let weight = G * (5.0 + 0.5 * 1000.0 * LENGTH * WIDTH * WIDTH);
+    let turn = (4.0 * weight / (1e7 * WIDTH * WIDTH)).cbrt();
+    let expected = -0.5 * LENGTH * turn;
+    println!("string: lowest {lowest:.3} m, {expected:.3} m by energy");
+    onlooker.check_energy(&mut findings, "string", -weight * expected);
+    findings.check((1.15 * expected..0.8 * expected).contains(&lowest), || {
+        format!("the ball gets down to {lowest:.3} m, {expected:.3} m by energy")
+    });
+    findings.report();
+}
