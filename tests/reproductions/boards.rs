@@ -109,7 +109,7 @@ fn steel_beam(rate: f64, n_through: usize, rayleigh: f64) -> Throw {
             .thickness(0.1)
             .friction(0.4)
             .pin_where(
-                |[x, y]| (x < 1e-9 || x > 4.0 - 1e-9) && y < 1e-9,
+                |[x, y]| (x - 2.0).abs() > 2.0 - 1e-9 && y < 1e-9,
                 Pin::both(),
             ),
     );

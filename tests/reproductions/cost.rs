@@ -25,7 +25,7 @@ fn slab(n: usize) -> Onlooker {
         FlexBodyBuilder::rectangle([8.0, 0.4], [64, 4])
             .material(elastic(1e8, 1000.0, 2e-3))
             .translation([-4.0, -0.4])
-            .pin_where(|[x, _]| x < 1e-9 || x > 8.0 - 1e-9, Pin::both())
+            .pin_where(|[x, _]| (x - 4.0).abs() > 4.0 - 1e-9, Pin::both())
             .friction(0.5),
     );
     boxes(&mut scene, n, 20, 0.36, -3.6);

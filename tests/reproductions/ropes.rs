@@ -34,10 +34,9 @@ fn end(body: &FlexBody, x: f64) -> [f64; 2] {
     let nodes = nodes.filter(|(_, at)| (at[0] - x).abs() < 1e-9);
     let places: Vec<_> = nodes.map(|(node, _)| body.position(node)).collect();
     let n = places.len() as f64;
-    let sum = places
+    places
         .iter()
-        .fold([0.0; 2], |[x, y], at| [x + at[0] / n, y + at[1] / n]);
-    sum
+        .fold([0.0; 2], |[x, y], at| [x + at[0] / n, y + at[1] / n])
 }
 
 fn swing(
