@@ -218,7 +218,7 @@ fn a_ball_in_a_cup_on_a_bent_arm_brings_no_energy() {
             still.rise()
         );
         still.check(&mut findings, &name);
-        // 3 E I w² / (2 L³) = 163.8 J / 2 for a slender arm bent by 0.4 m: it is what there is to gain from.
+        // What the bent arm stores is all that there is to gain from.
         still.check_energy(&mut findings, &name, settled);
     }
     findings.report();
