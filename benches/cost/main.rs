@@ -14,10 +14,12 @@
 //! are taken again in a world of its own and subtracted.
 
 mod bars;
+mod clock;
 mod flexible;
 mod measure;
 mod scene;
 mod soft;
+mod soft_law;
 mod table;
 
 use clap::Parser;

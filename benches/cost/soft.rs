@@ -2,25 +2,11 @@
 
 use crate::measure::{Burst, Clock, Outcome, Side, median};
 use crate::scene::{DENSITY, POISSON, Phase, Scene};
+pub use crate::soft_law::SoftModel;
+use crate::soft_law::{RADIUS, masses, material};
 use foil2d::fe::mesh::{CellKind, Mesh, MeshError};
 use foil2d::rapier::math::Real;
 use foil2d::rapier::prelude::*;
-
-/// Collision radius of a particle (m).
-const RADIUS: f64 = 1e-3;
-
-/// How rapier solves for the elasticity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SoftModel {
-    /// Constraints, its default.
-    Constraints,
-    /// Finite elements, at most 20 conjugate-gradient iterations: its default.
-    Fem,
-    /// Finite elements with that cap lifted to 2000.
-    ConvergedFem,
-    /// The same with a tolerance of 1e-8 instead of 1e-5, which `f32` does not reach.
-    TightFem,
-}
 
 /// The models to compare with in a scene.
 pub fn models(scene: &Scene) -> Vec<SoftModel> {
@@ -47,13 +33,7 @@ impl SoftSide {
     pub fn new(scene: &Scene, model: SoftModel) -> Result<Self, MeshError> {
         let mesh = scene.mesh(CellKind::Tri3)?;
         let mut world = scene.world();
-        let fem = &mut world.integration_parameters.soft_bodies.fem;
-        if matches!(model, SoftModel::ConvergedFem | SoftModel::TightFem) {
-            fem.max_linear_iterations = 2000;
-        }
-        if model == SoftModel::TightFem {
-            fem.linear_tolerance = 1e-8;
-        }
+        model.set_up(&mut world);
         let body = world.insert_soft_body(builder(scene, model, &mesh));
         Ok(Self {
             scene: *scene,
@@ -74,13 +54,7 @@ impl SoftSide {
 
 impl Side for SoftSide {
     fn label(&self) -> String {
-        let model = match self.model {
-            SoftModel::Constraints => "Constraints",
-            SoftModel::Fem => "Fem",
-            SoftModel::ConvergedFem => "converged Fem",
-            SoftModel::TightFem => "Fem to 1e-8",
-        };
-        format!("rapier {model}")
+        format!("rapier {}", self.model.name())
     }
 
     fn n_warm_up(&self) -> usize {
@@ -127,14 +101,14 @@ fn builder(scene: &Scene, model: SoftModel, mesh: &Mesh) -> SoftBodyBuilder {
         .map(|cell| [0, 1, 2].map(|corner| cell.nodes[corner] as u32));
     let builder = SoftBodyBuilder::new(mesh.nodes().iter().map(place).collect())
         .cells(cells.collect())
-        .masses(masses(mesh))
+        .masses(masses(mesh, DENSITY))
         .cell_model(SoftBodyCellModel::Corotational)
-        .material(material(scene))
-        .solver(if model == SoftModel::Constraints {
-            SoftBodySolver::Constraints
-        } else {
-            SoftBodySolver::Fem
-        })
+        .material(material(
+            scene.young,
+            POISSON,
+            scene.phase != Phase::Clamped,
+        ))
+        .solver(model.solver())
         .particle_radius(RADIUS as Real)
         .can_sleep(false);
     if scene.phase != Phase::Clamped {
@@ -145,29 +119,4 @@ fn builder(scene: &Scene, model: SoftModel, mesh: &Mesh) -> SoftBodyBuilder {
     builder
         .pinned_particles((0..mesh.n_nodes() as u32).filter(is_clamped))
         .no_surface_collider()
-}
-
-/// Rapier's law is that of plane strain: these moduli make it plane stress.
-fn material(scene: &Scene) -> SoftBodyMaterial {
-    let young = scene.young * (1.0 + 2.0 * POISSON) / (1.0 + POISSON).powi(2);
-    let is_damped = scene.phase != Phase::Clamped;
-    SoftBodyMaterial {
-        young_modulus: young as Real,
-        poisson_ratio: (POISSON / (1.0 + POISSON)) as Real,
-        elastic_damping_ratio: if is_damped { 1.0 } else { 0.0 },
-        ..SoftBodyMaterial::default()
-    }
-}
-
-/// A third of every triangle's mass at each corner (kg).
-fn masses(mesh: &Mesh) -> Vec<Real> {
-    let mut masses = vec![0.0; mesh.n_nodes()];
-    for cell in mesh.cells() {
-        let [a, b, c] = [0, 1, 2].map(|corner| mesh.nodes()[cell.nodes[corner]]);
-        let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
-        for &node in cell.nodes {
-            masses[node] += DENSITY * area / 3.0;
-        }
-    }
-    masses.iter().map(|&mass| mass as Real).collect()
 }
