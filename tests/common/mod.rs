@@ -14,7 +14,7 @@ mod parts;
 mod recorder;
 
 pub use figures::*;
-use foil2d::pipeline::{Participant, StepError};
+use foil2d::pipeline::{Participant, Quality, StepError};
 pub use foil2d::prelude::*;
 use foil2d::rapier::math::Real;
 pub use foil2d::rapier::prelude::*;
@@ -39,7 +39,7 @@ pub fn real(value: f64) -> Real {
 
 /// Whether every island of a step was solved: none was cut short, linearised or left where it was.
 pub fn is_solved(report: &StepReport) -> bool {
-    (report.n_linearized(), report.n_held()) == (0, 0)
+    report.quality() == Quality::Solved
 }
 
 /// A tolerance that differs where rapier's own poses limit the result.
