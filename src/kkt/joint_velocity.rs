@@ -63,13 +63,10 @@ impl Island {
     /// How far the velocity stage holds a soft row: wholly between masses, through a massless node by the share that is
     /// shorter than the step.
     fn unresolved_joint(&self, tie: &ActiveJoint) -> f64 {
-        let (grips, along) = (self.end_grips_of(tie), tie.end);
-        let is_massless = grips
-            .iter()
-            .any(|grip| self.blocks[grip.block].is_massless(grip.point));
-        if !is_massless {
+        if tie.has_mass {
             return 1.0;
         }
+        let (grips, along) = (self.end_grips_of(tie), tie.end);
         let (mut rigid, mut actual) = (0.0, 0.0);
         for at in grips {
             rigid += at.weight * at.weight * self.blocks[at.block].rigid_mobility(at.grip(), along);
@@ -130,11 +127,19 @@ impl Island {
         sum
     }
 
-    /// Appends the joint rows to the velocity problem.
-    pub(super) fn add_joint_velocities(&mut self, settings: &SolveSettings) {
+    /// Appends the joint rows that take part to the velocity problem.
+    pub(super) fn add_joint_velocities(
+        &mut self,
+        settings: &SolveSettings,
+        takes_part: impl Fn(&ActiveJoint) -> bool,
+        of: Response,
+    ) {
         self.joint_rows.clear();
         for index in 0..self.ties.len() {
             let tie = &self.ties[index];
+            if !takes_part(tie) {
+                continue;
+            }
             let Some((free, kind, _)) = self.velocity_law(tie, settings) else {
                 continue;
             };
@@ -145,7 +150,7 @@ impl Island {
         if self.joint_rows.is_empty() {
             return;
         }
-        self.expand_delassus(Response::Velocity, Rows::End);
+        self.expand_delassus(of, Rows::End);
         let (n, first) = (self.kinds.len(), self.rows.len());
         for slot in 0..self.joint_rows.len() {
             let tie = &self.ties[self.joint_rows[slot]];
@@ -259,11 +264,18 @@ impl Island {
         }
     }
 
-    /// Appends the joint rows to the acceleration problem, `G'a' = ` what turning asks for.
-    pub(super) fn add_joint_accelerations(&mut self) {
+    /// Appends the joint rows that take part to the acceleration problem, `G'a' = ` what turning asks for.
+    pub(super) fn add_joint_accelerations(
+        &mut self,
+        takes_part: impl Fn(&ActiveJoint) -> bool,
+        of: Response,
+    ) {
         self.joint_rows.clear();
         for index in 0..self.ties.len() {
             let tie = &self.ties[index];
+            if !takes_part(tie) {
+                continue;
+            }
             let holds = matches!(tie.finish, Finish::Hold { .. } | Finish::Limit);
             let holds = holds && tie.is_movable && tie.is_closed() && tie.share >= LEFT_ALONE;
             // A motor at its bound does not hold.
@@ -278,7 +290,7 @@ impl Island {
         if self.joint_rows.is_empty() {
             return;
         }
-        self.expand_delassus(Response::Acceleration, Rows::End);
+        self.expand_delassus(of, Rows::End);
         let (n, first) = (self.kinds.len(), self.rows.len());
         for (slot, &row) in self.joint_rows.iter().enumerate() {
             self.delassus[(first + slot) * (n + 1)] /= self.ties[row].share;

@@ -14,6 +14,7 @@ mod forward;
 mod impact;
 mod island;
 mod iterate;
+mod joint_mass;
 mod joint_rows;
 mod joint_system;
 mod joint_twist;

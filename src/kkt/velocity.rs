@@ -12,7 +12,7 @@
 //! at the end of the step does so in the next: its row there is the acceleration that would end this motion within a step.
 
 use super::delassus::{RowDirection, assemble};
-use super::island::{Island, KktError, SolveSettings};
+use super::island::{ActiveContact, Island, KktError, SolveSettings};
 use super::multipliers::prepare;
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
@@ -49,8 +49,9 @@ impl Island {
     /// returns whether there are any.
     pub(super) fn impact_rows(&mut self, settings: &SolveSettings) -> Result<bool, KktError> {
         self.kick_joints(settings);
-        self.velocity_rows(settings);
-        self.add_joint_velocities(settings);
+        self.settle_joined_velocities(settings)?;
+        self.velocity_rows(settings, |_| true, Response::Velocity);
+        self.add_joint_velocities(settings, |_| true, Response::Velocity);
         if self.kinds.is_empty() {
             return Ok(false);
         }
@@ -131,13 +132,19 @@ impl Island {
         t * t * (3.0 - 2.0 * t)
     }
 
-    fn velocity_rows(&mut self, settings: &SolveSettings) {
+    /// States the impact law at the contacts that count and hold velocities, as velocities or masses respond.
+    pub(super) fn velocity_rows(
+        &mut self,
+        settings: &SolveSettings,
+        counts: impl Fn(&ActiveContact) -> bool,
+        of: Response,
+    ) {
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
         for index in 0..self.contacts.len() {
             let contact = self.contacts[index];
-            if !contact.is_closed() || contact.holds_velocity() == 0.0 {
+            if !contact.is_closed() || contact.holds_velocity() == 0.0 || !counts(&contact) {
                 continue;
             }
             let law = self.candidates[contact.candidate].law;
@@ -168,16 +175,21 @@ impl Island {
                 self.push_row(index, tangent, velocity.dot(&tangent), kind);
             }
         }
+        self.assemble_rows(of);
+        self.list_acted(settings.b1);
+    }
+
+    /// Writes `W` of the contact rows, the soft ones weighted.
+    pub(super) fn assemble_rows(&mut self, of: Response) {
         let contacts = &self.contacts;
         assemble(
             &self.blocks,
             &self.rows,
-            Response::Velocity,
+            of,
             |index| &contacts[index].kinematics,
             &mut self.delassus,
         );
         self.soften();
-        self.list_acted(settings.b1);
     }
 
     fn push_row(&mut self, contact: usize, direction: Vec2, free: f64, kind: RowKind) {
@@ -187,7 +199,7 @@ impl Island {
     }
 
     /// Lists what has acted already of the soft rows' multipliers: `scale` times those of the position stage.
-    fn list_acted(&mut self, scale: f64) {
+    pub(super) fn list_acted(&mut self, scale: f64) {
         self.acted.clear();
         for direction in &self.rows {
             let contact = &self.contacts[direction.contact];
@@ -313,7 +325,7 @@ impl Island {
                 let wrench = wrench.map(|value| scale * value);
                 match of {
                     Response::Acceleration => block.add_smooth_acceleration(wrench),
-                    Response::Velocity | Response::Position => block.add_impulse(wrench),
+                    _ => block.add_impulse(wrench),
                 }
             }
         }
@@ -337,12 +349,39 @@ impl Island {
         self.wrenches.clear();
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         self.add_spring_forces(settings.dt);
+        self.settle_joined_accelerations(settings)?;
+        self.acceleration_rows(settings, |_| true);
+        if self.rows.is_empty() && !self.has_soft_joints() {
+            return Ok(());
+        }
+        self.assemble_rows(Response::Acceleration);
+        self.list_acted(1.0);
+        self.add_joint_accelerations(|_| true, Response::Acceleration);
+        self.solve_rows()?;
+        // What the stored acceleration loses will not act in the next step.
+        let late = settings.dt - settings.b1;
+        for (row, direction) in self.rows.iter().enumerate() {
+            let contact = &mut self.contacts[direction.contact];
+            let which = usize::from(direction.direction != contact.kinematics.normal);
+            contact.impulse[which] += late * self.multipliers[row];
+        }
+        self.gather_rows(Response::Acceleration);
+        self.add_to_rigid(Response::Acceleration, 1.0);
+        Ok(())
+    }
+
+    /// States the law of accelerations at the contacts that count and hold velocities.
+    pub(super) fn acceleration_rows(
+        &mut self,
+        settings: &SolveSettings,
+        counts: impl Fn(&ActiveContact) -> bool,
+    ) {
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
         for index in 0..self.contacts.len() {
             let contact = self.contacts[index];
-            if !contact.is_closed() || contact.holds_velocity() == 0.0 {
+            if !contact.is_closed() || contact.holds_velocity() == 0.0 || !counts(&contact) {
                 continue;
             }
             let kinematics = contact.kinematics;
@@ -372,30 +411,5 @@ impl Island {
                 self.push_row(index, tangent, along, kind);
             }
         }
-        if self.rows.is_empty() && !self.has_soft_joints() {
-            return Ok(());
-        }
-        let contacts = &self.contacts;
-        assemble(
-            &self.blocks,
-            &self.rows,
-            Response::Acceleration,
-            |index| &contacts[index].kinematics,
-            &mut self.delassus,
-        );
-        self.soften();
-        self.list_acted(1.0);
-        self.add_joint_accelerations();
-        self.solve_rows()?;
-        // What the stored acceleration loses will not act in the next step.
-        let late = settings.dt - settings.b1;
-        for (row, direction) in self.rows.iter().enumerate() {
-            let contact = &mut self.contacts[direction.contact];
-            let which = usize::from(direction.direction != contact.kinematics.normal);
-            contact.impulse[which] += late * self.multipliers[row];
-        }
-        self.gather_rows(Response::Acceleration);
-        self.add_to_rigid(Response::Acceleration, 1.0);
-        Ok(())
     }
 }

@@ -32,6 +32,8 @@ pub struct FlexBlock {
     pub(super) factor: BlockCholesky,
     pub(super) factored_for: Option<Weights>,
     pub(super) compliance: Compliance,
+    /// The factor of a consistent mass and what it answers, once a joint holds on to a node.
+    pub(super) mass_factor: Option<(BlockCholesky, Compliance)>,
     pub(super) n_factorizations: u64,
     pub(super) n_solves: u64,
     pub(super) step: Step,
@@ -131,6 +133,7 @@ impl FlexBlock {
             effective,
             factored_for: None,
             compliance,
+            mass_factor: None,
             n_factorizations: 0,
             n_solves: 0,
             step: Step {

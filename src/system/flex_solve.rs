@@ -336,6 +336,9 @@ impl FlexBlock {
         if self.is_explicit() {
             return self.explicit_compliance(at, from, of);
         }
+        if of == Response::ByMass {
+            return self.mass_response(at, from);
+        }
         let local = self.compliance.get(at, from);
         if self.kind == Frame::Fixed {
             return local;

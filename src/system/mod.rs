@@ -10,6 +10,7 @@ mod explicit_motion;
 mod explicit_record;
 mod flex_block;
 mod flex_impulse;
+mod flex_inertia;
 mod flex_momentum;
 mod flex_motion;
 mod flex_restart;
