@@ -15,6 +15,7 @@ mod flex_momentum;
 mod flex_motion;
 mod flex_restart;
 mod flex_solve;
+mod flex_surface;
 mod link_response;
 mod massless_surface;
 mod moments;
