@@ -107,7 +107,7 @@ impl Island {
             Block::Rigid(block) => block.rates(),
             Block::Flex(flex) => match grip.point {
                 Point::Node(node) => {
-                    let velocity = flex.joint_velocity(node);
+                    let velocity = flex.velocity(node);
                     [velocity.x, velocity.y, 0.0]
                 }
                 Point::Arm(_) => [0.0; 3],
