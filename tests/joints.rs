@@ -8,6 +8,9 @@ mod support;
 #[path = "joints/hinges.rs"]
 mod hinges;
 
+#[path = "joints/hung.rs"]
+mod hung;
+
 #[path = "joints/beside_rapier.rs"]
 mod beside_rapier;
 

@@ -42,7 +42,9 @@ pub struct ActiveJoint {
     pub row: JointRow,
     /// Whether only rigid blocks take part.
     pub is_hard: bool,
-    /// Share of the velocity that the velocity stage holds, 0 to 1 (-).
+    /// Whether all nodes of flexible blocks that take part have mass.
+    pub(super) has_mass: bool,
+    /// Share of the velocity that the row keeps when others give impulses, 0 to 1 (-).
     pub(super) share: f64,
     pub(super) finish: Finish,
     /// Measured number at the beginning, and where it is to be (m or rad).
@@ -92,7 +94,7 @@ impl ActiveJoint {
     pub(super) fn share_of(&self, of: Response) -> f64 {
         match of {
             Response::Position => 1.0,
-            Response::Velocity | Response::Acceleration => self.share,
+            Response::Velocity | Response::Acceleration | Response::ByMass => self.share,
         }
     }
 
@@ -126,6 +128,8 @@ impl Island {
             let when = if is_hard { When::Start } else { When::Now };
             let grips = &mut self.joint_grips[row.grips.0..row.grips.1];
             let direction = row.sign * row.measure.aim(&self.blocks, grips, when);
+            let is_massless = |grip: &JointGrip| self.blocks[grip.block].is_massless(grip.point);
+            let has_mass = !grips.iter().any(is_massless);
             let start = row.sign * row.measure.value(&self.blocks, grips, When::Start);
             let view = (&*grips, direction, row.measure.is_turn());
             let mobility = own_mobility(&self.blocks, view);
@@ -137,6 +141,7 @@ impl Island {
             self.ties.push(ActiveJoint {
                 row,
                 is_hard,
+                has_mass,
                 share: 1.0,
                 finish: resolved.finish,
                 start,
@@ -168,6 +173,7 @@ impl Island {
                 (&mut self.blocks[grip.block], grip.point)
             {
                 block.prepare_compliance(node);
+                block.prepare_inertia(node);
                 is_hard = false;
             }
         }

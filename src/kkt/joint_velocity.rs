@@ -63,13 +63,10 @@ impl Island {
     /// How far the velocity stage holds a soft row: wholly between masses, through a massless node by the share that is
     /// shorter than the step.
     fn unresolved_joint(&self, tie: &ActiveJoint) -> f64 {
-        let (grips, along) = (self.end_grips_of(tie), tie.end);
-        let is_massless = grips
-            .iter()
-            .any(|grip| self.blocks[grip.block].is_massless(grip.point));
-        if !is_massless {
+        if tie.has_mass {
             return 1.0;
         }
+        let (grips, along) = (self.end_grips_of(tie), tie.end);
         let (mut rigid, mut actual) = (0.0, 0.0);
         for at in grips {
             rigid += at.weight * at.weight * self.blocks[at.block].rigid_mobility(at.grip(), along);
@@ -110,7 +107,7 @@ impl Island {
             Block::Rigid(block) => block.rates(),
             Block::Flex(flex) => match grip.point {
                 Point::Node(node) => {
-                    let velocity = flex.joint_velocity(node);
+                    let velocity = flex.velocity(node);
                     [velocity.x, velocity.y, 0.0]
                 }
                 Point::Arm(_) => [0.0; 3],
@@ -130,12 +127,19 @@ impl Island {
         sum
     }
 
-    /// Lists the joint rows of the velocity problem after those of the contacts.
-    pub(super) fn list_joint_velocities(&mut self, settings: &SolveSettings) {
+    /// Lists the joint rows of the velocity problem that take part, after those of the contacts.
+    pub(super) fn list_joint_velocities(
+        &mut self,
+        settings: &SolveSettings,
+        takes_part: impl Fn(&ActiveJoint) -> bool,
+    ) {
         self.joint_rows.clear();
         self.joint_gives.clear();
         for index in 0..self.ties.len() {
             let tie = &self.ties[index];
+            if !takes_part(tie) {
+                continue;
+            }
             let Some((free, kind, give)) = self.velocity_law(tie, settings) else {
                 continue;
             };
@@ -263,12 +267,15 @@ impl Island {
         }
     }
 
-    /// Lists the joint rows of the acceleration problem, `G'a' = ` what turning asks for.
-    pub(super) fn list_joint_accelerations(&mut self) {
+    /// Lists the joint rows of the acceleration problem that take part, `G'a' = ` what turning asks for.
+    pub(super) fn list_joint_accelerations(&mut self, takes_part: impl Fn(&ActiveJoint) -> bool) {
         self.joint_rows.clear();
         self.joint_gives.clear();
         for index in 0..self.ties.len() {
             let tie = &self.ties[index];
+            if !takes_part(tie) {
+                continue;
+            }
             let holds = matches!(tie.finish, Finish::Hold { .. } | Finish::Limit);
             let holds = holds && tie.is_movable && tie.is_closed() && tie.share >= LEFT_ALONE;
             // A motor at its bound does not hold.

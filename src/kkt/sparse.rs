@@ -180,7 +180,7 @@ impl Island {
             let far = match asked.of {
                 Response::Position => contact.slip.abs() / asked.unit,
                 Response::Velocity => contact.slip.abs() / asked.unit,
-                Response::Acceleration => 0.0,
+                Response::Acceleration | Response::ByMass => 0.0,
             };
             sparse.slip.push(if slides { far } else { 0.0 });
             sparse

@@ -12,7 +12,7 @@
 //! at the end of the step does so in the next: its row there is the acceleration that would end this motion within a step.
 
 use super::delassus::{RowDirection, assemble};
-use super::island::{Island, KktError, SolveSettings};
+use super::island::{ActiveContact, Island, KktError, SolveSettings};
 use super::joint_system::Rows;
 use super::multipliers::prepare;
 use super::sparse::Asked;
@@ -51,8 +51,9 @@ impl Island {
     /// returns whether there are any.
     pub(super) fn impact_rows(&mut self, settings: &SolveSettings) -> Result<bool, KktError> {
         self.kick_joints(settings);
-        self.velocity_rows(settings);
-        self.list_joint_velocities(settings);
+        self.settle_joined_velocities(settings)?;
+        self.velocity_rows(settings, |_| true);
+        self.list_joint_velocities(settings, |_| true);
         if self.kinds.is_empty() {
             return Ok(false);
         }
@@ -133,13 +134,18 @@ impl Island {
         t * t * (3.0 - 2.0 * t)
     }
 
-    fn velocity_rows(&mut self, settings: &SolveSettings) {
+    /// States the impact law at the contacts that count and hold velocities, as velocities or masses respond.
+    pub(super) fn velocity_rows(
+        &mut self,
+        settings: &SolveSettings,
+        counts: impl Fn(&ActiveContact) -> bool,
+    ) {
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
         for index in 0..self.contacts.len() {
             let contact = self.contacts[index];
-            if !contact.is_closed() || contact.holds_velocity() == 0.0 {
+            if !contact.is_closed() || contact.holds_velocity() == 0.0 || !counts(&contact) {
                 continue;
             }
             let law = self.candidates[contact.candidate].law;
@@ -174,10 +180,10 @@ impl Island {
     }
 
     /// Solves the rows listed, those of the contacts and those of the joints after them, for impulses (or forces, of accelerations).
-    fn solve_impulses(&mut self, of: Response, dt: f64) -> Result<(), KktError> {
+    pub(super) fn solve_impulses(&mut self, of: Response, dt: f64) -> Result<(), KktError> {
         let n = self.kinds.len();
         self.acted.resize(n, 0.0);
-        if self.is_sparse(n) {
+        if of != Response::ByMass && self.is_sparse(n) {
             self.multipliers.clear();
             self.multipliers.resize(n, 0.0);
             let asked = Asked {
@@ -217,7 +223,7 @@ impl Island {
     }
 
     /// Lists what has acted already of the soft rows' multipliers: `scale` times those of the position stage.
-    fn list_acted(&mut self, scale: f64) {
+    pub(super) fn list_acted(&mut self, scale: f64) {
         self.acted.clear();
         for direction in &self.rows {
             let contact = &self.contacts[direction.contact];
@@ -338,7 +344,7 @@ impl Island {
                 let wrench = wrench.map(|value| scale * value);
                 match of {
                     Response::Acceleration => block.add_smooth_acceleration(wrench),
-                    Response::Velocity | Response::Position => block.add_impulse(wrench),
+                    _ => block.add_impulse(wrench),
                 }
             }
         }
@@ -362,12 +368,37 @@ impl Island {
         self.wrenches.clear();
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         self.add_spring_forces(settings.dt);
+        self.settle_joined_accelerations(settings)?;
+        self.acceleration_rows(settings, |_| true);
+        if self.rows.is_empty() && !self.has_soft_joints() {
+            return Ok(());
+        }
+        self.list_joint_accelerations(|_| true);
+        self.solve_impulses(Response::Acceleration, settings.dt)?;
+        // What the stored acceleration loses will not act in the next step.
+        let late = settings.dt - settings.b1;
+        for (row, direction) in self.rows.iter().enumerate() {
+            let contact = &mut self.contacts[direction.contact];
+            let which = usize::from(direction.direction != contact.kinematics.normal);
+            contact.impulse[which] += late * self.multipliers[row];
+        }
+        self.gather_rows(Response::Acceleration);
+        self.add_to_rigid(Response::Acceleration, 1.0);
+        Ok(())
+    }
+
+    /// States the law of accelerations at the contacts that count and hold velocities.
+    pub(super) fn acceleration_rows(
+        &mut self,
+        settings: &SolveSettings,
+        counts: impl Fn(&ActiveContact) -> bool,
+    ) {
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
         for index in 0..self.contacts.len() {
             let contact = self.contacts[index];
-            if !contact.is_closed() || contact.holds_velocity() == 0.0 {
+            if !contact.is_closed() || contact.holds_velocity() == 0.0 || !counts(&contact) {
                 continue;
             }
             let kinematics = contact.kinematics;
@@ -397,21 +428,6 @@ impl Island {
                 self.push_row(index, tangent, along, kind);
             }
         }
-        if self.rows.is_empty() && !self.has_soft_joints() {
-            return Ok(());
-        }
         self.list_acted(1.0);
-        self.list_joint_accelerations();
-        self.solve_impulses(Response::Acceleration, settings.dt)?;
-        // What the stored acceleration loses will not act in the next step.
-        let late = settings.dt - settings.b1;
-        for (row, direction) in self.rows.iter().enumerate() {
-            let contact = &mut self.contacts[direction.contact];
-            let which = usize::from(direction.direction != contact.kinematics.normal);
-            contact.impulse[which] += late * self.multipliers[row];
-        }
-        self.gather_rows(Response::Acceleration);
-        self.add_to_rigid(Response::Acceleration, 1.0);
-        Ok(())
     }
 }

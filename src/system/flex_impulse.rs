@@ -94,24 +94,6 @@ impl FlexBlock {
         arms.split(*kind, &mut impulses[1].response);
     }
 
-    /// Finds what the nodal masses alone answer, `M⁻¹` in the place of `A⁻¹`; a consistent mass counts by its row sums. Nodes
-    /// without mass must have no impulse.
-    pub fn respond_by_mass(&mut self) {
-        let back = self.turn.transpose();
-        for impulses in self.impulses.iter_mut().filter(|impulses| impulses.is_used) {
-            for (node, &mass) in self.arms.node_mass.iter().enumerate() {
-                let inverse = if mass > 0.0 { 1.0 / mass } else { 0.0 };
-                let response = inverse * back * node_vec(&impulses.nodal, node);
-                set_node_vec(&mut impulses.response, node, response);
-            }
-            for &dof in &self.fixed_dofs {
-                impulses.response[dof] = 0.0;
-            }
-        }
-        self.finish_velocity();
-        self.arms.split(self.kind, &mut self.impulses[1].response);
-    }
-
     /// Adds a multiple of a response to the end velocity or acceleration.
     pub fn add_response(&mut self, of: Response, scale: f64) {
         let slot = channel(of);
@@ -143,7 +125,7 @@ impl FlexBlock {
 
     /// Turns the velocity's response into world axes, moved and turned so that momentum and angular momentum gain exactly
     /// what the impulses give.
-    fn finish_velocity(&mut self) {
+    pub(super) fn finish_velocity(&mut self) {
         if !self.impulses[0].is_used || self.kind == Frame::Fixed {
             return;
         }

@@ -40,9 +40,10 @@ impl FlexBlock {
         start + dt * node_vec(&self.start_velocity, node) + 0.5 * dt * dt * acceleration
     }
 
-    /// Velocity at a node at the beginning of the step (m/s): that of the mass around a massless one.
+    /// Velocity at a node at the beginning of the step (m/s): that of the mass around a massless one, turned on to where it is.
     pub fn start_velocity(&self, node: usize) -> Vec2 {
-        self.carried(node, |node| node_vec(&self.start_velocity, node))
+        let spin = self.start_frame.spin;
+        self.turned_on(node, spin, [&self.start_position, &self.start_velocity])
     }
 
     /// Position of a node at the current iterate (m).
@@ -51,9 +52,9 @@ impl FlexBlock {
     }
 
     /// Velocity at a node at the current iterate (m/s): that of the mass around a massless one, whose own is a remainder
-    /// without inertia.
+    /// without inertia, turned on to where the node is.
     pub fn velocity(&self, node: usize) -> Vec2 {
-        self.carried(node, |node| node_vec(&self.velocity, node))
+        self.turned_on(node, self.frame.spin, [&self.position, &self.velocity])
     }
 
     /// Spin of the frame at the iterate (rad/s).
@@ -61,11 +62,11 @@ impl FlexBlock {
         self.frame.spin
     }
 
-    /// Velocity of the material at a node (m/s): that of the mass around a massless one, turned on to where the node is.
-    pub fn joint_velocity(&self, node: usize) -> Vec2 {
-        let support = self.carried(node, |node| node_vec(&self.position, node));
-        let offset = node_vec(&self.position, node) - support;
-        self.velocity(node) + self.frame.spin * perp(offset)
+    /// Velocity at a node with mass; the mean of those that carry a massless node's mass, and the spin times the lever from them to it.
+    fn turned_on(&self, node: usize, spin: f64, [position, velocity]: [&[f64]; 2]) -> Vec2 {
+        let support = self.carried(node, |node| node_vec(position, node));
+        let offset = node_vec(position, node) - support;
+        self.carried(node, |node| node_vec(velocity, node)) + spin * perp(offset)
     }
 
     /// A value at a node with mass, or its mean over the nodes that carry a massless node's mass.
@@ -338,7 +339,7 @@ impl FlexBlock {
     }
 
     /// Gives massless nodes in contact the velocity they moved with: the trapezoidal rule would let it alternate for ever
-    /// where a contact holds the position, and damping would pass that on to the contact force.
+    /// where a contact holds the position.
     fn settle_surface(&self, state: &mut FlexState) {
         if !self.has_contact_force {
             return;

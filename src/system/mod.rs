@@ -9,12 +9,15 @@ mod explicit_motion;
 #[cfg(feature = "serde-serialize")]
 mod explicit_record;
 mod flex_block;
+mod flex_factor;
 mod flex_impulse;
+mod flex_inertia;
 mod flex_momentum;
 mod flex_motion;
 mod flex_path;
 mod flex_restart;
 mod flex_solve;
+mod flex_surface;
 mod link_response;
 mod massless_surface;
 mod moments;

@@ -28,6 +28,8 @@ pub enum Response {
     Velocity,
     /// The end acceleration, to forces.
     Acceleration,
+    /// The masses alone, as if nothing held them together: a flexible body answers only where it is pushed.
+    ByMass,
 }
 
 /// Applied loads of one step.

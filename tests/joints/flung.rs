@@ -74,15 +74,8 @@ fn a_linearised_step_of_a_weld_never_ends_faster_than_it_began_and_than_across_t
 }
 
 #[test]
-fn a_plate_that_a_weld_would_speed_up_to_less_than_its_size_a_step_swings_on_and_one_beyond_is_held()
- {
-    // Across the plate in a step is 30 m/s: linearised, the first is left at 28 m/s, the other would be at 35.
-    let dt = 1.0 / 30.0;
-    let (mut scene, plate) = spinning_plate(1.5, dt);
-    assert_eq!(step(&mut scene), [1, 0]);
-    let speed = fastest(&scene, plate);
-    assert!(speed > 20.0 && speed <= SIZE / dt, "{speed} m/s");
-    let (mut scene, plate) = spinning_plate(1.75, dt);
+fn a_plate_whose_weld_cannot_be_solved_stands_still_once_it_is_held() {
+    let (mut scene, plate) = spinning_plate(1.75, 1.0 / 30.0);
     assert_eq!(step(&mut scene), [1, 1]);
     assert_eq!(fastest(&scene, plate), 0.0);
     // Nothing is left that would fling it: the weld holds what stands where it stood.
