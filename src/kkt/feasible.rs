@@ -238,6 +238,9 @@ impl FeasiblePath {
 
     /// Puts the base where the step begins.
     pub(super) fn rest(&mut self, blocks: &[Block]) {
+        for member in 0..self.carriers.len() {
+            self.place_at_start(member, blocks);
+        }
         self.base.clear();
         self.nodes.clear();
         for block in blocks {
@@ -283,15 +286,7 @@ impl FeasiblePath {
         self.scratch.extend_from_slice(self.surfaces.points());
         let members = self.ways[way].members;
         for member in members {
-            let carrier = self.carriers[member];
-            if self.surfaces.members()[member].kind == MotionKind::Still {
-                continue;
-            }
-            let points = self.surfaces.members()[member].points.clone();
-            let places = self.surfaces.points_mut(member).iter_mut();
-            for (place, own) in places.zip(&self.points[points]) {
-                *place = blocks[carrier.block].start_position(own.point);
-            }
+            self.place_at_start(member, blocks);
         }
         self.motion.rest(&self.surfaces);
         for member in members {
@@ -313,6 +308,20 @@ impl FeasiblePath {
             }
         }
         impact.t < 1.0
+    }
+
+    /// Puts the points of a member where the step begins.
+    fn place_at_start(&mut self, member: usize, blocks: &[Block]) {
+        let own = &self.surfaces.members()[member];
+        if own.kind == MotionKind::Still {
+            return;
+        }
+        let points = own.points.clone();
+        let block = &blocks[self.carriers[member].block];
+        let places = self.surfaces.points_mut(member).iter_mut();
+        for (place, own) in places.zip(&self.points[points]) {
+            *place = block.start_position(own.point);
+        }
     }
 
     /// Moves a member to where its block's iterate is; a rigid one from this centre and angle.

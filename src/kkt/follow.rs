@@ -5,20 +5,22 @@
 //! them, and moves the base that way until the time of impact. It is over when the base is where the forces lead and the laws hold
 //! there in truth. Whatever the forces are, the base is free of overlaps: what is not solved within the budget stops at the base.
 
+use super::delassus::compliance;
 use super::island::{ActiveContact, AtBase, Island, IslandSummary, SolveSettings};
 use super::iterate::{ANGLE_TOLERANCE, ROWS_KEPT_FROM};
 use super::joint_rows::ActiveJoint;
-use super::position::PARTING_RATE;
+use super::position::{PARTING_RATE, ROUND_OFF};
 use crate::constraint::contact::{Candidate, ContactMemory, Pair, Remembered};
 use crate::constraint::joint::JointGrip;
-use crate::math::exp;
+use crate::math::{Mat2, exp};
+use crate::system::{Block, Response};
 
 /// Passes of a step that stop short of where the forces lead. Every one of them goes on with forces that do not know what comes after: bodies
 /// that are stopped that often meet in ways that the step does not resolve.
 const MOST_STOPS: usize = 20;
 
-/// Share of the margin within which the laws hold where the contacts are many (-): a hundred-thousandth moves no force that counts.
-const LARGE_TOLERANCE: f64 = 1e-5;
+/// Share of the margin within which the laws hold where the contacts are many (-): a thousandth moves no force that counts.
+const LARGE_TOLERANCE: f64 = 1e-3;
 
 /// Pass from which the laws need only hold to [`CLOSE_ENOUGH`].
 const EASED_FROM: usize = 20;
@@ -50,6 +52,10 @@ pub(super) struct Stage {
     /// How far the laws are from holding (m).
     error: f64,
 }
+
+/// How far a multiplier may move its contact by itself, relative to the extent of the scene: a light body under one a thousand times
+/// heavier that falls across the scene within the step.
+const FARTHEST: f64 = 1e3;
 
 /// How the near pairs of a base are listed.
 #[derive(Clone, Copy)]
@@ -89,8 +95,7 @@ impl Island {
             self.correct();
             return Passed::Arrived;
         }
-        if self.impact.is_known {
-            self.return_to_first_stop();
+        if self.return_to_first_stop() {
             self.correct();
         }
         Passed::Stopped
@@ -118,10 +123,11 @@ impl Island {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
-            let misleads = is_guess && self.measure(true) > NEAR * tolerance;
+            let near = self.enough(pass, NEAR * tolerance);
+            let misleads = is_guess && self.measure(true) > near;
             let mut arrives = false;
             let mut error = 0.0;
-            if self.leads_around() {
+            if !self.is_finite() || self.leads_around() {
                 return false;
             }
             if !misleads {
@@ -152,7 +158,7 @@ impl Island {
             self.note_left();
             self.turn_signed_rows(!misleads && !listing.keeps_rows);
             let solved = self.solve_multipliers(settings, true, tolerance, summary);
-            if solved.is_err() {
+            if solved.is_err() || self.contradicts(settings.b0) {
                 return false;
             }
             if n_stopped > 0 && !self.impact.is_known {
@@ -161,6 +167,17 @@ impl Island {
             turned = self.correct();
         }
         false
+    }
+
+    /// Whether the blocks' iterate consists of numbers: what is none is passed over by every search.
+    fn is_finite(&self) -> bool {
+        self.blocks.iter().all(|block| match block {
+            Block::Flex(block) => block.positions().iter().all(|x| x.is_finite()),
+            Block::Rigid(block) => {
+                let motion = block.current();
+                motion.centre.iter().all(|x| x.is_finite()) && motion.angle.is_finite()
+            }
+        })
     }
 
     /// How far the laws may be from holding at the end of a pass (m).
@@ -182,16 +199,56 @@ impl Island {
         self.path.keep_base();
     }
 
-    /// Goes back to the first impact, or if there was none to the beginning of the step.
-    pub(super) fn return_to_first_stop(&mut self) {
-        if self.impact.is_known {
-            let stage = std::mem::take(&mut self.impact);
-            self.return_to(&stage);
-            self.impact = stage;
-            self.path.return_to_kept();
-        } else {
-            self.path.rest(&self.blocks);
+    /// Goes back to the first impact; returns whether there was one.
+    pub(super) fn return_to_first_stop(&mut self) -> bool {
+        if !self.impact.is_known {
+            return false;
         }
+        let stage = std::mem::take(&mut self.impact);
+        self.return_to(&stage);
+        self.impact = stage;
+        self.path.return_to_kept();
+        true
+    }
+
+    /// Goes back to where the step begins, with the contacts that are near there.
+    pub(super) fn return_to_start(
+        &mut self,
+        settings: &SolveSettings,
+        memory: &ContactMemory,
+        tolerance: f64,
+    ) {
+        for block in &mut self.blocks {
+            match block {
+                Block::Flex(block) => block.restart(),
+                Block::Rigid(block) => block.restart(),
+            }
+        }
+        self.open_working_set(settings, tolerance, memory);
+        self.path.rest(&self.blocks);
+        self.list_near(&Listing {
+            memory: Some(memory),
+            keeps_rows: false,
+            slop: 0.0,
+            kept: 0.0,
+        });
+    }
+
+    /// Whether some multiplier would move its contact by far more than any motion of the island: then rows contradict each other, and forces
+    /// of any size would answer.
+    fn contradicts(&self, b0: f64) -> bool {
+        let farthest = FARTHEST * self.gap_tolerance() / ROUND_OFF;
+        let mut moves = self.contacts.iter().map(|contact| {
+            let own = compliance(
+                &self.blocks,
+                &contact.kinematics,
+                &contact.kinematics,
+                Response::Position,
+            );
+            let along = |own: Mat2| contact.kinematics.normal.dot(&(own * contact.kinematics.normal));
+            b0 * contact.multiplier[0] * own.map_or(0.0, along)
+        });
+        moves.any(|moved| moved.is_nan() || moved > farthest)
     }
 
     /// Keeps a place that the whole of the step has reached, if it is the best so far.

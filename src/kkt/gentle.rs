@@ -4,6 +4,7 @@
 //! approaches: a projection in the metric of the masses takes energy and never gives any, and its impulses come in pairs.
 
 use super::island::{Island, IslandSummary, KktError, SolveSettings};
+use crate::constraint::contact::ContactMemory;
 use crate::linalg::complementarity::Status;
 use crate::system::Block;
 
@@ -29,10 +30,14 @@ impl Island {
     pub(super) fn end_gently(
         &mut self,
         settings: &SolveSettings,
+        memory: &ContactMemory,
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
         (summary.is_cut, summary.is_stopped) = (false, true);
-        self.return_to_first_stop();
+        let tolerance = self.gap_tolerance();
+        if !self.return_to_first_stop() {
+            self.return_to_start(settings, memory, tolerance);
+        }
         let touching = TOUCHING * self.path.least_margin();
         for contact in &mut self.contacts {
             let is_near = contact.base.is_none_or(|base| base.gap <= touching);

@@ -301,15 +301,22 @@ impl Island {
         let before = self.start_energy();
         let allowance = self.external_work();
         let treatment = settings.treatment();
-        treatment.finish(self, settings, &mut summary)?;
+        summary.start_energy = before;
+        let finished = treatment.finish(self, settings, &mut summary);
+        let is_unsolved = summary.is_cut || summary.is_stopped;
+        if finished.is_err() && is_unsolved {
+            // Forces that are no numbers count no more than those that are too large.
+            self.end_gently(settings, memory, &mut summary)?;
+        } else {
+            finished?;
+        }
         self.settle_damping();
         let joint_work = self.joint_work(settings);
         let allowance = allowance + joint_work;
         summary.work = self.actual_work(settings) + joint_work;
-        summary.start_energy = before;
         summary.end_energy = self.end_energy();
         if self.has_gained(allowance + reserve.max(0.0), &summary) {
-            self.end_gently(settings, &mut summary)?;
+            self.end_gently(settings, memory, &mut summary)?;
         }
         if treatment.limits_energy() {
             let stored = reserve.max(0.0);

@@ -15,6 +15,9 @@ use crate::system::Block;
 /// Rate at which bodies that were put into each other part (1/s): a third of the overlap in a step of 1/60 s.
 pub(super) const PARTING_RATE: f64 = 24.0;
 
+/// Round-off of gaps, relative to the extent of the scene.
+pub(super) const ROUND_OFF: f64 = 2e-12;
+
 /// Multiple of the tolerance from which an overlap counts as put there.
 const OVERLAPPED: f64 = 1e7;
 
@@ -89,12 +92,12 @@ impl Island {
     }
 
     /// Round-off of a gap: positions of this size, and their predictions, are no better known.
-    fn gap_tolerance(&self) -> f64 {
+    pub(super) fn gap_tolerance(&self) -> f64 {
         let size = self.blocks.iter().fold(0.0f64, |size, block| match block {
             Block::Flex(block) => size.max(block.extent()),
             Block::Rigid(block) => size.max(block.start().centre.amax()),
         });
-        2e-12 * (1.0 + size)
+        ROUND_OFF * (1.0 + size)
     }
 
     /// Opens the working set with what pressed in the last step.

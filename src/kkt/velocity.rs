@@ -179,13 +179,25 @@ impl Island {
         self.list_acted(settings.b1);
     }
 
+    /// Begins with what the forces of the position stage would do in `time` (s) at contacts of rigid bodies, on which they have not acted.
+    fn guess_impulses(&mut self, time: f64) {
+        self.multipliers.clear();
+        self.multipliers.resize(self.kinds.len(), 0.0);
+        for (row, direction) in self.rows.iter().enumerate() {
+            let contact = &self.contacts[direction.contact];
+            if contact.is_hard {
+                let which = usize::from(direction.direction != contact.kinematics.normal);
+                self.multipliers[row] = time * contact.multiplier[which];
+            }
+        }
+    }
+
     /// Solves the rows listed, those of the contacts and those of the joints after them, for impulses (or forces, of accelerations).
     pub(super) fn solve_impulses(&mut self, of: Response, dt: f64) -> Result<(), KktError> {
         let n = self.kinds.len();
         self.acted.resize(n, 0.0);
         if of != Response::ByMass && self.is_sparse(n) {
-            self.multipliers.clear();
-            self.multipliers.resize(n, 0.0);
+            self.guess_impulses(if of == Response::Velocity { dt } else { 1.0 });
             let asked = Asked {
                 of,
                 which: Rows::End,

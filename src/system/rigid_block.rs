@@ -314,6 +314,11 @@ impl RigidBlock {
         self.current.angle += step[2];
     }
 
+    /// Puts the iterate back to the beginning of the step.
+    pub fn restart(&mut self) {
+        self.current = self.start;
+    }
+
     /// Forgets what contact did to the acceleration at the end.
     pub fn forget_contact(&mut self) {
         self.smooth_end = self.smooth_free;
