@@ -14,7 +14,7 @@ const LAYERS: [&[&str]; 9] = [
     &["system", "nonlinear"],
     &["body"],
     &["fe", "integrator"],
-    &["linalg"],
+    &["linalg", "path"],
     &["math"],
 ];
 

@@ -22,8 +22,8 @@ const MOST_STOPS: usize = 20;
 /// Share of the margin within which the laws hold where the contacts are many (-): a thousandth moves no force that counts.
 const LARGE_TOLERANCE: f64 = 1e-3;
 
-/// Pass from which the laws need only hold to [`CLOSE_ENOUGH`].
-const EASED_FROM: usize = 20;
+/// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
+const PASSES_PER_ITERATION: usize = 2;
 
 /// Share of the margin by which true gaps may miss what the law asks for (-).
 const CLOSE_ENOUGH: f64 = 0.05;
@@ -119,11 +119,12 @@ impl Island {
         listing.memory = None;
         let mut turned = self.correct();
         let (mut n_stopped, mut n_arrived) = (0, 0);
-        for pass in 0..settings.max_newton {
+        for pass in 0..PASSES_PER_ITERATION * settings.max_newton {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
-            let near = self.enough(pass, NEAR * tolerance);
+            let is_eased = pass >= settings.max_newton;
+            let near = self.enough(is_eased, NEAR * tolerance);
             let misleads = is_guess && self.measure(true) > near;
             let mut arrives = false;
             let mut error = 0.0;
@@ -135,12 +136,12 @@ impl Island {
                 n_stopped += usize::from(!arrives);
                 n_arrived = if arrives { n_arrived + 1 } else { 0 };
                 // Where the base has been stopped, geometry is not what the rows were measured in.
-                listing.keeps_rows = n_arrived > ROWS_KEPT_FROM;
+                listing.keeps_rows = pass >= ROWS_KEPT_FROM;
                 self.list_near(&listing);
                 error = self.measure(false);
             }
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
-            let enough = self.enough(pass, tolerance);
+            let enough = self.enough(is_eased, tolerance);
             let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
             if arrives && is_close && !has_more {
                 self.keep_applied_rows();
@@ -181,8 +182,8 @@ impl Island {
     }
 
     /// How far the laws may be from holding at the end of a pass (m).
-    fn enough(&self, pass: usize, tolerance: f64) -> f64 {
-        if pass >= EASED_FROM {
+    fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
+        if is_eased {
             CLOSE_ENOUGH * self.path.least_margin()
         } else if self.is_large() {
             tolerance.max(LARGE_TOLERANCE * self.path.least_margin())

@@ -83,7 +83,7 @@ pub(super) struct Asked {
 impl Island {
     /// Whether the scalar rows at hand are better solved as a sparse problem.
     pub(super) fn is_sparse(&self, n_rows: usize) -> bool {
-        if n_rows <= ALWAYS_DENSE {
+        if self.path.is_empty() || n_rows <= ALWAYS_DENSE {
             return false;
         }
         let mut operations = 0.0;

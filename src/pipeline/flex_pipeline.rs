@@ -350,7 +350,8 @@ impl FlexPipeline {
             component,
             step,
             prediction: f64::from(sets.integration_parameters.prediction_distance()),
-            uses_path: !step.is_explicit()
+            uses_path: self.parameters.feasible_path
+                && !step.is_explicit()
                 && self.parameters.contact_method == crate::kkt::ContactMethod::Lagrange,
         };
         let (claims, island) = (&mut self.claims, &mut self.island);
