@@ -1,9 +1,12 @@
 //! The feasible path of an island: which surfaces are kept apart, where they are at the base of the path, and what of it the rows need.
 
-use crate::constraint::contact::{ContactKey, ContactLaw, ContactMemory, Kinematics, Owner};
-use crate::math::{Vec2, node_vec, perp, rotation};
-use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces, Target};
-use crate::system::{Block, Grip, Point, RigidMotion};
+mod around;
+mod rows;
+
+use crate::constraint::contact::{ContactLaw, ContactMemory, Owner};
+use crate::math::Vec2;
+use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};
+use crate::system::{Block, Point, RigidMotion};
 
 /// Reach of the rows beyond the distance at which contact closes, relative to the margin: a tenth of an edge, as a margin is a hundredth.
 /// Between half of it and twice only the number of passes changes.
@@ -279,37 +282,6 @@ impl FeasiblePath {
         part >= 1.0
     }
 
-    /// Whether the straight way of two members from the beginning of the step to the blocks' iterate leads through one another: then the
-    /// path has led around, where no motion of one step leads.
-    pub(super) fn leads_around(&mut self, way: usize, blocks: &[Block]) -> bool {
-        self.scratch.clear();
-        self.scratch.extend_from_slice(self.surfaces.points());
-        let members = self.ways[way].members;
-        for member in members {
-            self.place_at_start(member, blocks);
-        }
-        self.motion.rest(&self.surfaces);
-        for member in members {
-            let start = match &blocks[self.carriers[member].block] {
-                Block::Rigid(body) => (body.start().centre, body.start().angle),
-                Block::Flex(_) => (Vec2::zeros(), 0.0),
-            };
-            self.aim(member, start, blocks);
-        }
-        let pair = &self.pairs[way..=way];
-        let impact = self
-            .search
-            .time_of_impact(&self.surfaces, &self.motion, pair, &mut self.hits);
-        for member in members {
-            if self.surfaces.members()[member].kind != MotionKind::Still {
-                let points = self.surfaces.members()[member].points.clone();
-                let base = &self.scratch[points];
-                self.surfaces.points_mut(member).copy_from_slice(base);
-            }
-        }
-        impact.t < 1.0
-    }
-
     /// Puts the points of a member where the step begins.
     fn place_at_start(&mut self, member: usize, blocks: &[Block]) {
         let own = &self.surfaces.members()[member];
@@ -345,23 +317,6 @@ impl FeasiblePath {
             }
             _ => {}
         }
-    }
-
-    /// Lists the ways of contacts that are lost and that have no near pairs any more.
-    pub(super) fn list_left(&self, lost: impl Iterator<Item = ContactKey>, left: &mut Vec<usize>) {
-        left.clear();
-        for key in lost {
-            let owners = key.owners();
-            let is_named = |way: &Way| {
-                let [one, other] = way.owners;
-                [one.min(other), one.max(other)] == owners
-            };
-            let named = (0..self.ways.len()).filter(|&way| is_named(&self.ways[way]));
-            left.extend(named);
-        }
-        left.sort_unstable();
-        left.dedup();
-        left.retain(|way| !self.near.iter().any(|near| near.pair == *way));
     }
 
     /// The part of the way on which no block with near pairs turns too far.
@@ -443,169 +398,7 @@ impl FeasiblePath {
             }
         }
     }
-
-    /// Lists what is near at the base.
-    pub(super) fn list_near(&mut self) {
-        let reach = |way: &Way| REACH * way.margin;
-        let farthest = self.ways.iter().map(reach).fold(0.0, f64::max);
-        self.search
-            .near(&self.surfaces, &self.pairs, farthest, &mut self.near);
-        let ways = &self.ways;
-        self.near.retain(|near| {
-            let way = &ways[near.pair];
-            near.distance <= way.closing + reach(way)
-        });
-    }
-
-    /// What is near at the base.
-    pub(super) fn near(&self) -> &[NearPair] {
-        &self.near
-    }
-
-    /// The law of a near pair.
-    pub(super) fn law(&self, near: &NearPair) -> ContactLaw {
-        self.ways[near.pair].law
-    }
-
-    /// Members of the point and of the target.
-    fn members_of(&self, near: &NearPair) -> [usize; 2] {
-        let [one, other] = self.ways[near.pair].members;
-        let owns = self.surfaces.members()[one].points.contains(&near.point);
-        if owns { [one, other] } else { [other, one] }
-    }
-
-    /// Blocks of the point and of the target.
-    pub(super) fn blocks_of(&self, near: &NearPair) -> [usize; 2] {
-        self.members_of(near)
-            .map(|member| self.carriers[member].block)
-    }
-
-    /// The name of a near pair.
-    pub(super) fn key(&self, near: &NearPair) -> ContactKey {
-        let way = &self.ways[near.pair];
-        let is_first = self.members_of(near)[0] == way.members[0];
-        let [contactor, target] = if is_first {
-            way.owners
-        } else {
-            [way.owners[1], way.owners[0]]
-        };
-        let part = match near.target {
-            Target::Edge(edge) => {
-                let [from, _] = self.surfaces.edges()[edge];
-                2 * self.points[from as usize].name + 1
-            }
-            Target::Vertex(vertex) => 2 * self.points[vertex].name,
-        };
-        ContactKey {
-            contactor,
-            point: self.points[near.point].name,
-            target,
-            part: PATH_NAMES | part,
-        }
-    }
-
-    /// The row of a near pair at the base.
-    pub(super) fn kinematics(&self, near: &NearPair) -> Kinematics {
-        let way = &self.ways[near.pair];
-        let [own, met] = self.members_of(near).map(|member| self.carriers[member]);
-        let point = self.surfaces.points()[near.point];
-        // Forces act on the surface of a flexible body: at the point's own, or where the target's is met.
-        let position = if own.is_flex {
-            point
-        } else {
-            point - near.distance * near.normal
-        };
-        let lever = |carrier: Carrier| position - self.base[carrier.block].centre;
-        let held = |carrier: Carrier, at: usize| {
-            if carrier.is_flex {
-                self.points[at].point
-            } else {
-                Point::Arm(self.base[carrier.block].motion().arm(position))
-            }
-        };
-        let first = (own.block, held(own, near.point), 1.0, lever(own));
-        let gap = near.distance - way.closing - self.corner(near);
-        let target = |at: usize, weight: f64| (met.block, held(met, at), weight, lever(met));
-        let row = |grips: &[_]| Kinematics::with_levers(gap, near.normal, position, grips);
-        match near.target {
-            Target::Edge(edge) if met.is_flex => {
-                let [from, to] = self.surfaces.edges()[edge].map(|end| end as usize);
-                row(&[first, target(from, near.xi - 1.0), target(to, -near.xi)])
-            }
-            Target::Edge(edge) => {
-                let [from, _] = self.surfaces.edges()[edge];
-                row(&[first, target(from as usize, -1.0)])
-            }
-            Target::Vertex(vertex) => row(&[first, target(vertex, -1.0)]),
-        }
-    }
-
-    /// How much farther than its faces a sharp corner reaches along the normal (m), where a core's vertex stands for one.
-    fn corner(&self, near: &NearPair) -> f64 {
-        let [own, met] = self
-            .members_of(near)
-            .map(|member| self.carriers[member].block);
-        let reach = |at: usize, block: usize, along: Vec2| {
-            let turn = rotation(self.base[block].angle);
-            along.dot(&(turn * self.points[at].corner))
-        };
-        let of_point = reach(near.point, own, -near.normal);
-        let of_target = match near.target {
-            Target::Edge(_) => 0.0,
-            Target::Vertex(vertex) => reach(vertex, met, near.normal),
-        };
-        let margin = self.ways[near.pair].margin;
-        // The tips of acute corners stand out farther than the path could make up for.
-        let most = MOST_CORNER * margin;
-        (of_point.max(of_target) - margin).clamp(0.0, most)
-    }
-
-    /// Position of a point of a block at the base (m).
-    fn at_base(&self, block: usize, point: Point) -> Vec2 {
-        let base = &self.base[block];
-        match (point, base.nodes) {
-            (Point::Node(node), Some(first)) => node_vec(&self.nodes[first..], node),
-            (Point::Arm(arm), _) => base.motion().point(arm),
-            (Point::Node(_), None) => base.centre,
-        }
-    }
-
-    /// Motion of the material at a row from the beginning of the step to the base, the point's against the target's (m).
-    pub(super) fn moved(&self, row: &Kinematics, blocks: &[Block]) -> Vec2 {
-        let grips = row.attachments().iter();
-        grips
-            .map(|a| {
-                let start = blocks[a.block].start_position(a.grip.point);
-                a.weight * (self.at_base(a.block, a.grip.point) - start)
-            })
-            .sum()
-    }
-
-    /// Motion at a row from the base to the blocks' iterate, linear in the dofs of rigid blocks (m).
-    pub(super) fn onward(&self, row: &Kinematics, blocks: &[Block]) -> Vec2 {
-        let grips = row.attachments().iter();
-        grips
-            .map(|a| a.weight * self.onward_of(a.block, a.grip, &blocks[a.block]))
-            .sum()
-    }
-
-    fn onward_of(&self, block: usize, grip: Grip, iterate: &Block) -> Vec2 {
-        let base = &self.base[block];
-        match (iterate, grip.point) {
-            (Block::Flex(body), Point::Node(node)) => {
-                body.position(node) - self.at_base(block, grip.point)
-            }
-            (Block::Rigid(body), _) => {
-                let end = body.current();
-                end.centre - base.centre + (end.angle - base.angle) * perp(grip.lever)
-            }
-            _ => Vec2::zeros(),
-        }
-    }
 }
-
-/// Marks the names of near pairs in contact keys.
-const PATH_NAMES: u32 = 1 << 31;
 
 fn angle_of(block: &Block) -> f64 {
     match block {

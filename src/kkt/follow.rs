@@ -246,7 +246,12 @@ impl Island {
                 &contact.kinematics,
                 Response::Position,
             );
-            let along = |own: Mat2| contact.kinematics.normal.dot(&(own * contact.kinematics.normal));
+            let along = |own: Mat2| {
+                contact
+                    .kinematics
+                    .normal
+                    .dot(&(own * contact.kinematics.normal))
+            };
             b0 * contact.multiplier[0] * own.map_or(0.0, along)
         });
         moves.any(|moved| moved.is_nan() || moved > farthest)

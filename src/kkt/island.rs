@@ -8,7 +8,7 @@ use super::impact::ImpactTreatment;
 use super::joint_rows::ActiveJoint;
 use super::sparse::Sparse;
 use crate::constraint::contact::{
-    Candidate, ContactKey, ContactMemory, Kinematics, Owner, PlacedPart, Remembered, Scene,
+    Candidate, ContactKey, ContactMemory, Kinematics, PlacedPart, Remembered, Scene,
 };
 use crate::constraint::joint::{JointGrip, JointRow};
 use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};

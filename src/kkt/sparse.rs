@@ -4,17 +4,18 @@
 //! angle beside a dof that nothing moves. The dense problem of [`delassus`](super::delassus) costs the cube of the number of rows, this
 //! one little more than factorizing the bodies: operations decide.
 
+mod layout;
+
 use super::delassus::compliance;
 use super::island::{Island, KktError};
 use super::joint_system::Rows;
-use crate::constraint::joint::{JointGrip, unit_wrench};
+use crate::constraint::joint::unit_wrench;
 use crate::fe::model::Model;
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::complementarity::{RowKind, Status};
 use crate::linalg::cone::{
     ConeEntry, ConeLaw, ConeOutcome, ConeProblem, ConeRow, ConeSolver, ConeStatus,
 };
-use crate::math::{Vec2, cross};
 use crate::system::{Block, Point, Response};
 use std::sync::Arc;
 
@@ -350,169 +351,5 @@ impl Island {
             }
         }
         Ok(outcome)
-    }
-}
-
-impl Sparse {
-    fn n_nodes(&self) -> usize {
-        self.matrix.as_ref().map_or(0, BlockMatrix::n_nodes)
-    }
-
-    fn scratch_begin(&mut self) {
-        self.load.fill(0.0);
-    }
-
-    /// Writes the bodies' matrices, in a new pattern if the bodies are others.
-    fn fill_matrix(&mut self, blocks: &[Block]) {
-        let is_same = self.shapes.len() == blocks.len()
-            && self.matrix.is_some()
-            && self
-                .shapes
-                .iter()
-                .zip(blocks)
-                .all(|(shape, block)| shape.is_that_of(block));
-        if !is_same {
-            self.lay_out(blocks);
-        }
-        let Some(matrix) = &mut self.matrix else {
-            return;
-        };
-        for (block, &first) in blocks.iter().zip(&self.first) {
-            match block {
-                Block::Flex(block) => matrix.assign_part(first, block.effective()),
-                Block::Rigid(block) if !block.is_prescribed() => {
-                    let own = block.effective_mass();
-                    matrix.assign_diagonal(first, [own[0], own[1]]);
-                    matrix.assign_diagonal(first + 1, [own[2], 1.0]);
-                }
-                Block::Rigid(_) => {}
-            }
-        }
-    }
-
-    fn lay_out(&mut self, blocks: &[Block]) {
-        self.shapes.clear();
-        self.shapes.extend(blocks.iter().map(Shape::of));
-        self.first.clear();
-        let mut n_nodes = 0;
-        let mut pairs: Vec<[usize; 2]> = Vec::new();
-        for block in blocks {
-            self.first.push(n_nodes);
-            match block {
-                Block::Flex(block) => {
-                    let part = block.effective();
-                    for node in 0..part.n_nodes() {
-                        let later = part
-                            .neighbours(node)
-                            .iter()
-                            .filter(|&&other| other as usize >= node);
-                        pairs
-                            .extend(later.map(|&other| [n_nodes + node, n_nodes + other as usize]));
-                    }
-                    n_nodes += part.n_nodes();
-                }
-                Block::Rigid(block) if !block.is_prescribed() => n_nodes += 2,
-                Block::Rigid(_) => {}
-            }
-        }
-        let cells = pairs.iter().map(|pair| &pair[..]);
-        self.matrix = Some(BlockMatrix::from_cells(n_nodes, cells));
-    }
-
-    /// Adds what a point of a block contributes to a row along two directions.
-    fn grip(
-        &mut self,
-        blocks: &[Block],
-        block: usize,
-        (point, lever): (Point, Vec2),
-        [normal, tangent]: [Vec2; 2],
-    ) {
-        let first = self.first[block] as u32;
-        match (&blocks[block], point) {
-            (Block::Flex(body), Point::Node(node)) => {
-                let [normal, tangent] = [normal, tangent].map(|v| body.local_row(node, v));
-                self.entries.push(ConeEntry {
-                    node: first + node as u32,
-                    normal,
-                    tangent,
-                });
-            }
-            (Block::Rigid(body), _) => {
-                let wrenches = [normal, tangent].map(|v| [v.x, v.y, cross(lever, v)]);
-                self.wrench(body.moves_along(), first, wrenches);
-            }
-            _ => {}
-        }
-    }
-
-    fn wrench(&mut self, moves: [bool; 3], first: u32, wrenches: [[f64; 3]; 2]) {
-        let [normal, tangent] = wrenches.map(|wrench| {
-            std::array::from_fn::<f64, 3, _>(|i| if moves[i] { wrench[i] } else { 0.0 })
-        });
-        if moves == [false; 3] {
-            return;
-        }
-        self.entries.push(ConeEntry {
-            node: first,
-            normal: [normal[0], normal[1]],
-            tangent: [tangent[0], tangent[1]],
-        });
-        self.entries.push(ConeEntry {
-            node: first + 1,
-            normal: [normal[2], 0.0],
-            tangent: [tangent[2], 0.0],
-        });
-    }
-
-    fn joint_grip(&mut self, blocks: &[Block], grip: &JointGrip, direction: Vec2, is_turn: bool) {
-        match &blocks[grip.block] {
-            Block::Flex(_) => {
-                let along = grip.weight * direction;
-                self.grip(
-                    blocks,
-                    grip.block,
-                    (grip.point, grip.lever),
-                    [along, Vec2::zeros()],
-                );
-            }
-            Block::Rigid(body) => {
-                let wrench = unit_wrench(grip, direction, is_turn);
-                let first = self.first[grip.block] as u32;
-                self.wrench(body.moves_along(), first, [wrench, [0.0; 3]]);
-            }
-        }
-    }
-
-    fn push_load(
-        &mut self,
-        blocks: &[Block],
-        block: usize,
-        (point, lever): (Point, Vec2),
-        force: Vec2,
-    ) {
-        match (&blocks[block], point) {
-            (Block::Flex(body), Point::Node(node)) => {
-                let at = 2 * (self.first[block] + node);
-                let local = body.local_row(node, force);
-                self.load[at] += local[0];
-                self.load[at + 1] += local[1];
-            }
-            (Block::Rigid(_), _) => {
-                self.push_wrench(blocks, block, [force.x, force.y, cross(lever, force)]);
-            }
-            _ => {}
-        }
-    }
-
-    fn push_wrench(&mut self, blocks: &[Block], block: usize, wrench: [f64; 3]) {
-        let Block::Rigid(body) = &blocks[block] else {
-            return;
-        };
-        let at = 2 * self.first[block];
-        for (i, moves) in body.moves_along().into_iter().enumerate() {
-            if moves {
-                self.load[at + i] += wrench[i];
-            }
-        }
     }
 }

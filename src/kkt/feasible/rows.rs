@@ -1,0 +1,171 @@
+//! What the rows of contact need of the path: the near pairs at the base, their names, levers and motions.
+
+use super::{Carrier, FeasiblePath, MOST_CORNER, REACH, Way};
+use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
+use crate::math::{Vec2, node_vec, perp, rotation};
+use crate::path::{NearPair, Target};
+use crate::system::{Block, Grip, Point};
+
+/// Marks the names of near pairs in contact keys.
+const PATH_NAMES: u32 = 1 << 31;
+
+impl FeasiblePath {
+    /// Lists what is near at the base.
+    pub(in crate::kkt) fn list_near(&mut self) {
+        let reach = |way: &Way| REACH * way.margin;
+        let farthest = self.ways.iter().map(reach).fold(0.0, f64::max);
+        self.search
+            .near(&self.surfaces, &self.pairs, farthest, &mut self.near);
+        let ways = &self.ways;
+        self.near.retain(|near| {
+            let way = &ways[near.pair];
+            near.distance <= way.closing + reach(way)
+        });
+    }
+
+    /// What is near at the base.
+    pub(in crate::kkt) fn near(&self) -> &[NearPair] {
+        &self.near
+    }
+
+    /// The law of a near pair.
+    pub(in crate::kkt) fn law(&self, near: &NearPair) -> ContactLaw {
+        self.ways[near.pair].law
+    }
+
+    /// Members of the point and of the target.
+    fn members_of(&self, near: &NearPair) -> [usize; 2] {
+        let [one, other] = self.ways[near.pair].members;
+        let owns = self.surfaces.members()[one].points.contains(&near.point);
+        if owns { [one, other] } else { [other, one] }
+    }
+
+    /// Blocks of the point and of the target.
+    pub(in crate::kkt) fn blocks_of(&self, near: &NearPair) -> [usize; 2] {
+        self.members_of(near)
+            .map(|member| self.carriers[member].block)
+    }
+
+    /// The name of a near pair.
+    pub(in crate::kkt) fn key(&self, near: &NearPair) -> ContactKey {
+        let way = &self.ways[near.pair];
+        let is_first = self.members_of(near)[0] == way.members[0];
+        let [contactor, target] = if is_first {
+            way.owners
+        } else {
+            [way.owners[1], way.owners[0]]
+        };
+        let part = match near.target {
+            Target::Edge(edge) => {
+                let [from, _] = self.surfaces.edges()[edge];
+                2 * self.points[from as usize].name + 1
+            }
+            Target::Vertex(vertex) => 2 * self.points[vertex].name,
+        };
+        ContactKey {
+            contactor,
+            point: self.points[near.point].name,
+            target,
+            part: PATH_NAMES | part,
+        }
+    }
+
+    /// The row of a near pair at the base.
+    pub(in crate::kkt) fn kinematics(&self, near: &NearPair) -> Kinematics {
+        let way = &self.ways[near.pair];
+        let [own, met] = self.members_of(near).map(|member| self.carriers[member]);
+        let point = self.surfaces.points()[near.point];
+        // Forces act on the surface of a flexible body: at the point's own, or where the target's is met.
+        let position = if own.is_flex {
+            point
+        } else {
+            point - near.distance * near.normal
+        };
+        let lever = |carrier: Carrier| position - self.base[carrier.block].centre;
+        let held = |carrier: Carrier, at: usize| {
+            if carrier.is_flex {
+                self.points[at].point
+            } else {
+                Point::Arm(self.base[carrier.block].motion().arm(position))
+            }
+        };
+        let first = (own.block, held(own, near.point), 1.0, lever(own));
+        let gap = near.distance - way.closing - self.corner(near);
+        let target = |at: usize, weight: f64| (met.block, held(met, at), weight, lever(met));
+        let row = |grips: &[_]| Kinematics::with_levers(gap, near.normal, position, grips);
+        match near.target {
+            Target::Edge(edge) if met.is_flex => {
+                let [from, to] = self.surfaces.edges()[edge].map(|end| end as usize);
+                row(&[first, target(from, near.xi - 1.0), target(to, -near.xi)])
+            }
+            Target::Edge(edge) => {
+                let [from, _] = self.surfaces.edges()[edge];
+                row(&[first, target(from as usize, -1.0)])
+            }
+            Target::Vertex(vertex) => row(&[first, target(vertex, -1.0)]),
+        }
+    }
+
+    /// How much farther than its faces a sharp corner reaches along the normal (m), where a core's vertex stands for one.
+    fn corner(&self, near: &NearPair) -> f64 {
+        let [own, met] = self
+            .members_of(near)
+            .map(|member| self.carriers[member].block);
+        let reach = |at: usize, block: usize, along: Vec2| {
+            let turn = rotation(self.base[block].angle);
+            along.dot(&(turn * self.points[at].corner))
+        };
+        let of_point = reach(near.point, own, -near.normal);
+        let of_target = match near.target {
+            Target::Edge(_) => 0.0,
+            Target::Vertex(vertex) => reach(vertex, met, near.normal),
+        };
+        let margin = self.ways[near.pair].margin;
+        // The tips of acute corners stand out farther than the path could make up for.
+        let most = MOST_CORNER * margin;
+        (of_point.max(of_target) - margin).clamp(0.0, most)
+    }
+
+    /// Position of a point of a block at the base (m).
+    fn at_base(&self, block: usize, point: Point) -> Vec2 {
+        let base = &self.base[block];
+        match (point, base.nodes) {
+            (Point::Node(node), Some(first)) => node_vec(&self.nodes[first..], node),
+            (Point::Arm(arm), _) => base.motion().point(arm),
+            (Point::Node(_), None) => base.centre,
+        }
+    }
+
+    /// Motion of the material at a row from the beginning of the step to the base, the point's against the target's (m).
+    pub(in crate::kkt) fn moved(&self, row: &Kinematics, blocks: &[Block]) -> Vec2 {
+        let grips = row.attachments().iter();
+        grips
+            .map(|a| {
+                let start = blocks[a.block].start_position(a.grip.point);
+                a.weight * (self.at_base(a.block, a.grip.point) - start)
+            })
+            .sum()
+    }
+
+    /// Motion at a row from the base to the blocks' iterate, linear in the dofs of rigid blocks (m).
+    pub(in crate::kkt) fn onward(&self, row: &Kinematics, blocks: &[Block]) -> Vec2 {
+        let grips = row.attachments().iter();
+        grips
+            .map(|a| a.weight * self.onward_of(a.block, a.grip, &blocks[a.block]))
+            .sum()
+    }
+
+    fn onward_of(&self, block: usize, grip: Grip, iterate: &Block) -> Vec2 {
+        let base = &self.base[block];
+        match (iterate, grip.point) {
+            (Block::Flex(body), Point::Node(node)) => {
+                body.position(node) - self.at_base(block, grip.point)
+            }
+            (Block::Rigid(body), _) => {
+                let end = body.current();
+                end.centre - base.centre + (end.angle - base.angle) * perp(grip.lever)
+            }
+            _ => Vec2::zeros(),
+        }
+    }
+}
