@@ -148,7 +148,10 @@ fn add_shape(shape: &dyn Shape, pose: Pose2, pieces: &mut Vec<Piece>) {
         }
         _ => {
             let mut parts = Vec::new();
-            convert(shape, pose, &mut parts);
+            // What cannot be converted has been refused where it was placed.
+            if convert(shape, pose, &mut parts).is_err() {
+                return;
+            }
             pieces.extend(parts.iter().map(|part| piece_of(&part.part, &part.pose)));
         }
     }
