@@ -164,9 +164,9 @@ struct Instant {
 impl Instant {
     #[inline]
     fn of(ways: &Ways, t: f64) -> Self {
-        let (point, point_rate) = ways.point.at(t, ways.point.sin_cos(t));
+        let (point, point_rate) = ways.point.at(t, ways.point.heading(t));
         // Both ends turn alike.
-        let turned_by = ways.ends[0].sin_cos(t);
+        let turned_by = ways.ends[0].heading(t);
         let [(a, a_rate), (b, b_rate)] = ways.ends.map(|end| end.at(t, turned_by));
         Self {
             t,

@@ -4,10 +4,12 @@
 //! part of one lies as a whole inside or outside the other, so one point of it decides, by how often the other's edges go
 //! round it.
 
+#[cfg(test)]
+use super::MemberPair;
 use super::bounds::Bounds;
 use super::distance::square_distance;
 use super::search::{Extent, Search};
-use super::{MemberPair, Path, Surfaces};
+use super::{Path, Surfaces};
 use crate::math::Vec2;
 use robust::{Coord, orient2d};
 
@@ -22,7 +24,9 @@ pub enum Overlap {
     Contained,
 }
 
+// What a step ends with is checked by the tests; a step of its own does not pay for it yet.
 /// What is true of a placement.
+#[cfg(test)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// Pairs of edges that cross.
@@ -38,6 +42,7 @@ pub struct Certificate {
     pub least_gap: f64,
 }
 
+#[cfg(test)]
 impl Certificate {
     /// Whether nothing overlaps or touches.
     pub fn is_valid(&self) -> bool {
@@ -47,6 +52,7 @@ impl Certificate {
 
 impl Path {
     /// Checks a placement.
+    #[cfg(test)]
     pub fn certificate(&mut self, surfaces: &Surfaces, pairs: &[MemberPair]) -> Certificate {
         let mut certificate = Certificate {
             n_crossings: 0,
@@ -83,25 +89,6 @@ impl Path {
         check(&mut self.search, surfaces, [one, other], 0.0)
             .overlap()
             .is_none()
-    }
-
-    /// [`Self::separated`] of many pairs, of which only the members are looked at; the result in their order.
-    ///
-    /// - `separated`: overwritten.
-    pub fn separated_all(
-        &mut self,
-        surfaces: &Surfaces,
-        pairs: &[MemberPair],
-        separated: &mut Vec<bool>,
-    ) {
-        self.search.refresh(Extent::of(surfaces));
-        let search = &mut self.search;
-        separated.clear();
-        separated.extend(pairs.iter().map(|pair| {
-            check(search, surfaces, [pair.one, pair.other], 0.0)
-                .overlap()
-                .is_none()
-        }));
     }
 }
 

@@ -39,7 +39,7 @@ impl Track {
 
     /// Sine and cosine of the angle turned by until `t`.
     #[inline]
-    pub fn sin_cos(&self, t: f64) -> (f64, f64) {
+    pub fn heading(&self, t: f64) -> (f64, f64) {
         if self.turn == 0.0 {
             (0.0, 1.0)
         } else {
@@ -62,6 +62,7 @@ pub struct Motion {
 
 impl Motion {
     /// No motion, of nothing.
+    #[cfg(test)]
     pub fn new() -> Self {
         Self::default()
     }
@@ -132,30 +133,6 @@ impl Motion {
     /// Where all points go (m).
     pub fn ends(&self) -> &[Vec2] {
         &self.ends
-    }
-
-    /// Lets a member go only a part of its way, in the same time; for groups that are cut apart from each other. Their
-    /// pairs with others must then be asked again.
-    pub fn shorten(&mut self, surfaces: &Surfaces, member: usize, part: f64) {
-        let points = &surfaces.members()[member];
-        match points.kind {
-            MotionKind::Still => {}
-            MotionKind::Rigid => {
-                let RigidMotion {
-                    centre,
-                    shift,
-                    turn,
-                    ..
-                } = self.rigid[member];
-                self.move_rigid(surfaces, member, centre, shift * part, turn * part);
-            }
-            MotionKind::Flexible => {
-                for point in points.points.clone() {
-                    let from = surfaces.points()[point];
-                    self.ends[point] = from + (self.ends[point] - from) * part;
-                }
-            }
-        }
     }
 
     /// How far a point of a member may leave the line from its start to its end (m): `r θ² / 8` bounds what an arc leaves

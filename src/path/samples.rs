@@ -1,7 +1,7 @@
 //! Random surfaces and plain counterparts of the searches, for tests.
 
 use super::{MotionKind, Surfaces};
-use crate::math::{Vec2, mix, sin_cos};
+use crate::math::{Vec2, exp, mix, sin_cos};
 
 /// Numbers that look random and are the same every time.
 pub struct Random(u64);
@@ -85,6 +85,11 @@ impl Random {
             }
         }
     }
+}
+
+/// `10^exponent`.
+pub fn power_of_ten(exponent: f64) -> f64 {
+    exp(std::f64::consts::LN_10 * exponent)
 }
 
 /// Least distance of two members (m), all points against all edges. Not zero where they cross.

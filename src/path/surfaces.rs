@@ -63,6 +63,7 @@ pub struct Surfaces {
 
 impl Surfaces {
     /// No surfaces.
+    #[cfg(test)]
     pub fn new() -> Self {
         Self::default()
     }
@@ -139,6 +140,7 @@ impl Surfaces {
     ///
     /// # Panics
     /// If there is no point.
+    #[cfg(test)]
     pub fn add_chain(
         &mut self,
         kind: MotionKind,

@@ -5,10 +5,13 @@
 //! weights from `y / (zeta - low)`. A small proximal term keeps rays apart that redundant rows make alike, and makes rows
 //! without bounds solvable.
 
+mod ray;
+
 use super::State;
 use super::problem::ConeProblem;
 use super::reduced::Reduced;
 use super::system::System;
+use ray::{Pair, Ray};
 
 const MOST_ITERATIONS: usize = 60;
 /// The weight a ray may have at most, times `W_ii`.
@@ -20,30 +23,6 @@ const FOLLOW_SLIP: f64 = 1e-5;
 /// Products at the end: enough to tell which rays carry.
 const CLOSE_ENOUGH: f64 = 1e-6;
 
-#[derive(Debug, Clone, Copy)]
-struct Ray {
-    /// `+1`, `-1`, or 0 on rows of one component.
-    sign: f64,
-    bounds: [f64; 2],
-    force: f64,
-    /// At the lower and the upper bound; zero where that is infinite.
-    slack: [f64; 2],
-    /// `w + mu sigma ± mu w_t - y_low + y_high`.
-    gap: f64,
-    change: f64,
-    slack_change: [f64; 2],
-    /// What each product `y z` should become less by.
-    target: [f64; 2],
-}
-
-#[derive(Debug, Clone, Copy, Default)]
-struct Pair {
-    n_rays: usize,
-    rays: [Ray; 2],
-    /// `(C + Θ)⁻¹`, `[00, 01, 11]`.
-    stiffness: [f64; 3],
-}
-
 /// Buffers of the interior point.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Interior {
@@ -54,58 +33,6 @@ pub(super) struct Interior {
     step: Vec<f64>,
     /// The size of forces, in square roots of energy.
     scale: f64,
-}
-
-impl Default for Ray {
-    /// A ray without bounds and force.
-    fn default() -> Self {
-        Self {
-            sign: 0.0,
-            bounds: [f64::NEG_INFINITY, f64::INFINITY],
-            force: 0.0,
-            slack: [0.0; 2],
-            gap: 0.0,
-            change: 0.0,
-            slack_change: [0.0; 2],
-            target: [0.0; 2],
-        }
-    }
-}
-
-impl Ray {
-    fn has_bound(&self, side: usize) -> bool {
-        self.bounds[side].is_finite()
-    }
-
-    /// The distance of the force from a bound.
-    fn room(&self, side: usize) -> f64 {
-        if side == 0 {
-            self.force - self.bounds[0]
-        } else {
-            self.bounds[1] - self.force
-        }
-    }
-
-    fn product(&self) -> f64 {
-        (0..2)
-            .filter(|&side| self.has_bound(side))
-            .map(|side| self.slack[side] * self.room(side))
-            .sum()
-    }
-
-    fn room_change(&self, side: usize) -> f64 {
-        if side == 0 { self.change } else { -self.change }
-    }
-
-    /// What the slacks add to the diagonal and to the right-hand side.
-    fn eliminated(&self) -> (f64, f64) {
-        let (mut diagonal, mut right) = (0.0, self.gap);
-        for side in (0..2).filter(|&side| self.has_bound(side)) {
-            diagonal += self.slack[side] / self.room(side);
-            right += [1.0, -1.0][side] * self.target[side] / self.room(side);
-        }
-        (diagonal, right)
-    }
 }
 
 impl Interior {
@@ -424,28 +351,5 @@ impl Interior {
                 state.forces[index] = force;
             }
         }
-    }
-}
-
-impl Pair {
-    fn force(&self, mu: f64) -> Option<[f64; 2]> {
-        (self.n_rays > 0).then(|| self.combine(mu, self.rays.map(|ray| ray.force)))
-    }
-
-    fn combine(&self, mu: f64, along: [f64; 2]) -> [f64; 2] {
-        let mut force = [0.0; 2];
-        for (ray, along) in self.rays[..self.n_rays].iter().zip(along) {
-            force[0] += along;
-            force[1] += ray.sign * mu * along;
-        }
-        force
-    }
-
-    fn stiffen(&self, right: [f64; 2]) -> [f64; 2] {
-        let [first, cross, second] = self.stiffness;
-        [
-            first * right[0] + cross * right[1],
-            cross * right[0] + second * right[1],
-        ]
     }
 }

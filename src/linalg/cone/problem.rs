@@ -289,8 +289,8 @@ impl<'a> ConeProblem<'a> {
         let force = force.map(|value| factor * value);
         for entry in self.entries_of(row) {
             let dofs = &mut out[2 * entry.node as usize..][..2];
-            for k in 0..2 {
-                dofs[k] += entry.normal[k] * force[0] + entry.tangent[k] * force[1];
+            for (k, dof) in dofs.iter_mut().enumerate() {
+                *dof += entry.normal[k] * force[0] + entry.tangent[k] * force[1];
             }
         }
     }

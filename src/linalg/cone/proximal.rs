@@ -4,12 +4,15 @@
 //! `w = free + G a + give P + (P - P_k)/D` and `P_k` from the step before. The answer of the whole problem is where it
 //! stays. It need not be unique: redundant rows keep as much as they can of what they carried.
 
+mod line;
+
 use super::law::{ConeStatus, project, slope};
 use super::problem::{ConeProblem, ConeRow};
 use super::reduced::{Measure, Reduced};
 use super::slip::SlipIteration;
 use super::system::{Fit, System};
 use super::{ConeSettings, State};
+use std::f64::consts::SQRT_2;
 
 /// Proximal steps at most, those that follow the slip included.
 const MOST_STEPS: usize = 80;
@@ -69,12 +72,20 @@ fn metric(give: [f64; 2], inverse_penalty: f64) -> [f64; 2] {
     give.map(|give| give + inverse_penalty)
 }
 
+/// `2^round(log2 value)` of a positive number: a mantissa of `√2` or more goes up.
+fn nearest_power_of_two(value: f64) -> f64 {
+    const MANTISSA: u64 = (1 << f64::MANTISSA_DIGITS >> 1) - 1;
+    let round_up = MANTISSA + 1 - (SQRT_2.to_bits() & MANTISSA);
+    f64::from_bits((value.max(f64::MIN_POSITIVE).to_bits() + round_up) & !MANTISSA)
+}
+
 impl Proximal {
     /// Improves `state` by proximal steps until it is solved, stalls, or `n_allowed` factorizations are spent.
     ///
     /// The measure is that of the last step completed, infinite if the budget did not last for one.
     ///
     /// - `levels`: penalties times `W_ii`; the next one is taken where a step gains too little.
+    #[expect(clippy::too_many_arguments, reason = "they are the solver's parts")]
     pub fn run(
         &mut self,
         problem: &ConeProblem,
@@ -227,7 +238,7 @@ impl Proximal {
     fn penalize(&mut self, reduced: &Reduced, level: f64) {
         let inverse = |&resistance: &f64| {
             if resistance > 0.0 {
-                (resistance / level).log2().round().exp2()
+                nearest_power_of_two(resistance / level)
             } else {
                 1.0
             }
@@ -248,11 +259,11 @@ impl Proximal {
         most: usize,
     ) {
         self.weigh(problem);
-        if system.fit(problem, &self.weights) == Fit::None {
-            if system.n_factorizations >= most || system.factorize(problem, &self.weights).is_err()
-            {
-                return;
-            }
+        if system.fit(problem, &self.weights) == Fit::None
+            && (system.n_factorizations >= most
+                || system.factorize(problem, &self.weights).is_err())
+        {
+            return;
         }
         reduced.total_load(problem, &[], &mut self.step);
         for (index, row) in problem.rows.iter().enumerate() {
@@ -418,73 +429,4 @@ impl Proximal {
             rows.map(|((row, &status), &penalty)| slope(row, status, metric(row.give, penalty))),
         );
     }
-
-    /// The length of the Newton step at which the convex energy is least, to a tenth of its first slope.
-    fn search(&mut self, problem: &ConeProblem, reduced: &Reduced, state: &State) -> f64 {
-        self.lines.clear();
-        for (index, row) in problem.rows.iter().enumerate() {
-            let along = problem.motion(row, &self.step);
-            let request = self.request(problem, reduced, state, index);
-            self.lines.push([request, along.map(|value| -value)]);
-        }
-        self.product.resize(self.step.len(), 0.0);
-        problem.matrix.multiply(&self.step, &mut self.product);
-        let (mut constant, mut linear) = (0.0, 0.0);
-        for dof in 0..self.step.len() {
-            constant += self.product[dof] * state.a[dof] - self.step[dof] * reduced.load[dof];
-            linear += self.product[dof] * self.step[dof];
-        }
-        let slope = |length: f64| {
-            let mut slope = constant + length * linear;
-            for (index, row) in problem.rows.iter().enumerate() {
-                let [at, along] = self.lines[index];
-                let force = if reduced.resistance[index] > 0.0 {
-                    project(
-                        row,
-                        [0, 1].map(|k| at[k] + length * along[k]),
-                        metric(row.give, self.penalty[index]),
-                    )
-                    .0
-                } else {
-                    state.forces[index]
-                };
-                slope += force[0] * along[0] + force[1] * along[1];
-            }
-            slope
-        };
-        least(slope)
-    }
-}
-
-/// The root of a rising function that is negative at 0; 1 if the function is small enough there.
-fn least(slope: impl Fn(f64) -> f64) -> f64 {
-    let (start, full) = (slope(0.0), slope(1.0));
-    if full.abs() <= 0.1 * start.abs() {
-        return 1.0;
-    }
-    let (mut low, mut at_low, mut high, mut at_high) = (0.0, start, 1.0, full);
-    while at_high < 0.0 && high < 64.0 {
-        (low, at_low) = (high, at_high);
-        high *= 2.0;
-        at_high = slope(high);
-    }
-    let mut length = high;
-    for round in 0..40 {
-        // a bisection now and then: the secant alone may creep along one piece
-        length = if round % 3 == 2 {
-            0.5 * (low + high)
-        } else {
-            low - at_low * (high - low) / (at_high - at_low)
-        };
-        let here = slope(length);
-        if here.abs() < 0.02 * start.abs() {
-            break;
-        }
-        if here > 0.0 {
-            (high, at_high) = (length, here);
-        } else {
-            (low, at_low) = (length, here);
-        }
-    }
-    if length.is_finite() { length } else { 1.0 }
 }

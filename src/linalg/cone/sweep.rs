@@ -119,11 +119,11 @@ impl Sweep {
     fn compare(&self, reduced: &Reduced, forces: &[[f64; 2]]) -> (f64, f64, bool) {
         let (mut curved, mut length, mut turn) = (0.0, 0.0, 0.0);
         for (index, resistance) in reduced.resistance.iter().enumerate() {
-            for k in 0..2 {
+            for (k, force) in forces[index].iter().enumerate() {
                 let change = self.next[index][k] - self.ahead[index][k];
                 curved += change * (self.next_slack[index][k] - self.ahead_slack[index][k]);
                 length += resistance * change * change;
-                turn += resistance * change * (self.next[index][k] - forces[index][k]);
+                turn += resistance * change * (self.next[index][k] - force);
             }
         }
         (curved, length, turn < 0.0)

@@ -1,6 +1,6 @@
 use super::Toi;
 use crate::math::{Vec2, rotation};
-use crate::path::samples::{Random, distance};
+use crate::path::samples::{Random, distance, power_of_ten};
 use crate::path::{MemberPair, Motion, MotionKind, Path, Surfaces};
 
 /// A pair of members, a motion of both, and the law between them.
@@ -45,7 +45,7 @@ impl Scene {
             if !Path::new().separated(&surfaces, 0, 1) {
                 continue;
             }
-            let size = 10.0_f64.powf(random.within(1.5));
+            let size = power_of_ten(random.within(1.5));
             let mut motion = Motion::new();
             motion.rest(&surfaces);
             for side in [0, 1] {
@@ -70,7 +70,7 @@ impl Scene {
             }
             let distance = distance(&surfaces, surfaces.points(), 0, 1);
             let height = [-0.3, 1e-9, 1e-3, 0.1, 0.8, 1.0, 3.0, 30.0][random.index(8)];
-            let margin = distance * 10.0_f64.powf(-3.0 * random.unit()) / (1.0 + f64::abs(height));
+            let margin = distance * power_of_ten(-3.0 * random.unit()) / (1.0 + f64::abs(height));
             let closing = distance + (0.8 - height) * margin;
             let pair = MemberPair {
                 one: 0,
@@ -95,7 +95,7 @@ impl Scene {
         for (index, member) in self.surfaces.members().iter().enumerate() {
             for point in member.points.clone() {
                 let track = self.motion.track(&self.surfaces, index, point);
-                points[point] = track.at(t, track.sin_cos(t)).0;
+                points[point] = track.at(t, track.heading(t)).0;
             }
         }
         distance(&self.surfaces, points, 0, 1)

@@ -1,6 +1,6 @@
 use super::{NearPair, Target};
 use crate::math::{Vec2, perp, rotation};
-use crate::path::samples::{Random, distance};
+use crate::path::samples::{Random, distance, power_of_ten};
 use crate::path::{MemberPair, MotionKind, Path, Surfaces};
 
 const PAIR: MemberPair = MemberPair {
@@ -108,7 +108,7 @@ fn rows_are_as_defined_and_no_key_comes_twice() {
 fn sliding_over_a_straight_joint_has_one_row_all_the_way() {
     let mut random = Random::new(12);
     for _ in 0..2_000 {
-        let size = 10.0_f64.powf(random.within(3.0));
+        let size = power_of_ten(random.within(3.0));
         let along = rotation(random.within(3.2)) * Vec2::new(1.0, 0.0);
         let origin = random.point(size);
         let lengths = [0.1 + random.unit(), 0.1 + random.unit()];
@@ -117,7 +117,7 @@ fn sliding_over_a_straight_joint_has_one_row_all_the_way() {
             origin,
             origin + along * lengths[1],
         ];
-        let height = 10.0_f64.powf(-6.0 * random.unit()) * size.max(0.1);
+        let height = power_of_ten(-6.0 * random.unit()) * size.max(0.1);
         let exact = origin + perp(along) * height;
         let near_joint = |ball: Vec2| {
             let (rows, brute) = of_ball(ball, &chain, false);

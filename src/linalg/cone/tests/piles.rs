@@ -1,0 +1,202 @@
+//! Piles of boxes, and what their solver keeps from call to call.
+
+use super::*;
+
+/// `columns × rows` unit boxes with two contacts on every face that touches; the lowest stand on the ground.
+fn pile(n_columns: usize, n_rows: usize, mass: impl Fn(usize) -> f64, disturb: f64) -> Scene {
+    let n = n_columns * n_rows;
+    let masses: Vec<[f64; 2]> = (0..n)
+        .map(|body| {
+            let m = mass(body / n_columns);
+            [m, m / 6.0]
+        })
+        .collect();
+    let mut scene = Scene::bodies(&masses);
+    let mut random = Random(3);
+    for (body, &[mass, _]) in masses.iter().enumerate() {
+        scene.load[4 * body + 1] = -9.81 * mass;
+        for dof in 4 * body..4 * body + 3 {
+            scene.load[dof] += disturb * 9.81 * mass * random.within(-1.0, 1.0);
+        }
+    }
+    let mut touch = |upper: usize, lower: Option<usize>, normal: [f64; 2]| {
+        let tangent = [-normal[1], normal[0]];
+        for side in [-0.5, 0.5] {
+            let arm = |half: f64| [0, 1].map(|k| half * normal[k] + side * tangent[k]);
+            let mut grips = Scene::grips(upper, 1.0, normal, arm(-0.5)).to_vec();
+            if let Some(lower) = lower {
+                grips.extend(Scene::grips(lower, -1.0, normal, arm(0.5)));
+            }
+            scene.row(
+                ConeLaw::Contact { friction: 0.5 },
+                [0.0; 2],
+                [1.0; 2],
+                &grips,
+            );
+        }
+    };
+    for body in 0..n {
+        touch(body, body.checked_sub(n_columns), [0.0, 1.0]);
+        if body % n_columns > 0 {
+            touch(body, Some(body - 1), [1.0, 0.0]);
+        }
+    }
+    scene.estimate();
+    scene
+}
+
+/// The force of the ground on everything.
+fn ground_force(scene: &Scene, answer: &Answer) -> f64 {
+    let on_ground = scene
+        .rows
+        .iter()
+        .zip(&answer.p)
+        .filter(|(row, _)| row.entries.1 - row.entries.0 == 2);
+    on_ground.map(|(_, p)| p[0]).sum()
+}
+
+#[test]
+fn a_pile_of_a_hundred_rests_on_its_weight_and_costs_nothing_twice() {
+    let scene = pile(10, 10, |_| 1.0, 0.0);
+    let mut solver = ConeSolver::default();
+    let n = scene.rows.len();
+    let first = solve_with(&mut solver, &scene, &vec![[0.0; 2]; n], &vec![0.0; n]);
+    assert!(first.outcome.is_solved && first.outcome.residual <= 1e-8);
+    assert!((ground_force(&scene, &first) / 981.0 - 1.0).abs() < 1e-8);
+    assert!(first.outcome.n_factorizations <= 40);
+    let again = solve_with(&mut solver, &scene, &first.p, &first.slip);
+    assert!(
+        again.outcome.is_solved
+            && again.outcome.n_factorizations <= 1
+            && again.outcome.n_analyses == 0
+    );
+    // redundant rows keep what they carry
+    let moved = again
+        .p
+        .iter()
+        .zip(&first.p)
+        .flat_map(|(p, q)| [p[0] - q[0], p[1] - q[1]])
+        .fold(0.0_f64, |most, d| most.max(d.abs()));
+    assert!(moved < 1e-6, "{moved:e}");
+}
+
+#[test]
+fn a_disturbed_pile_is_solved_within_its_budget() {
+    for disturb in [0.1, 0.5, 1.0, 2.0] {
+        let scene = pile(10, 10, |_| 1.0, disturb);
+        let n = scene.rows.len();
+        // a gap of 1e-3 beside accelerations of 10
+        let settings = ConeSettings {
+            tolerance: 1e-8,
+            gap_tolerance: 1e-3,
+            ..ConeSettings::default()
+        };
+        let answer = solve_with(
+            &mut ConeSolver::new(settings),
+            &scene,
+            &vec![[0.0; 2]; n],
+            &vec![0.0; n],
+        );
+        assert!(
+            answer.outcome.is_solved && answer.outcome.n_factorizations <= 100,
+            "{disturb}: {:?}",
+            answer.outcome
+        );
+        assert!(violation(&scene, &answer).1 < 1e-12);
+    }
+}
+
+#[test]
+fn a_heavy_top_is_carried() {
+    for disturb in [0.0, 0.5] {
+        let scene = pile(5, 6, |layer| if layer == 5 { 1000.0 } else { 1.0 }, disturb);
+        let answer = solve(&scene);
+        assert!(answer.outcome.is_solved);
+        assert!(violation(&scene, &answer).1 < 1e-12);
+    }
+}
+
+/// Run by hand, in release: times of piles in motion and at rest.
+#[test]
+#[ignore = "prints times"]
+fn times() {
+    for (columns, rows) in [(10, 10), (20, 50)] {
+        let mut solver = ConeSolver::new(ConeSettings {
+            tolerance: 1e-6,
+            gap_tolerance: 1e-2,
+            ..ConeSettings::default()
+        });
+        let n = pile(columns, rows, |_| 1.0, 0.0).rows.len();
+        let (mut p, mut slip) = (vec![[0.0; 2]; n], vec![0.0; n]);
+        for disturb in [0.0, 0.0, 0.1, 0.11, 0.12, 0.5, 0.55, 0.6, 1.0, 0.0, 0.0] {
+            let scene = pile(columns, rows, |_| 1.0, disturb);
+            let start = std::time::Instant::now();
+            let answer = solve_with(&mut solver, &scene, &p, &slip);
+            let o = answer.outcome;
+            println!(
+                "{:5} boxes {n} rows disturb {disturb:4} {:9.1} us factorizations {:3} analyses {} residual {:.1e} dilation {:.1e} solved {} interior {}",
+                columns * rows,
+                start.elapsed().as_secs_f64() * 1e6,
+                o.n_factorizations,
+                o.n_analyses,
+                o.residual,
+                o.dilation,
+                o.is_solved,
+                o.used_interior_point
+            );
+            (p, slip) = (answer.p, answer.slip);
+        }
+    }
+}
+
+#[test]
+fn a_pattern_that_covers_the_rows_is_kept() {
+    let scene = pile(4, 4, |_| 1.0, 0.3);
+    let mut fewer = scene.clone();
+    fewer.rows.truncate(20);
+    let mut solver = ConeSolver::default();
+    let n = scene.rows.len();
+    assert_eq!(
+        solve_with(&mut solver, &scene, &vec![[0.0; 2]; n], &vec![0.0; n])
+            .outcome
+            .n_analyses,
+        1
+    );
+    assert_eq!(
+        solve_with(&mut solver, &fewer, &[[0.0; 2]; 20], &[0.0; 20])
+            .outcome
+            .n_analyses,
+        0
+    );
+    assert_eq!(
+        solve_with(&mut solver, &scene, &vec![[0.0; 2]; n], &vec![0.0; n])
+            .outcome
+            .n_analyses,
+        0
+    );
+}
+
+#[test]
+fn a_spent_budget_obeys_the_bounds_and_the_balance() {
+    let scene = pile(5, 5, |_| 1.0, 1.0);
+    let n = scene.rows.len();
+    let mut solver = ConeSolver::new(ConeSettings {
+        max_factorizations: 2,
+        ..ConeSettings::default()
+    });
+    let answer = solve_with(&mut solver, &scene, &vec![[0.0; 2]; n], &vec![0.0; n]);
+    assert!(
+        !answer.outcome.is_solved
+            && answer.outcome.n_factorizations <= 2
+            && answer.outcome.residual < 0.1,
+        "{:?}",
+        answer.outcome
+    );
+    assert!(
+        answer
+            .p
+            .iter()
+            .all(|p| p[0] >= 0.0 && p[1].abs() <= 0.5 * p[0] * (1.0 + 1e-12))
+    );
+    assert!(violation(&scene, &answer).1 < 1e-12);
+}
