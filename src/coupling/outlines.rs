@@ -208,9 +208,9 @@ pub(super) fn draw_inwards(vertices: &[Vec2], offset: f64, inset: &mut Vec<Vec2>
         let tip = (1.0 + bend(edge).powi(2)).sqrt() - 1.0;
         most = most.min(TIP * offset / tip.max(TIP));
     }
-    for vertex in 0..n {
+    for (vertex, place) in vertices.iter().enumerate() {
         let along = direction(vertex);
-        inset.push(vertices[vertex] + most * (perp(along) + bend(vertex) * along));
+        inset.push(place + most * (perp(along) + bend(vertex) * along));
     }
     most
 }
