@@ -8,7 +8,7 @@ use crate::constraint::contact::ContactMemory;
 use crate::linalg::complementarity::Status;
 use crate::system::Block;
 
-/// Energy beyond what there was and what loads have done that tells of forces that are none (-): what the issue of energy stages allows.
+/// Energy beyond what there was and what loads have done that tells of forces that are none (-): as much as the tests of energy allow.
 const GAINED: f64 = 0.01;
 
 /// Gap up to which bodies count as touching, relative to the margin (-).
