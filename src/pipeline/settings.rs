@@ -126,11 +126,12 @@ impl FlexPipeline {
 
     /// Leads the surfaces of flexible bodies along a *feasible path*, in implicit steps with Lagrange multipliers.
     ///
-    /// Forces then decide where bodies go, never whether they overlap: a step goes from placement to placement, and stops where surfaces
-    /// would meet. What is not solved within the budget stays apart, and [`StepReport::quality`](super::StepReport::quality) tells of it.
-    /// Flexible bodies rest a hundredth of their shortest edge apart. The way is new: it holds on terrain and in piles where the
-    /// ordinary one lets bodies into the ground, and leaves more steps unsolved where corners meet at the nodes of soft surfaces.
-    /// Pairs of rigid bodies, pairs shown to hooks, and what overlaps when it is inserted are not led.
+    /// A step goes from placement to placement and stops where the surfaces of flexible bodies would meet, whatever the forces are. What is not
+    /// solved within the budget ends there, and [`StepReport::quality`](super::StepReport::quality) tells of it. Flexible bodies rest a
+    /// hundredth of their shortest edge apart. Pairs of rigid bodies, pairs shown to hooks, and what overlaps when it is inserted are not led.
+    ///
+    /// The way is new. It helps where flexible bodies meet polylines and height fields, into which the ordinary way lets them sink. It leaves
+    /// more steps unsolved where corners meet the nodes of soft surfaces, and in piles, where it may also gain energy.
     pub fn on_feasible_path(mut self) -> Self {
         self.parameters.feasible_path = true;
         self

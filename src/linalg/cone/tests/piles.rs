@@ -116,39 +116,6 @@ fn a_heavy_top_is_carried() {
     }
 }
 
-/// Run by hand, in release: times of piles in motion and at rest.
-#[test]
-#[ignore = "prints times"]
-fn times() {
-    for (columns, rows) in [(10, 10), (20, 50)] {
-        let mut solver = ConeSolver::new(ConeSettings {
-            tolerance: 1e-6,
-            gap_tolerance: 1e-2,
-            ..ConeSettings::default()
-        });
-        let n = pile(columns, rows, |_| 1.0, 0.0).rows.len();
-        let (mut p, mut slip) = (vec![[0.0; 2]; n], vec![0.0; n]);
-        for disturb in [0.0, 0.0, 0.1, 0.11, 0.12, 0.5, 0.55, 0.6, 1.0, 0.0, 0.0] {
-            let scene = pile(columns, rows, |_| 1.0, disturb);
-            let start = std::time::Instant::now();
-            let answer = solve_with(&mut solver, &scene, &p, &slip);
-            let o = answer.outcome;
-            println!(
-                "{:5} boxes {n} rows disturb {disturb:4} {:9.1} us factorizations {:3} analyses {} residual {:.1e} dilation {:.1e} solved {} interior {}",
-                columns * rows,
-                start.elapsed().as_secs_f64() * 1e6,
-                o.n_factorizations,
-                o.n_analyses,
-                o.residual,
-                o.dilation,
-                o.is_solved,
-                o.used_interior_point
-            );
-            (p, slip) = (answer.p, answer.slip);
-        }
-    }
-}
-
 #[test]
 fn a_pattern_that_covers_the_rows_is_kept() {
     let scene = pile(4, 4, |_| 1.0, 0.3);
