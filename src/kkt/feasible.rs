@@ -1,8 +1,10 @@
 //! The feasible path of an island: which surfaces are kept apart, where they are at the base of the path, and what of it the rows need.
 
 mod around;
+mod meetings;
 mod rows;
 
+use self::meetings::Meeting;
 use crate::constraint::contact::{ContactLaw, ContactMemory, Owner};
 use crate::math::Vec2;
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};
@@ -90,6 +92,8 @@ pub struct FeasiblePath {
     kept_nodes: Vec<f64>,
     scratch: Vec<Vec2>,
     edges: Vec<[u32; 2]>,
+    /// Vertices at which forces have slid off within the step.
+    meetings: Vec<Meeting>,
 }
 
 impl FeasiblePath {
@@ -246,6 +250,7 @@ impl FeasiblePath {
         }
         self.base.clear();
         self.nodes.clear();
+        self.meetings.clear();
         for block in blocks {
             self.base.push(match block {
                 Block::Flex(body) => {

@@ -5,12 +5,15 @@
 //! them, and moves the base that way until the time of impact. It is over when the base is where the forces lead and the laws hold
 //! there in truth. Whatever the forces are, the base is free of overlaps: what is not solved within the budget stops at the base.
 
+mod listing;
+
+use self::listing::Listing;
 use super::delassus::compliance;
-use super::island::{ActiveContact, AtBase, Island, IslandSummary, SolveSettings};
+use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
 use super::iterate::{ANGLE_TOLERANCE, ROWS_KEPT_FROM};
 use super::joint_rows::ActiveJoint;
 use super::position::{PARTING_RATE, ROUND_OFF};
-use crate::constraint::contact::{Candidate, ContactMemory, Pair, Remembered};
+use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointGrip;
 use crate::math::{Mat2, exp};
 use crate::system::{Block, Response};
@@ -57,18 +60,6 @@ pub(super) struct Stage {
 /// heavier that falls across the scene within the step.
 const FARTHEST: f64 = 1e3;
 
-/// How the near pairs of a base are listed.
-#[derive(Clone, Copy)]
-struct Listing<'a> {
-    /// Multipliers of the last step, for the first list of a step.
-    memory: Option<&'a ContactMemory>,
-    /// Whether rows that are at work stay as they are.
-    keeps_rows: bool,
-    /// Overlap beyond which a contact parts by and by (m), and the share of it that stays for this step.
-    slop: f64,
-    kept: f64,
-}
-
 impl Island {
     /// Solves the positions along the path. Where the laws cannot be made to hold, the best place that was reached by the whole of the step
     /// counts, or else the first impact.
@@ -111,6 +102,7 @@ impl Island {
         let kept = exp(-PARTING_RATE * settings.dt);
         let mut listing = Listing {
             memory: Some(memory),
+            pass: 0,
             keeps_rows: false,
             slop: 1e7 * tolerance,
             kept,
@@ -137,6 +129,7 @@ impl Island {
                 n_arrived = if arrives { n_arrived + 1 } else { 0 };
                 // Where the base has been stopped, geometry is not what the rows were measured in.
                 listing.keeps_rows = pass >= ROWS_KEPT_FROM;
+                listing.pass = pass + 1;
                 self.list_near(&listing);
                 error = self.measure(false);
             }
@@ -229,6 +222,7 @@ impl Island {
         self.path.rest(&self.blocks);
         self.list_near(&Listing {
             memory: Some(memory),
+            pass: 0,
             keeps_rows: false,
             slop: 0.0,
             kept: 0.0,
@@ -303,83 +297,6 @@ impl Island {
     /// Whether the contacts at hand are solved as a sparse problem.
     fn is_large(&self) -> bool {
         self.is_sparse(2 * self.contacts.len() + self.ties.len())
-    }
-
-    /// Lists the near pairs of the base as contacts, and keeps the signed ones. A contact that is near no more stays for one solve, which
-    /// takes its force out.
-    fn list_near(&mut self, listing: &Listing<'_>) {
-        self.path.list_near();
-        std::mem::swap(&mut self.contacts, &mut self.contacts_before);
-        self.contacts.clear();
-        self.slot_of.clear();
-        self.slot_of.resize(self.candidates.len(), u32::MAX);
-        for (slot, contact) in self.contacts_before.iter().enumerate() {
-            self.slot_of[contact.candidate] = slot as u32;
-            if contact.base.is_none() {
-                self.contacts.push(*contact);
-            }
-        }
-        for near in 0..self.path.near().len() {
-            let near = self.path.near()[near];
-            let key = self.path.key(&near);
-            let law = self.path.law(&near);
-            let kinematics = self.path.kinematics(&near);
-            let candidates = &mut self.candidates;
-            let candidate = *self.near_candidates.entry(key).or_insert_with(|| {
-                let pair = Pair::Near {
-                    blocks: self.path.blocks_of(&near),
-                };
-                candidates.push(Candidate { key, pair, law });
-                candidates.len() - 1
-            });
-            let base = AtBase {
-                gap: kinematics.gap,
-                moved: self.path.moved(&kinematics, &self.blocks),
-            };
-            let known = self.slot_of.get_mut(candidate);
-            let slot = known.map_or(u32::MAX, |slot| std::mem::replace(slot, u32::MAX));
-            let mut contact = match self.contacts_before.get(slot as usize) {
-                Some(&before) => ActiveContact {
-                    applied: before.kinematics,
-                    kinematics: if listing.keeps_rows {
-                        before.kinematics
-                    } else {
-                        kinematics
-                    },
-                    ..before
-                },
-                None => {
-                    let remembered = listing
-                        .memory
-                        .map_or(Remembered::default(), |memory| memory.recall(&key));
-                    let friction = law.friction;
-                    let mut contact = ActiveContact::new(
-                        candidate,
-                        kinematics,
-                        remembered,
-                        friction,
-                        &self.blocks,
-                    );
-                    if listing.memory.is_some() && base.gap < -listing.slop {
-                        contact.allowance = listing.kept * base.gap;
-                    }
-                    contact
-                }
-            };
-            contact.base = Some(base);
-            contact.is_lost = false;
-            self.contacts.push(contact);
-        }
-        for contact in &self.contacts_before {
-            let is_left = self.slot_of[contact.candidate] != u32::MAX;
-            if is_left && contact.base.is_some() && contact.multiplier != [0.0; 2] {
-                self.contacts.push(ActiveContact {
-                    applied: contact.kinematics,
-                    is_lost: true,
-                    ..*contact
-                });
-            }
-        }
     }
 
     /// Goes back to the rows that the forces of the iterate acted along, with the gaps of the base.

@@ -14,6 +14,7 @@ use crate::constraint::joint::{JointGrip, JointRow};
 use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
 use crate::linalg::cone::ConeError;
 use crate::math::{Vec2, cross};
+use crate::path::NearPair;
 use crate::system::{Block, FlexBlock, Grip, Point};
 use std::collections::HashMap;
 use thiserror::Error;
@@ -120,8 +121,13 @@ pub struct ActiveContact {
 pub(super) struct AtBase {
     /// Distance beyond the one at which the contact closes (m).
     pub gap: f64,
-    /// Motion of the material points against each other since the beginning of the step (m).
+    /// Motion of the material points against each other since the beginning of the step (m); of vertices that are held together, from
+    /// where they are.
     pub moved: Vec2,
+    /// The near pair.
+    pub near: NearPair,
+    /// Whether it stands for two vertices that are held together.
+    pub is_meeting: bool,
 }
 
 impl ActiveContact {

@@ -308,6 +308,10 @@ impl ActiveContact {
             // Its force is still in the iterate: far from holding, but a number.
             return f64::MAX;
         }
+        if base.is_meeting && self.status[1] != Status::Stick {
+            // Vertices that need not be held together are not.
+            return f64::MAX;
+        }
         self.law_error(gap, friction)
     }
 

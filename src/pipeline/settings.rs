@@ -54,7 +54,7 @@ impl Default for FlexParameters {
             contact_solver: Method::ActiveSet,
             restitution_threshold: 0.5,
             max_newton: 20,
-            feasible_path: false,
+            feasible_path: true,
             insists: false,
             refuses_unsolved: false,
         }

@@ -34,7 +34,7 @@ impl FeasiblePath {
     }
 
     /// Members of the point and of the target.
-    fn members_of(&self, near: &NearPair) -> [usize; 2] {
+    pub(super) fn members_of(&self, near: &NearPair) -> [usize; 2] {
         let [one, other] = self.ways[near.pair].members;
         let owns = self.surfaces.members()[one].points.contains(&near.point);
         if owns { [one, other] } else { [other, one] }

@@ -1,0 +1,168 @@
+//! The contacts of a pass: the near pairs of the base, with what they were in the pass before.
+
+use super::Island;
+use crate::constraint::contact::{
+    Candidate, ContactKey, ContactLaw, ContactMemory, Kinematics, Pair, Remembered,
+};
+use crate::kkt::island::{ActiveContact, AtBase};
+use crate::linalg::complementarity::Status;
+use crate::path::NearPair;
+
+/// How the near pairs of a base are listed.
+#[derive(Clone, Copy)]
+pub(super) struct Listing<'a> {
+    /// Multipliers of the last step, for the first list of a step.
+    pub memory: Option<&'a ContactMemory>,
+    /// Passes of the step so far.
+    pub pass: usize,
+    /// Whether rows that are at work stay as they are.
+    pub keeps_rows: bool,
+    /// Overlap beyond which a contact parts by and by (m), and the share of it that stays for this step.
+    pub slop: f64,
+    pub kept: f64,
+}
+
+/// A row of the base.
+struct Listed {
+    near: NearPair,
+    key: ContactKey,
+    law: ContactLaw,
+    kinematics: Kinematics,
+    base: AtBase,
+}
+
+impl Island {
+    /// Lists the near pairs of the base as contacts, and keeps the signed ones. A contact that is near no more stays for one solve, which
+    /// takes its force out.
+    pub(super) fn list_near(&mut self, listing: &Listing<'_>) {
+        self.part_meetings();
+        self.path.list_near();
+        std::mem::swap(&mut self.contacts, &mut self.contacts_before);
+        self.contacts.clear();
+        self.slot_of.clear();
+        self.slot_of.resize(self.candidates.len(), u32::MAX);
+        for (slot, contact) in self.contacts_before.iter().enumerate() {
+            self.slot_of[contact.candidate] = slot as u32;
+            if contact.base.is_none() {
+                self.contacts.push(*contact);
+            }
+        }
+        for near in 0..self.path.near().len() {
+            let near = self.path.near()[near];
+            if self.path.is_at_meeting(&near) {
+                continue;
+            }
+            let kinematics = self.path.kinematics(&near);
+            let listed = Listed {
+                near,
+                key: self.path.key(&near),
+                law: self.path.law(&near),
+                kinematics,
+                base: AtBase {
+                    gap: kinematics.gap,
+                    moved: self.path.moved(&kinematics, &self.blocks),
+                    near,
+                    is_meeting: false,
+                },
+            };
+            self.list(&listed, listing);
+        }
+        for index in 0..self.path.n_meetings() {
+            if let Some((near, kinematics, moved, law, key)) = self.path.held(index) {
+                let base = AtBase {
+                    gap: kinematics.gap,
+                    moved,
+                    near,
+                    is_meeting: true,
+                };
+                let listed = Listed {
+                    near,
+                    key,
+                    law,
+                    kinematics,
+                    base,
+                };
+                self.list(&listed, listing);
+            }
+        }
+        for contact in &self.contacts_before {
+            let is_left = self.slot_of[contact.candidate] != u32::MAX;
+            if let Some(base) = contact.base
+                && is_left
+                && contact.multiplier != [0.0; 2]
+            {
+                self.contacts.push(ActiveContact {
+                    applied: contact.kinematics,
+                    is_lost: true,
+                    ..*contact
+                });
+                if !base.is_meeting && !contact.is_lost && !self.path.is_at_meeting(&base.near) {
+                    let row = &contact.kinematics;
+                    self.path
+                        .note_slide(&base.near, row, contact.multiplier, listing.pass);
+                }
+            }
+        }
+    }
+
+    /// Adds a row of the base to the contacts, with what it was before.
+    fn list(&mut self, listed: &Listed, listing: &Listing<'_>) {
+        let &Listed {
+            near,
+            key,
+            law,
+            kinematics,
+            base,
+        } = listed;
+        let candidates = &mut self.candidates;
+        let candidate = *self.near_candidates.entry(key).or_insert_with(|| {
+            let pair = Pair::Near {
+                blocks: self.path.blocks_of(&near),
+            };
+            candidates.push(Candidate { key, pair, law });
+            candidates.len() - 1
+        });
+        candidates[candidate].law = law;
+        let known = self.slot_of.get_mut(candidate);
+        let slot = known.map_or(u32::MAX, |slot| std::mem::replace(slot, u32::MAX));
+        let mut contact = match self.contacts_before.get(slot as usize) {
+            Some(&before) => ActiveContact {
+                applied: before.kinematics,
+                kinematics: if listing.keeps_rows && !base.is_meeting {
+                    before.kinematics
+                } else {
+                    kinematics
+                },
+                ..before
+            },
+            None => {
+                let remembered = listing
+                    .memory
+                    .map_or(Remembered::default(), |memory| memory.recall(&key));
+                let friction = law.friction;
+                let mut contact =
+                    ActiveContact::new(candidate, kinematics, remembered, friction, &self.blocks);
+                if listing.memory.is_some() && base.gap < -listing.slop {
+                    contact.allowance = listing.kept * base.gap;
+                }
+                contact
+            }
+        };
+        contact.base = Some(base);
+        contact.is_lost = false;
+        self.contacts.push(contact);
+    }
+
+    /// Lets vertices go that need not be held together.
+    fn part_meetings(&mut self) {
+        for contact in &self.contacts {
+            if let Some(base) = contact.base
+                && base.is_meeting
+                && !contact.is_lost
+                && contact.status[1] != Status::Stick
+            {
+                self.path.let_go(&base.near);
+            }
+        }
+    }
+}
