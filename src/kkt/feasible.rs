@@ -2,9 +2,11 @@
 
 mod around;
 mod meetings;
+mod retreat;
 mod rows;
 
 use self::meetings::Meeting;
+use self::retreat::LastWay;
 use crate::constraint::contact::{ContactLaw, ContactMemory, Owner};
 use crate::math::Vec2;
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};
@@ -94,6 +96,7 @@ pub struct FeasiblePath {
     edges: Vec<[u32; 2]>,
     /// Vertices at which forces have slid off within the step.
     meetings: Vec<Meeting>,
+    last_way: LastWay,
 }
 
 impl FeasiblePath {
@@ -212,16 +215,17 @@ impl FeasiblePath {
     /// Keeps two members apart; returns whether they are to begin with. If not, nothing is added.
     pub(crate) fn add_way(&mut self, way: Way) -> bool {
         let [one, other] = way.members;
+        let Some(least) = self.search.apart(&self.surfaces, way.members, way.closing) else {
+            return false;
+        };
         let pair = MemberPair {
             one,
             other,
             name: self.pairs.len() as u64,
             closing: way.closing,
             margin: way.margin,
+            least,
         };
-        if !self.search.separated(&self.surfaces, one, other) {
-            return false;
-        }
         self.pairs.push(pair);
         self.ways.push(way);
         true
@@ -251,6 +255,7 @@ impl FeasiblePath {
         self.base.clear();
         self.nodes.clear();
         self.meetings.clear();
+        self.last_way.forget();
         for block in blocks {
             self.base.push(match block {
                 Block::Flex(body) => {
@@ -283,6 +288,15 @@ impl FeasiblePath {
             self.search
                 .time_of_impact(&self.surfaces, &self.motion, &self.pairs, &mut self.hits);
         let part = impact.t.min(1.0).min(self.turning_part(blocks));
+        self.look_back(part);
+        if std::env::var("FP").is_ok() && part < 1.0 {
+            eprintln!(
+                "   advance t {} turn {} hits {:?}",
+                impact.t,
+                self.turning_part(blocks),
+                self.hits
+            );
+        }
         self.go(part, blocks);
         part >= 1.0
     }
@@ -330,6 +344,9 @@ impl FeasiblePath {
         for near in &self.near {
             let way = &self.ways[near.pair];
             for member in way.members {
+                if self.is_round(member) {
+                    continue;
+                }
                 let block = self.carriers[member].block;
                 let turn = (angle_of(&blocks[block]) - self.base[block].angle).abs();
                 if turn > MOST_TURN {
@@ -338,6 +355,16 @@ impl FeasiblePath {
             }
         }
         part
+    }
+
+    /// Whether turning changes nothing of a member: it is the centre of its body.
+    fn is_round(&self, member: usize) -> bool {
+        let points = self.surfaces.members()[member].points.clone();
+        let is_centre = |own: &SurfacePoint| match own.point {
+            Point::Arm(arm) => arm == Vec2::zeros(),
+            Point::Node(_) => false,
+        };
+        self.points[points].iter().all(is_centre)
     }
 
     fn go(&mut self, part: f64, blocks: &[Block]) {

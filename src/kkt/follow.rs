@@ -28,6 +28,9 @@ const LARGE_TOLERANCE: f64 = 1e-3;
 /// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
 const PASSES_PER_ITERATION: usize = 2;
 
+/// Passes after which rows are measured anew.
+const ROUND: usize = 10;
+
 /// Share of the margin by which true gaps may miss what the law asks for (-).
 const CLOSE_ENOUGH: f64 = 0.05;
 
@@ -75,7 +78,11 @@ impl Island {
         self.impact.is_known = false;
         self.arrival.is_known = false;
         self.left.clear();
-        if self.try_passes(settings, memory, tolerance, summary) {
+        let ok = self.try_passes(settings, memory, tolerance, summary);
+        if std::env::var("FP").is_ok() {
+            eprintln!("STEP solved {ok} arrival {}", self.arrival.is_known);
+        }
+        if ok {
             return Passed::Solved;
         }
         if self.arrival.is_known {
@@ -103,6 +110,7 @@ impl Island {
         let mut listing = Listing {
             memory: Some(memory),
             pass: 0,
+            is_again: false,
             keeps_rows: false,
             slop: 1e7 * tolerance,
             kept,
@@ -110,7 +118,8 @@ impl Island {
         self.list_near(&listing);
         listing.memory = None;
         let mut turned = self.correct();
-        let (mut n_stopped, mut n_arrived) = (0, 0);
+        let (mut n_stopped, mut n_arrived, mut n_stops) = (0, 0, 0);
+        let mut last_error = f64::INFINITY;
         for pass in 0..PASSES_PER_ITERATION * settings.max_newton {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
@@ -126,22 +135,66 @@ impl Island {
             if !misleads {
                 arrives = self.path.advance(&self.blocks);
                 n_stopped += usize::from(!arrives);
-                n_arrived = if arrives { n_arrived + 1 } else { 0 };
+                n_arrived += usize::from(arrives);
+                n_stops = if arrives { 0 } else { n_stops + 1 };
                 // Where the base has been stopped, geometry is not what the rows were measured in.
-                listing.keeps_rows = pass >= ROWS_KEPT_FROM;
+                listing.keeps_rows = false;
                 listing.pass = pass + 1;
                 self.list_near(&listing);
                 error = self.measure(false);
+                last_error = error;
             }
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
             let enough = self.enough(is_eased, tolerance);
             let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
+            if std::env::var("FP").is_ok() {
+                eprintln!(
+                    "  pass {pass} n {} arrives {arrives} misleads {misleads} err {error:.2e} enough {enough:.2e} turned {turned:.2e} more {has_more} large {}",
+                    self.contacts.len(),
+                    self.is_large()
+                );
+                for c in &self.contacts {
+                    let e = match c.base {
+                        Some(b) => format!(
+                            "{:?} {} m {}",
+                            b.near.point,
+                            match b.near.target {
+                                crate::path::Target::Edge(e) => format!("E{e} xi {:.3}", b.near.xi),
+                                crate::path::Target::Vertex(v) => format!("V{v}"),
+                            },
+                            b.is_meeting
+                        ),
+                        None => format!("signed {}", c.candidate),
+                    };
+                    if c.multiplier[0] != 0.0 || c.gap() < 1e-5 {
+                        eprintln!(
+                            "      {e} lost {} p {:.3e} {:.3e} gap {:.3e} slip {:.3e} {:?} n {:.4} {:.4} hard {}",
+                            c.is_lost,
+                            c.multiplier[0],
+                            c.multiplier[1],
+                            c.gap(),
+                            c.slip,
+                            c.status,
+                            c.kinematics.normal.x,
+                            c.kinematics.normal.y,
+                            c.is_hard
+                        );
+                    }
+                }
+            }
             if arrives && is_close && !has_more {
                 self.keep_applied_rows();
                 return true;
             }
             if arrives && !has_more && turned <= CLOSE_ENOUGH {
                 self.keep_arrival(error);
+            }
+            if !misleads && self.path.retreat(&self.blocks) {
+                self.list_near(&Listing {
+                    is_again: true,
+                    ..listing
+                });
+                self.measure(false);
             }
             if !(error + turned).is_finite() || n_stopped > MOST_STOPS {
                 return false;
@@ -223,6 +276,7 @@ impl Island {
         self.list_near(&Listing {
             memory: Some(memory),
             pass: 0,
+            is_again: false,
             keeps_rows: false,
             slop: 0.0,
             kept: 0.0,

@@ -83,12 +83,12 @@ impl Path {
         certificate
     }
 
-    /// Whether two members are apart: they share no point and neither lies inside the other.
-    pub fn separated(&mut self, surfaces: &Surfaces, one: usize, other: usize) -> bool {
-        self.search.refresh(Extent::of(surfaces));
-        check(&mut self.search, surfaces, [one, other], 0.0)
-            .overlap()
-            .is_none()
+    /// The distance of two members that are apart, which share no point and neither of which lies inside the other; infinite if it
+    /// is more than `reach` (m).
+    pub fn apart(&mut self, surfaces: &Surfaces, members: [usize; 2], reach: f64) -> Option<f64> {
+        self.search.refresh_members(Extent::of(surfaces), members);
+        let found = check(&mut self.search, surfaces, members, reach);
+        found.overlap().is_none().then_some(found.distance)
     }
 }
 

@@ -48,6 +48,9 @@ const KEPT_SHARE: f64 = 0.1;
 /// The most that one motion leaves over the guard, as a share of the margin: less than [`GUARD_DEPTH`], so that a first
 /// approach from afar reaches the distance at which contact closes and is not cut before.
 const KEPT_MOST: f64 = 0.3;
+/// Share of the distance before all motions that is kept where that was below the guard: what slides along at that distance needs some
+/// room, and parts by more in every step that is solved.
+const KEPT_OF_LEAST: f64 = 0.99;
 /// Relative approach that counts as none where a pair is at its guard: above the rounding of a distance of 1e-6 of the
 /// coordinates (2e-10), and so small that a thousand steps spend a thousandth.
 const NO_APPROACH: f64 = 1e-6;
@@ -66,13 +69,15 @@ pub struct MemberPair {
     pub closing: f64,
     /// The part of `closing` that is there to be used up (m), `0 < 0.8 margin < closing`.
     pub margin: f64,
+    /// Distance that they have had before all motions (m).
+    pub least: f64,
 }
 
 impl MemberPair {
-    /// The distance that every placement keeps (m).
+    /// The distance that every placement keeps (m): nearly the one they began with, where that was less than the path would ask for.
     #[inline]
     pub fn guard(&self) -> f64 {
-        self.closing - GUARD_DEPTH * self.margin
+        (self.closing - GUARD_DEPTH * self.margin).min(KEPT_OF_LEAST * self.least)
     }
 
     /// Where a motion stops that starts at some distance (m), below that distance. At the guard nothing may approach: a

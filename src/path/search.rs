@@ -121,6 +121,18 @@ impl Search {
         }
     }
 
+    /// Makes the boxes of two members; those of others are not to be asked.
+    pub fn refresh_members(&mut self, extent: Extent, members: [usize; 2]) {
+        self.boxes
+            .resize(extent.surfaces.n_moving_boxes, Bounds::EMPTY);
+        for index in members {
+            let member = &extent.surfaces.members()[index];
+            if member.kind != MotionKind::Still {
+                extent.bound_member(index, &mut self.boxes[member.boxes.clone()]);
+            }
+        }
+    }
+
     fn boxes<'a>(&'a self, surfaces: &'a Surfaces, member: usize) -> &'a [Bounds] {
         let member = &surfaces.members()[member];
         let all = if member.kind == MotionKind::Still {

@@ -177,6 +177,11 @@ impl Surfaces {
         &mut self.points[member.points.clone()]
     }
 
+    /// Puts all points, still ones included, where they were.
+    pub fn set_points(&mut self, points: &[Vec2]) {
+        self.points.copy_from_slice(points);
+    }
+
     /// Start and end of all edges, as points.
     pub fn edges(&self) -> &[[u32; 2]] {
         &self.edges

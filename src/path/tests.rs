@@ -28,6 +28,7 @@ fn crowd(random: &mut Random) -> (Surfaces, Vec<MemberPair>) {
                 name,
                 closing: 0.01,
                 margin: 0.01,
+                least: f64::INFINITY,
             });
         }
     }

@@ -65,8 +65,7 @@ impl FeasiblePath {
             .find(|one| one.way == near.pair && one.vertices == vertices);
         match known {
             Some(meeting) => {
-                meeting.slide(normal, force, pass);
-                meeting.slide(other, turned, pass);
+                meeting.slide([normal, other], [force, turned], pass);
             }
             None => meetings.push(Meeting {
                 way: near.pair,
@@ -193,23 +192,25 @@ impl FeasiblePath {
 }
 
 impl Meeting {
-    fn slide(&mut self, normal: Vec2, force: Vec2, pass: usize) {
+    /// Notes one more slide, with normal and force on this side and on the other side of the vertex that is slid over.
+    fn slide(&mut self, normals: [Vec2; 2], forces: [Vec2; 2], pass: usize) {
         self.slides += usize::from(pass > self.last);
         self.last = pass;
-        for (pair, new) in [(&mut self.normals, normal), (&mut self.forces, force)] {
-            let [a, b] = *pair;
-            let spread = a.dot(&b);
-            // The two that are farthest from each other.
-            if a.dot(&new) < spread && a.dot(&new) <= b.dot(&new) {
-                pair[1] = new;
-            } else if b.dot(&new) < spread {
-                pair[0] = new;
-            }
-        }
+        // The side before, unless it is the same.
+        let is_same = (self.normals[0] - normals[0]).norm() <= SAME;
+        let before = if is_same {
+            (normals[1], forces[1])
+        } else {
+            (self.normals[0], self.forces[0])
+        };
+        (self.normals, self.forces) = ([normals[0], before.0], [forces[0], before.1]);
         let is_sharp = |[a, b]: [Vec2; 2]| a.dot(&b) <= LEAST_COSINE;
         self.is_held = self.slides >= SLIDES && !is_sharp(self.normals) && !is_sharp(self.forces);
     }
 }
+
+/// Turn below which two normals are the same side (rad).
+const SAME: f64 = 1e-6;
 
 /// Cosine of the widest angle between two forces whose mean has a direction to speak of.
 const LEAST_COSINE: f64 = -0.9;

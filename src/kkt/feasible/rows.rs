@@ -136,15 +136,24 @@ impl FeasiblePath {
         }
     }
 
-    /// Motion of the material at a row from the beginning of the step to the base, the point's against the target's (m).
+    /// Motion of the material at a row from the beginning of the step to the base, the point's against the target's (m); linear in the
+    /// dofs of rigid blocks, so that what rolls without slip does so by any angle.
     pub(in crate::kkt) fn moved(&self, row: &Kinematics, blocks: &[Block]) -> Vec2 {
         let grips = row.attachments().iter();
         grips
-            .map(|a| {
-                let start = blocks[a.block].start_position(a.grip.point);
-                a.weight * (self.at_base(a.block, a.grip.point) - start)
-            })
+            .map(|a| a.weight * self.moved_of(a.block, a.grip, &blocks[a.block]))
             .sum()
+    }
+
+    fn moved_of(&self, block: usize, grip: Grip, own: &Block) -> Vec2 {
+        let base = &self.base[block];
+        match own {
+            Block::Flex(_) => self.at_base(block, grip.point) - own.start_position(grip.point),
+            Block::Rigid(body) => {
+                let start = body.start();
+                base.centre - start.centre + (base.angle - start.angle) * perp(grip.lever)
+            }
+        }
     }
 
     /// Motion at a row from the base to the blocks' iterate, linear in the dofs of rigid blocks (m).

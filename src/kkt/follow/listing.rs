@@ -15,6 +15,8 @@ pub(super) struct Listing<'a> {
     pub memory: Option<&'a ContactMemory>,
     /// Passes of the step so far.
     pub pass: usize,
+    /// Whether no forces have been found since the last list.
+    pub is_again: bool,
     /// Whether rows that are at work stay as they are.
     pub keeps_rows: bool,
     /// Overlap beyond which a contact parts by and by (m), and the share of it that stays for this step.
@@ -91,12 +93,21 @@ impl Island {
                 && is_left
                 && contact.multiplier != [0.0; 2]
             {
+                let applied = if listing.is_again {
+                    contact.applied
+                } else {
+                    contact.kinematics
+                };
                 self.contacts.push(ActiveContact {
-                    applied: contact.kinematics,
+                    applied,
                     is_lost: true,
                     ..*contact
                 });
-                if !base.is_meeting && !contact.is_lost && !self.path.is_at_meeting(&base.near) {
+                if !listing.is_again
+                    && !base.is_meeting
+                    && !contact.is_lost
+                    && !self.path.is_at_meeting(&base.near)
+                {
                     let row = &contact.kinematics;
                     self.path
                         .note_slide(&base.near, row, contact.multiplier, listing.pass);
@@ -127,7 +138,11 @@ impl Island {
         let slot = known.map_or(u32::MAX, |slot| std::mem::replace(slot, u32::MAX));
         let mut contact = match self.contacts_before.get(slot as usize) {
             Some(&before) => ActiveContact {
-                applied: before.kinematics,
+                applied: if listing.is_again {
+                    before.applied
+                } else {
+                    before.kinematics
+                },
                 kinematics: if listing.keeps_rows && !base.is_meeting {
                     before.kinematics
                 } else {

@@ -18,10 +18,14 @@ fn certify(surfaces: &Surfaces) -> Certificate {
         name: 0,
         closing: 0.1,
         margin: 0.1,
+        least: f64::INFINITY,
     };
     let mut path = Path::new();
     let certificate = path.certificate(surfaces, &[pair]);
-    assert_eq!(certificate.is_valid(), path.separated(surfaces, 0, 1));
+    assert_eq!(
+        certificate.is_valid(),
+        path.apart(surfaces, [0, 1], 0.0).is_some()
+    );
     certificate
 }
 
@@ -163,6 +167,7 @@ fn a_member_against_itself_may_cross_but_not_touch_its_neighbours() {
         name: 0,
         closing: 0.01,
         margin: 0.01,
+        least: f64::INFINITY,
     };
     let mut bow = square([0.0, 0.0], 1.0);
     let mut surfaces = Surfaces::new();

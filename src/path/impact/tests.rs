@@ -28,6 +28,7 @@ impl Scene {
                 name: 0,
                 closing: 0.01,
                 margin: 0.01,
+                least: f64::INFINITY,
             },
         }
     }
@@ -42,7 +43,7 @@ impl Scene {
             let centres = [random.point(1.5), random.point(1.5)];
             let members = [0, 1]
                 .map(|side: usize| random.member(&mut surfaces, kinds[side], centres[side], 1.0));
-            if !Path::new().separated(&surfaces, 0, 1) {
+            if Path::new().apart(&surfaces, [0, 1], 0.0).is_none() {
                 continue;
             }
             let size = power_of_ten(random.within(1.5));
@@ -418,6 +419,7 @@ fn every_pair_that_is_stopped_tells_its_own_time() {
         name: 0,
         closing: 0.01,
         margin: 0.01,
+        least: f64::INFINITY,
     });
     let mut hits = Vec::new();
     let toi = Path::new().time_of_impact(&surfaces, &motion, &pairs, &mut hits);
