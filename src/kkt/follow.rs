@@ -145,7 +145,12 @@ impl Island {
                 last_error = error;
             }
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
-            let enough = self.enough(is_eased, tolerance);
+            // Forces of the last step that are kept must be right, or what rests creeps.
+            let enough = if is_guess {
+                tolerance
+            } else {
+                self.enough(is_eased, tolerance)
+            };
             let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
             if std::env::var("FP").is_ok() {
                 eprintln!(

@@ -55,7 +55,8 @@ impl Shape {
 /// The sparse problem of an island, with its buffers.
 #[derive(Debug, Default)]
 pub(super) struct Sparse {
-    solver: ConeSolver,
+    /// One for each response: what rests keeps its factors.
+    solvers: [ConeSolver; 4],
     matrix: Option<BlockMatrix>,
     shapes: Vec<Shape>,
     /// First node of every block.
@@ -287,7 +288,7 @@ impl Island {
         asked: Asked,
     ) -> Result<ConeOutcome, KktError> {
         let Sparse {
-            solver,
+            solvers,
             matrix: Some(matrix),
             rows,
             entries,
@@ -301,6 +302,12 @@ impl Island {
         else {
             return Ok(ConeOutcome::default());
         };
+        let solver = &mut solvers[match asked.of {
+            Response::Position => 0,
+            Response::Velocity => 1,
+            Response::Acceleration => 2,
+            Response::ByMass => 3,
+        }];
         // The dilation of what slides may leave a fifth of what a pass accepts.
         solver.settings.gap_tolerance = 2e-4 * self.path.least_margin().min(1e-3) / asked.unit;
         solver.settings.slip_tolerance = 1e-4;

@@ -27,6 +27,9 @@ const MODERATE: f64 = 1e4;
 /// Proximal steps without a residual lower by a tenth after which there is no use in more.
 const PATIENCE: usize = 6;
 
+/// Share of the tolerance to which what is solved is refined, as far as the factor at hand goes.
+const FINE: f64 = 1e-4;
+
 /// Imbalance, relative to forces, that rounding may keep up: stiff penalties times the digits of a number.
 const ROUNDING: f64 = 1e-7;
 
@@ -110,7 +113,10 @@ impl Proximal {
             &mut state.status,
         );
         if measure.residual <= settings.tolerance && !measure.is_dilated {
-            return (Ending::Solved, measure);
+            // a factor at hand refines it: what rests would creep by the tolerance of every step
+            self.saved.clone_from(&state.forces);
+            self.saved_slip.clone_from(&state.slip);
+            refined = Some(measure);
         }
         self.status.clone_from(&state.status);
         self.slips.forget();
@@ -149,12 +155,16 @@ impl Proximal {
                 self.saved_slip.clone_from(&state.slip);
             }
             let is_solved = measure.residual <= settings.tolerance && !measure.is_dilated;
-            if is_solved && measure.relative_dilation <= settings.tolerance {
+            let is_fine = measure.residual <= FINE * settings.tolerance
+                || refined.is_some_and(|best| measure.residual > 0.5 * best.residual);
+            if is_solved && measure.relative_dilation <= settings.tolerance && is_fine {
                 return (Ending::Solved, measure);
             }
-            if is_solved
-                && refined.is_none_or(|best| measure.relative_dilation < best.relative_dilation)
-            {
+            let is_better = |best: Measure| {
+                measure.relative_dilation < best.relative_dilation
+                    || measure.relative_dilation <= settings.tolerance
+            };
+            if is_solved && refined.is_none_or(is_better) {
                 self.saved.clone_from(&state.forces);
                 self.saved_slip.clone_from(&state.slip);
                 refined = Some(measure);

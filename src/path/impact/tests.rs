@@ -79,6 +79,7 @@ impl Scene {
                 name: 0,
                 closing,
                 margin,
+                least: f64::INFINITY,
             };
             return Self {
                 surfaces,
