@@ -99,7 +99,8 @@ impl Proximal {
         levels: &[f64],
         n_allowed: usize,
     ) -> (Ending, Measure) {
-        let limit = system.n_factorizations + n_allowed;
+        let start = system.n_factorizations;
+        let limit = start + n_allowed;
         let (mut level, mut is_lowered) = (0, false);
         self.penalize(reduced, levels[0]);
         let mut refined: Option<Measure> = None;
@@ -113,6 +114,9 @@ impl Proximal {
             &mut state.status,
         );
         if measure.residual <= settings.tolerance && !measure.is_dilated {
+            if measure.residual <= FINE * settings.tolerance {
+                return (Ending::Solved, measure);
+            }
             // a factor at hand refines it: what rests would creep by the tolerance of every step
             self.saved.clone_from(&state.forces);
             self.saved_slip.clone_from(&state.slip);
@@ -126,8 +130,11 @@ impl Proximal {
         };
         for _ in 0..MOST_STEPS {
             let n_before = system.n_factorizations;
-            // what is solved is only refined as far as the factor at hand goes
-            let most = if refined.is_some() { n_before } else { limit };
+            // what is solved is only refined as far as the factor at hand, or a first one, goes
+            let most = match &refined {
+                Some(_) => (start + 1).min(limit).max(n_before),
+                None => limit,
+            };
             self.predict(problem, reduced, system, state, most);
             if !self.newton(problem, reduced, system, state, settings.tolerance, most) {
                 if completed.residual.is_finite() {
