@@ -44,6 +44,14 @@ impl Bounds {
         }
     }
 
+    pub(super) fn middle(&self) -> Vec2 {
+        0.5 * (self.low + self.high)
+    }
+
+    pub(super) fn size(&self) -> f64 {
+        (self.high - self.low).norm()
+    }
+
     pub(super) fn intersects(&self, other: &Self) -> bool {
         self.low.x <= other.high.x
             && other.low.x <= self.high.x

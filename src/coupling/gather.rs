@@ -8,6 +8,7 @@ use super::outlines::OutlineCache;
 use super::reading::{GatherError, is_held_load, is_held_motion, load_of};
 use super::references::References;
 use super::rigid_pairs::Agitation;
+use super::rigid_ways::RigidCores;
 use super::sets::RapierSets;
 use super::shapes::ShapeCache;
 use super::ways::Draft;
@@ -39,6 +40,7 @@ pub(crate) struct Gatherer {
     pub(super) shapes: ShapeCache,
     pub(super) outlines: OutlineCache,
     pub(super) draft: Draft,
+    pub(super) cores: RigidCores,
     pub(super) references: References,
     pub(super) placed: HashMap<ColliderHandle, PlacedCollider>,
     block_of_body: HashMap<RigidBodyHandle, usize>,
@@ -132,6 +134,7 @@ impl Gatherer {
         let component = settings.component;
         island.clear();
         self.placed.clear();
+        self.cores.clear();
         self.block_of_body.clear();
         self.flex_blocks.clear();
         self.bodies.clear();

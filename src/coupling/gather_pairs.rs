@@ -8,6 +8,7 @@ use super::gather::{GatherSettings, Gatherer, PlacedCollider};
 use super::hooks::{HookBook, HookedPair};
 use super::reading::{GatherError, at_rest, law_of, offset_of, owner_of};
 use super::rigid_pairs::RigidPair;
+use super::rigid_ways::RigidWay;
 use super::sets::RapierSets;
 use super::shapes::pose_of;
 use super::ways::{self, RigidSurface};
@@ -15,7 +16,7 @@ use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
 use crate::kkt::Island;
 use crate::rapier::prelude::*;
-use crate::system::RigidBlock;
+use crate::system::{Block, RigidBlock};
 
 impl Gatherer {
     pub(super) fn add_pair(
@@ -110,6 +111,13 @@ impl Gatherer {
                     other: owner_of(other),
                 };
                 let law = law_of(sets.colliders, one, other)?;
+                let placed = [&first, &second];
+                if settings.uses_path
+                    && !HookBook::asks([one, other], sets)
+                    && self.lead_rigid([one, other], placed, (names, law, settings), sets, island)
+                {
+                    return Ok(());
+                }
                 let blocks = [first.block, second.block];
                 let parts = [first.parts, second.parts];
                 let first = island.candidates.len();
@@ -148,6 +156,48 @@ impl Gatherer {
             offset: placed.offset,
         };
         ways::flex_rigid(island, flex, &surface, names, law, reach, &mut self.draft)
+    }
+
+    /// Leads two rigid colliders along a path that keeps them apart; returns whether they are.
+    fn lead_rigid(
+        &mut self,
+        handles: [ColliderHandle; 2],
+        placed: [&PlacedCollider; 2],
+        (names, law, settings): (Names, ContactLaw, &GatherSettings),
+        sets: &RapierSets<'_>,
+        island: &mut Island,
+    ) -> bool {
+        let [Block::Rigid(one), Block::Rigid(other)] =
+            placed.map(|collider| &island.blocks[collider.block])
+        else {
+            return false;
+        };
+        let (reach, turn) = self
+            .agitation
+            .reach([one, other], settings.prediction + law.skin);
+        for handle in handles {
+            if let Some(collider) = sets.colliders.get(handle) {
+                self.outlines.outline(handle, collider);
+            }
+        }
+        let [Some(first), Some(second)] = handles.map(|handle| self.outlines.known(handle)) else {
+            return false;
+        };
+        let outlines = [first, second];
+        let surfaces = [0, 1].map(|side| RigidSurface {
+            block: placed[side].block,
+            outline: outlines[side],
+            offset: placed[side].offset,
+        });
+        let way = RigidWay {
+            handles,
+            surfaces,
+            names,
+            law,
+            reach,
+            turn,
+        };
+        self.cores.lead(&way, island)
     }
 
     /// Shows the candidates from the `first` on to the user's hook.

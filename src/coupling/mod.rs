@@ -33,6 +33,7 @@ mod reading;
 mod record;
 mod references;
 mod rigid_pairs;
+mod rigid_ways;
 mod sensor_events;
 mod sets;
 mod shapes;

@@ -86,6 +86,11 @@ impl OutlineCache {
         &entry.1
     }
 
+    /// The outline of a collider that has been met, if it has.
+    pub fn known(&self, handle: ColliderHandle) -> Option<&Outline> {
+        self.entries.get(&handle).map(|(_, outline)| outline)
+    }
+
     /// Drops outlines of colliders that no longer exist.
     pub fn retain(&mut self, colliders: &ColliderSet) {
         self.entries.retain(|handle, _| colliders.contains(*handle));

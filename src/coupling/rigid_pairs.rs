@@ -62,6 +62,13 @@ impl Agitation {
         };
         Self { shift, turn }
     }
+
+    /// How far around their swept boxes two bodies may get within the step (m), and by what they may turn (rad).
+    pub fn reach(&self, [one, other]: [&RigidBlock; 2], prediction: f64) -> (f64, f64) {
+        let turn = self.turn + (turn_of(one) - turn_of(other)).abs();
+        let moved = self.shift + relative_motion([one, other]);
+        (prediction + THROW * moved, THROW * turn)
+    }
 }
 
 /// Two blocks, or two parts of theirs, and what is the same for all their parts.

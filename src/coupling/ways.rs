@@ -16,6 +16,13 @@ const OFFSET: f64 = 1e-2;
 /// Spacings of single precision, at the coordinates of the body, that an offset is never below: rapier holds poses in it.
 const SPACINGS: f64 = 8.0;
 
+/// Reach of rows beyond the distance at which contact closes, relative to the margin: a tenth of an edge, as the offset is a hundredth.
+/// Between half of it and twice only the number of passes changes.
+const REACH: f64 = 10.0;
+
+/// Reach of rows between rigid bodies, relative to the thinner one's width.
+pub(super) const REACH_OF_WIDTH: f64 = 0.1;
+
 /// Half the length of a half-space's boundary, relative to the body that it meets.
 const FAR: f64 = 1e3;
 
@@ -63,6 +70,7 @@ pub(super) fn flex_rigid(
             surface.block,
             &island.blocks,
             name,
+            draft.round,
             &draft.points,
             &draft.edges,
         );
@@ -73,6 +81,7 @@ pub(super) fn flex_rigid(
             law,
             closing: closing.distance + law.skin,
             margin: closing.margin,
+            reach: REACH * closing.margin,
         };
         if !island.path.add_way(way) {
             island.path.truncate(first);
@@ -124,6 +133,7 @@ pub(super) fn flex_flex(
         law,
         closing: offset + law.skin,
         margin: offset,
+        reach: REACH * offset,
     };
     if island.path.add_way(way) {
         Ok(())
@@ -144,6 +154,8 @@ pub(super) struct Draft {
     /// Names, places, and ways to the sharp corners that they stand for.
     points: Vec<(u32, Vec2, Vec2)>,
     edges: Vec<[u32; 2]>,
+    /// Radius by which a core with sharp corners is rounded (m).
+    round: f64,
     sharp: Vec<Vec2>,
     inset: Vec<Vec2>,
     place: Vec<u32>,
@@ -162,6 +174,7 @@ impl Draft {
     ) -> Option<Closing> {
         self.points.clear();
         self.edges.clear();
+        self.round = 0.0;
         let Block::Rigid(motion) = &island.blocks[surface.block] else {
             return None;
         };
@@ -211,6 +224,7 @@ impl Draft {
                     }
                 } else {
                     let by = draw_inwards(&self.sharp, offset.min(0.125 * width), &mut self.inset);
+                    self.round = by;
                     Closing {
                         distance: by,
                         margin: by,

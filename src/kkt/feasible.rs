@@ -12,13 +12,6 @@ use crate::math::Vec2;
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};
 use crate::system::{Block, Point, RigidMotion};
 
-/// Reach of the rows beyond the distance at which contact closes, relative to the margin: a tenth of an edge, as a margin is a hundredth.
-/// Between half of it and twice only the number of passes changes.
-const REACH: f64 = 10.0;
-
-/// How much farther than a face a sharp corner may reach, relative to the margin: that of a right angle does.
-const MOST_CORNER: f64 = std::f64::consts::SQRT_2 - 1.0;
-
 /// Turn of a member with near pairs within a pass (rad): rows are straight where arcs are not.
 const MOST_TURN: f64 = 0.5;
 
@@ -35,6 +28,8 @@ pub(crate) struct Way {
     pub closing: f64,
     /// The part of it that the path may use up (m).
     pub margin: f64,
+    /// Reach of the rows beyond that distance (m).
+    pub reach: f64,
 }
 
 /// A member: its block, and whether that is flexible.
@@ -53,6 +48,8 @@ struct SurfacePoint {
     name: u32,
     /// From a core's vertex to the sharp corner that it stands for, in body axes (m).
     corner: Vec2,
+    /// Radius by which the core is rounded there (m).
+    round: f64,
 }
 
 /// Where a block is at the base; of a flexible one its frame, and where its nodes begin among those of all.
@@ -157,6 +154,7 @@ impl FeasiblePath {
                 point: Point::Node(node),
                 name: node as u32,
                 corner: Vec2::zeros(),
+                round: 0.0,
             });
         }
         // Segment k starts at boundary node k.
@@ -177,6 +175,7 @@ impl FeasiblePath {
     /// Adds a piece of a rigid block.
     ///
     /// - `name`: what its points' names are counted from.
+    /// - `round`: radius by which its core is rounded (m).
     /// - `points`: names, arms from the centre of mass, and ways to the sharp corners that they stand for, in body axes (m).
     /// - `edges`: their ends among the points.
     pub(crate) fn rigid_member(
@@ -184,6 +183,7 @@ impl FeasiblePath {
         block: usize,
         blocks: &[Block],
         name: u32,
+        round: f64,
         points: &[(u32, Vec2, Vec2)],
         edges: &[[u32; 2]],
     ) -> usize {
@@ -200,6 +200,7 @@ impl FeasiblePath {
                     point: Point::Arm(arm),
                     name: name + own,
                     corner,
+                    round,
                 });
             }
         }

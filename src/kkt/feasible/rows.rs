@@ -1,6 +1,6 @@
 //! What the rows of contact need of the path: the near pairs at the base, their names, levers and motions.
 
-use super::{Carrier, FeasiblePath, MOST_CORNER, REACH, Way};
+use super::{Carrier, FeasiblePath};
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
 use crate::math::{Vec2, node_vec, perp, rotation};
 use crate::path::{NearPair, Target};
@@ -12,14 +12,13 @@ const PATH_NAMES: u32 = 1 << 31;
 impl FeasiblePath {
     /// Lists what is near at the base.
     pub(in crate::kkt) fn list_near(&mut self) {
-        let reach = |way: &Way| REACH * way.margin;
-        let farthest = self.ways.iter().map(reach).fold(0.0, f64::max);
+        let farthest = self.ways.iter().map(|way| way.reach).fold(0.0, f64::max);
         self.search
             .near(&self.surfaces, &self.pairs, farthest, &mut self.near);
         let ways = &self.ways;
         self.near.retain(|near| {
             let way = &ways[near.pair];
-            near.distance <= way.closing + reach(way)
+            near.distance <= way.closing + way.reach
         });
     }
 
@@ -79,7 +78,7 @@ impl FeasiblePath {
         let position = if own.is_flex {
             point
         } else {
-            point - near.distance * near.normal
+            point - near.distance * near.normal + self.aside(near)
         };
         let lever = |carrier: Carrier| position - self.base[carrier.block].centre;
         let held = |carrier: Carrier, at: usize| {
@@ -96,7 +95,10 @@ impl FeasiblePath {
         match near.target {
             Target::Edge(edge) if met.is_flex => {
                 let [from, to] = self.surfaces.edges()[edge].map(|end| end as usize);
-                row(&[first, target(from, near.xi - 1.0), target(to, -near.xi)])
+                let along = self.surfaces.points()[to] - self.surfaces.points()[from];
+                let aside = (position - point).dot(&along) / along.norm_squared();
+                let xi = (near.xi + aside).clamp(0.0, 1.0);
+                row(&[first, target(from, xi - 1.0), target(to, -xi)])
             }
             Target::Edge(edge) => {
                 let [from, _] = self.surfaces.edges()[edge];
@@ -106,24 +108,38 @@ impl FeasiblePath {
         }
     }
 
-    /// How much farther than its faces a sharp corner reaches along the normal (m), where a core's vertex stands for one.
+    /// How much farther than their faces sharp corners reach along the normal (m), where the vertices of cores stand for them.
     fn corner(&self, near: &NearPair) -> f64 {
+        let of_target = match near.target {
+            Target::Edge(_) => 0.0,
+            Target::Vertex(vertex) => self.sharpness(vertex, 1, near),
+        };
+        self.sharpness(near.point, 0, near) + of_target
+    }
+
+    /// From where the core of the point is nearest, along the surface to the sharp corner that touches (m).
+    fn aside(&self, near: &NearPair) -> Vec2 {
         let [own, met] = self
             .members_of(near)
             .map(|member| self.carriers[member].block);
-        let reach = |at: usize, block: usize, along: Vec2| {
-            let turn = rotation(self.base[block].angle);
-            along.dot(&(turn * self.points[at].corner))
+        let corner = |vertex: usize, block: usize| {
+            let corner = rotation(self.base[block].angle) * self.points[vertex].corner;
+            corner - corner.dot(&near.normal) * near.normal
         };
-        let of_point = reach(near.point, own, -near.normal);
-        let of_target = match near.target {
-            Target::Edge(_) => 0.0,
-            Target::Vertex(vertex) => reach(vertex, met, near.normal),
-        };
-        let margin = self.ways[near.pair].margin;
-        // The tips of acute corners stand out farther than the path could make up for.
-        let most = MOST_CORNER * margin;
-        (of_point.max(of_target) - margin).clamp(0.0, most)
+        match near.target {
+            Target::Vertex(vertex) if self.points[near.point].round == 0.0 => corner(vertex, met),
+            _ => corner(near.point, own),
+        }
+    }
+
+    /// How much farther than its faces the corner of a vertex reaches towards the other member (m), the point's (0) or the target's (1);
+    /// negative where another corner of it reaches farther.
+    fn sharpness(&self, vertex: usize, side: usize, near: &NearPair) -> f64 {
+        let block = self.carriers[self.members_of(near)[side]].block;
+        let own = &self.points[vertex];
+        let towards = if side == 0 { -near.normal } else { near.normal };
+        let corner = rotation(self.base[block].angle) * own.corner;
+        towards.dot(&corner) - own.round
     }
 
     /// Position of a point of a block at the base (m).
