@@ -224,6 +224,8 @@ pub struct Island {
     pub(super) near_candidates: HashMap<ContactKey, usize>,
     pub(super) contacts_before: Vec<ActiveContact>,
     pub(super) slot_of: Vec<u32>,
+    /// Contacts that are new in the last list of near pairs.
+    pub(super) fresh: Vec<usize>,
     /// The first impact of a step, and the best place that the whole of the step has reached.
     pub(super) impact: Stage,
     pub(super) arrival: Stage,

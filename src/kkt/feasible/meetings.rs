@@ -7,7 +7,7 @@
 
 use super::{FeasiblePath, Way};
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
-use crate::math::{Vec2, perp};
+use crate::math::Vec2;
 use crate::path::{NearPair, Target};
 
 /// Passes within a step that have a force slide off at a vertex before its two sides are held together there.
@@ -33,64 +33,78 @@ pub(super) struct Meeting {
 }
 
 impl FeasiblePath {
-    /// Notes that a contact with this row and force has slid off at the base, in a pass of the step.
+    /// Notes that the force of a contact has slid from one near pair to another, with the rows of both, in a pass of the step.
     pub(in crate::kkt) fn note_slide(
         &mut self,
-        near: &NearPair,
-        row: &Kinematics,
+        [from, to]: [&NearPair; 2],
+        rows: [&Kinematics; 2],
         multiplier: [f64; 2],
         pass: usize,
     ) {
-        let Some(met) = self.vertex_beyond(near) else {
+        let Some([point, met]) = self.slid_over(from) else {
             return;
         };
-        let is_first = self.members_of(near)[0] == self.ways[near.pair].members[0];
+        let is_first = self.members_of(from)[0] == self.ways[from.pair].members[0];
         let (vertices, sign) = if is_first {
-            ([near.point, met], 1.0)
+            ([point, met], 1.0)
         } else {
-            ([met, near.point], -1.0)
+            ([met, point], -1.0)
         };
-        let normal = sign * row.normal;
-        let force = multiplier[0] * normal + multiplier[1] * sign * row.tangent();
-        if force.norm() <= 0.0 {
+        let signs = [sign, if to.point == from.point { sign } else { -sign }];
+        let forces = [0, 1].map(|side| {
+            let (normal, tangent) = (rows[side].normal, rows[side].tangent());
+            signs[side] * (multiplier[0] * normal + multiplier[1] * tangent)
+        });
+        if forces[0].norm() <= 0.0 {
             return;
         }
-        let force = force.normalize();
-        let other = sign * self.other_normal(near, met, row.normal);
-        // The same share of friction on the other side.
-        let turned = force.dot(&normal) * other + force.dot(&perp(normal)) * perp(other);
-        let meetings = &mut self.meetings;
-        let known = meetings
+        let forces = forces.map(|force| force.normalize());
+        let normals = [0, 1].map(|side| signs[side] * rows[side].normal);
+        let known = self
+            .meetings
             .iter_mut()
-            .find(|one| one.way == near.pair && one.vertices == vertices);
-        match known {
-            Some(meeting) => {
-                meeting.slide([normal, other], [force, turned], pass);
+            .find(|one| one.way == from.pair && one.vertices == vertices);
+        let meeting = match known {
+            Some(meeting) => meeting,
+            None => {
+                self.meetings.push(Meeting {
+                    way: from.pair,
+                    vertices,
+                    slides: 0,
+                    last: 0,
+                    normals,
+                    forces,
+                    is_held: false,
+                });
+                let Some(meeting) = self.meetings.last_mut() else {
+                    return;
+                };
+                meeting
             }
-            None => meetings.push(Meeting {
-                way: near.pair,
-                vertices,
-                slides: 1,
-                last: pass,
-                normals: [normal, other],
-                forces: [force, turned],
-                is_held: false,
-            }),
-        }
+        };
+        meeting.slides += usize::from(pass > meeting.last);
+        (meeting.last, meeting.normals, meeting.forces) = (pass, normals, forces);
+        let is_wide = |[a, b]: [Vec2; 2]| a.dot(&b) <= LEAST_COSINE;
+        let turns = (normals[0] - normals[1]).norm() > SAME;
+        meeting.is_held =
+            turns && meeting.slides >= SLIDES && !is_wide(normals) && !is_wide(forces);
     }
 
-    /// The normal on the other side of a vertex that is slid over, on the side of this normal; this normal where there is none.
-    fn other_normal(&self, near: &NearPair, vertex: usize, normal: Vec2) -> Vec2 {
-        let is_other = |edge: &&u32| near.target != Target::Edge(**edge as usize);
-        let Some(&edge) = self.surfaces.edges_at(vertex).iter().find(is_other) else {
-            return normal;
+    /// The vertices of the point and of the target that a near pair has come to: where another near pair takes over.
+    pub(in crate::kkt) fn slid_over(&self, near: &NearPair) -> Option<[usize; 2]> {
+        Some([near.point, self.vertex_beyond(near)?])
+    }
+
+    /// Whether a near pair is one of two vertices, or of one of them and an edge of the other.
+    pub(in crate::kkt) fn is_at(&self, near: &NearPair, [one, other]: [usize; 2]) -> bool {
+        let met = match near.point {
+            point if point == one => other,
+            point if point == other => one,
+            _ => return false,
         };
-        let [from, to] = self.surfaces.ends(edge as usize);
-        let across = perp(to - from).normalize();
-        if across.dot(&normal) < 0.0 {
-            -across
-        } else {
-            across
+        match near.target {
+            Target::Vertex(vertex) => vertex == met,
+            Target::Edge(edge) => self.surfaces.edges_at(met).contains(&(edge as u32)),
         }
     }
 
@@ -119,17 +133,7 @@ impl FeasiblePath {
             .meetings
             .iter()
             .filter(|one| one.is_held && one.way == near.pair);
-        held.any(|meeting| {
-            let other = match meeting.vertices {
-                [one, other] if one == near.point => other,
-                [one, other] if other == near.point => one,
-                _ => return false,
-            };
-            match near.target {
-                Target::Vertex(vertex) => vertex == other,
-                Target::Edge(edge) => self.surfaces.edges_at(other).contains(&(edge as u32)),
-            }
-        })
+        held.any(|meeting| self.is_at(near, meeting.vertices))
     }
 
     /// Number of meetings of the step.
@@ -188,24 +192,6 @@ impl FeasiblePath {
         for meeting in held.filter(|one| one.vertices == [near.point, vertex]) {
             (meeting.is_held, meeting.slides) = (false, 0);
         }
-    }
-}
-
-impl Meeting {
-    /// Notes one more slide, with normal and force on this side and on the other side of the vertex that is slid over.
-    fn slide(&mut self, normals: [Vec2; 2], forces: [Vec2; 2], pass: usize) {
-        self.slides += usize::from(pass > self.last);
-        self.last = pass;
-        // The side before, unless it is the same.
-        let is_same = (self.normals[0] - normals[0]).norm() <= SAME;
-        let before = if is_same {
-            (normals[1], forces[1])
-        } else {
-            (self.normals[0], self.forces[0])
-        };
-        (self.normals, self.forces) = ([normals[0], before.0], [forces[0], before.1]);
-        let is_sharp = |[a, b]: [Vec2; 2]| a.dot(&b) <= LEAST_COSINE;
-        self.is_held = self.slides >= SLIDES && !is_sharp(self.normals) && !is_sharp(self.forces);
     }
 }
 

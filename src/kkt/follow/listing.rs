@@ -41,6 +41,7 @@ impl Island {
         self.path.list_near();
         std::mem::swap(&mut self.contacts, &mut self.contacts_before);
         self.contacts.clear();
+        self.fresh.clear();
         self.slot_of.clear();
         self.slot_of.resize(self.candidates.len(), u32::MAX);
         for (slot, contact) in self.contacts_before.iter().enumerate() {
@@ -87,33 +88,81 @@ impl Island {
                 self.list(&listed, listing);
             }
         }
-        for contact in &self.contacts_before {
+        let before = std::mem::take(&mut self.contacts_before);
+        for contact in &before {
             let is_left = self.slot_of[contact.candidate] != u32::MAX;
             if let Some(base) = contact.base
                 && is_left
                 && contact.multiplier != [0.0; 2]
             {
-                let applied = if listing.is_again {
-                    contact.applied
-                } else {
-                    contact.kinematics
-                };
-                self.contacts.push(ActiveContact {
-                    applied,
-                    is_lost: true,
-                    ..*contact
-                });
-                if !listing.is_again
-                    && !base.is_meeting
-                    && !contact.is_lost
-                    && !self.path.is_at_meeting(&base.near)
-                {
-                    let row = &contact.kinematics;
-                    self.path
-                        .note_slide(&base.near, row, contact.multiplier, listing.pass);
-                }
+                self.follow_contact(contact, &base, listing);
             }
         }
+        self.contacts_before = before;
+    }
+
+    /// Hands what is near no more over to the pair that it has slid to, if there is one; else it stays for one solve.
+    fn follow_contact(&mut self, contact: &ActiveContact, base: &AtBase, listing: &Listing<'_>) {
+        let applied = if listing.is_again {
+            contact.applied
+        } else {
+            contact.kinematics
+        };
+        let next = if base.is_meeting {
+            None
+        } else {
+            self.next_of(contact, base)
+        };
+        let Some(next) = next else {
+            self.contacts.push(ActiveContact {
+                applied,
+                is_lost: true,
+                ..*contact
+            });
+            return;
+        };
+        let met = self.contacts[next];
+        self.contacts[next] = ActiveContact {
+            candidate: met.candidate,
+            kinematics: met.kinematics,
+            base: met.base,
+            applied,
+            is_lost: false,
+            ..*contact
+        };
+        if let Some(now) = met.base
+            && !listing.is_again
+        {
+            let rows = [&contact.kinematics, &met.kinematics];
+            self.path.note_slide(
+                [&base.near, &now.near],
+                rows,
+                contact.multiplier,
+                listing.pass,
+            );
+        }
+    }
+
+    /// The contact, new in this list, of the vertices where another one has slid off.
+    fn next_of(&self, contact: &ActiveContact, base: &AtBase) -> Option<usize> {
+        let vertices = self.path.slid_over(&base.near)?;
+        let normal = contact.kinematics.normal;
+        let side = |near: &NearPair| {
+            if near.point == base.near.point {
+                1.0
+            } else {
+                -1.0
+            }
+        };
+        let along = |slot: usize| {
+            let next = &self.contacts[slot];
+            let near = &next.base.as_ref()?.near;
+            (near.pair == base.near.pair && self.path.is_at(near, vertices))
+                .then(|| (slot, side(near) * next.kinematics.normal.dot(&normal)))
+        };
+        let found = self.fresh.iter().filter_map(|&slot| along(slot));
+        let nearest = found.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+        (nearest.1 > 0.0).then_some(nearest.0)
     }
 
     /// Adds a row of the base to the contacts, with what it was before.
@@ -160,6 +209,7 @@ impl Island {
                 if listing.memory.is_some() && base.gap < -listing.slop {
                     contact.allowance = listing.kept * base.gap;
                 }
+                self.fresh.push(self.contacts.len());
                 contact
             }
         };
