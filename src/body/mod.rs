@@ -14,6 +14,7 @@ mod pin;
 #[cfg(feature = "serde-serialize")]
 mod record;
 mod set;
+mod small_strain;
 mod state;
 mod steering;
 

@@ -11,6 +11,7 @@ use super::material::{Material, Rayleigh};
 use super::mesh::{Cell, Mesh};
 use super::recovery::{CellStress, Stress, smooth_to_nodes};
 use crate::linalg::block_matrix::BlockMatrix;
+use crate::math::hypot;
 use std::sync::{Arc, OnceLock};
 use thiserror::Error;
 
@@ -70,6 +71,8 @@ pub struct Model {
     mass: MassMatrix,
     /// For every massless node the massive nodes that stand for its velocity.
     support: MassiveSupport,
+    /// Length of the shortest edge of a cell (m).
+    shortest_edge: f64,
     /// Computed when asked for: implicit integration never does.
     largest_frequency: OnceLock<f64>,
 }
@@ -116,11 +119,18 @@ impl Model {
             description.massless = vec![false; n_nodes];
         }
         let support = MassiveSupport::new(&description.massless, &stiffness);
+        let nodes = mesh.nodes();
+        let lengths = mesh.edges().into_iter().map(|[from, to]| {
+            let ([x, y], [to_x, to_y]) = (nodes[from], nodes[to]);
+            hypot(to_x - x, to_y - y)
+        });
+        let shortest_edge = lengths.fold(f64::INFINITY, f64::min);
         Ok(Self {
             description,
             stiffness,
             mass,
             support,
+            shortest_edge,
             largest_frequency: OnceLock::new(),
         })
     }
@@ -153,6 +163,11 @@ impl Model {
     /// The mass matrix `M` (kg).
     pub fn mass(&self) -> &MassMatrix {
         &self.mass
+    }
+
+    /// Length of the shortest edge of a cell, from node to node (m).
+    pub fn shortest_edge(&self) -> f64 {
+        self.shortest_edge
     }
 
     /// Whether a node's mass was moved inwards.

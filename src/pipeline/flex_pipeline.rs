@@ -272,6 +272,7 @@ impl FlexPipeline {
         write_impulses(&self.joint_impulses, sets);
         self.commit_attachments(flex_bodies);
         self.commit(sets, flex_bodies);
+        self.note_overbent(flex_bodies);
         self.events.tell(sets);
         clock.lap(&mut self.report.times.hand_back);
         Ok(())

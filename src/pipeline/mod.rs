@@ -9,6 +9,7 @@ mod error;
 mod flex_pipeline;
 mod joint_accounts;
 mod notes;
+mod overbent;
 mod quality;
 mod quarantine;
 mod report;
@@ -22,6 +23,7 @@ pub use debug_render::FlexDebugRender;
 pub use error::StepError;
 pub use flex_pipeline::FlexPipeline;
 pub use notes::InsertionNote;
+pub use overbent::Overbent;
 pub use quality::{Quality, Unsolved};
 pub use report::{
     ContactReport, EnergyReport, Held, JointReport, Participant, StageTimes, StepReport,

@@ -1,6 +1,7 @@
 //! What a step tells about itself.
 
 use super::notes::InsertionNote;
+use super::overbent::Overbent;
 use super::quality::{Quality, Unsolved};
 use crate::body::{AttachmentHandle, FlexBodyHandle};
 use crate::coupling::RapierSets;
@@ -191,6 +192,9 @@ pub struct StepReport {
     pub(super) angular_momentum: f64,
     pub(super) quality: Quality,
     pub(super) unsolved: Vec<Unsolved>,
+    /// Told anew of every step.
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
+    pub(super) overbent: Vec<Overbent>,
     pub(super) gap_violation: f64,
     pub(super) complementarity_residual: f64,
     pub(super) cone: ConeExcess,
@@ -243,7 +247,8 @@ impl StepReport {
         self.angular_momentum
     }
 
-    /// How well the step was solved, that of its worst island: look here first.
+    /// How well the step was solved, that of its worst island: look here first. Whether small strains still describe what was solved is told
+    /// by [`Self::overbent`].
     pub fn quality(&self) -> Quality {
         self.quality
     }
@@ -251,6 +256,12 @@ impl StepReport {
     /// The islands that were not solved in one piece, with their bodies.
     pub fn unsolved(&self) -> &[Unsolved] {
         &self.unsolved
+    }
+
+    /// Flexible bodies of the step that are bent or stretched beyond what small strains describe: by a hundredth of their lengths. Their
+    /// motion is solved, but is that of another body.
+    pub fn overbent(&self) -> &[Overbent] {
+        &self.overbent
     }
 
     /// Largest overlap at the contacts that the step was solved with (m), measured where it ended, in `f64`; what was put into each other
@@ -414,11 +425,14 @@ impl StepReport {
         contacts.clear();
         let mut joints = std::mem::take(&mut self.joints);
         joints.clear();
+        let mut overbent = std::mem::take(&mut self.overbent);
+        overbent.clear();
         let dissipated = self.energy.dissipated;
         *self = Self {
             contacts,
             contacts_before,
             joints,
+            overbent,
             ..Self::default()
         };
         self.energy.dissipated = dissipated;

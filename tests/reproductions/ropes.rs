@@ -125,7 +125,7 @@ fn swing_chain(n: usize, young: f64) {
 }
 
 #[test]
-#[ignore = "open: a cell gets 2129 times its area and the ball 19.5 m away from a pin 4.2 m off"]
+#[ignore = "open: small strains in one frame describe no rope, as the report tells (tests/small_strain): a cell gets 2129 times its area and the ball 19.5 m away from a pin 4.2 m off"]
 fn a_strip_that_swings_keeps_the_area_of_its_cells() {
     let mut scene = Scene::new(1.0 / 60.0).on_feasible_path();
     let ball = ball(&mut scene);
@@ -163,7 +163,7 @@ fn a_strip_that_swings_keeps_the_area_of_its_cells() {
 }
 
 #[test]
-#[ignore = "open: the ball gets down to -42 m, not -0.54 m"]
+#[ignore = "open: small strains in one frame describe no string, as the report tells (tests/small_strain): the ball gets down to -42 m, as on a linear beam, not -0.54 m"]
 fn a_strip_between_two_pins_sags_as_a_string() {
     let mut scene = Scene::new(1.0 / 60.0).on_feasible_path();
     let body = RigidBodyBuilder::dynamic().translation(vec2(0.5 * LENGTH, -0.2));
