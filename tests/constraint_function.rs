@@ -154,7 +154,12 @@ fn failures_are_counted_and_solved_by_lagrange_multipliers() {
     let (exact, none) = rest(ContactMethod::Lagrange);
     let (found, counts) = rest(functions_of(hurried));
     assert_eq!((none, counts), ([0, 0], [1, 1]));
-    assert_eq!(found, exact, "the step is that of Lagrange multipliers");
+    // That one is led along its feasible path.
+    let off = (0..2).map(|axis| (found[axis] - exact[axis]).abs());
+    assert!(
+        off.fold(0.0, f64::max) < 1e-15,
+        "the step is that of Lagrange multipliers"
+    );
 }
 
 /// The scale of a problem is its own: a world in millimetres and grams takes the same iterations.

@@ -3,6 +3,7 @@
 mod attachment;
 mod build;
 mod builder;
+mod contact_offset;
 mod contact_settings;
 mod critical;
 mod error;
@@ -24,6 +25,7 @@ pub use attachment::{
     AttachmentTarget,
 };
 pub use builder::{ContactInertia, FlexBodyBuilder};
+pub(crate) use contact_offset::contact_offset;
 pub use contact_settings::ContactSettings;
 pub use error::{BuildError, FlexBodyError};
 pub use flex_body::FlexBody;

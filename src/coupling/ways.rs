@@ -2,19 +2,12 @@
 
 use super::candidates::{Bounds, Names};
 use super::outlines::{Outline, Piece, draw_inwards};
+use crate::body::contact_offset;
 use crate::constraint::contact::ContactLaw;
 use crate::constraint::geometry::Pose2;
-use crate::fe::model::Model;
 use crate::kkt::{Island, Way};
-use crate::math::{Vec2, node_vec, perp, rotation};
+use crate::math::{Vec2, perp, rotation};
 use crate::system::{Block, FlexBlock};
-
-/// Offset between a flexible surface and what it touches, relative to its shortest edge at rest: far above rounding, far below what
-/// the mesh resolves. Between two hundredths and a thousandth of an edge no result depends on it but by its own size.
-const OFFSET: f64 = 1e-2;
-
-/// Spacings of single precision, at the coordinates of the body, that an offset is never below: rapier holds poses in it.
-const SPACINGS: f64 = 8.0;
 
 /// Reach of rows beyond the distance at which contact closes, relative to the margin: a tenth of an edge, as the offset is a hundredth.
 /// Between half of it and twice only the number of passes changes.
@@ -286,16 +279,7 @@ impl Piece {
 
 /// The offset of a flexible body's surface (m).
 fn offset_of(body: &FlexBlock) -> f64 {
-    let spacing = SPACINGS * f64::from(f32::EPSILON) * body.extent();
-    (OFFSET * shortest_edge(body.model())).max(spacing)
-}
-
-/// Shortest boundary segment at rest (m).
-fn shortest_edge(model: &Model) -> f64 {
-    let rest = model.rest_positions();
-    let segments = model.mesh().boundary().segments().iter();
-    let lengths = segments.map(|[a, b]| (node_vec(rest, *b) - node_vec(rest, *a)).norm_squared());
-    lengths.fold(f64::INFINITY, f64::min).sqrt()
+    contact_offset(body.model(), body.extent())
 }
 
 /// Box of a surface over the step.

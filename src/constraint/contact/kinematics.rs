@@ -88,6 +88,15 @@ impl Kinematics {
             .any(|a| blocks[a.block].is_explicit())
     }
 
+    /// The same row as seen from the other side: the target as the point and the point as the target.
+    pub(crate) fn swapped(mut self) -> Self {
+        self.normal = -self.normal;
+        for attachment in &mut self.attachments {
+            attachment.weight = -attachment.weight;
+        }
+        self
+    }
+
     /// A row whose grips have the levers given: block, point, weight, and lever from the block's centre (m).
     ///
     /// # Panics

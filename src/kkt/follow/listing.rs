@@ -122,6 +122,14 @@ impl Island {
             return;
         };
         let met = self.contacts[next];
+        let is_swapped = met
+            .base
+            .is_some_and(|now| now.near.point != base.near.point);
+        let applied = if is_swapped {
+            applied.swapped()
+        } else {
+            applied
+        };
         self.contacts[next] = ActiveContact {
             candidate: met.candidate,
             kinematics: met.kinematics,
