@@ -6,6 +6,7 @@
 use super::compliance::Compliance;
 use super::explicit_block::Explicit;
 use super::flex_impulse::Impulses;
+use super::flex_surface::FollowingSurface;
 use super::step::{FlexLoad, Step};
 use crate::body::{Arms, FlexState, Frame, FrameMotion};
 use crate::fe::model::Model;
@@ -24,6 +25,10 @@ pub struct FlexBlock {
     pub(super) is_fixed: Vec<bool>,
     /// The pinned dofs, ascending.
     pub(super) fixed_dofs: Vec<usize>,
+    /// The dofs of the massless nodes, ascending.
+    pub(super) massless_dofs: Vec<usize>,
+    /// Where they follow the others without damping of their own, once factorized.
+    pub(super) surface: Option<FollowingSurface>,
     /// Largest coordinate of the reference placement (m).
     extent: f64,
     /// Largest side of the reference placement's box (m).
@@ -126,6 +131,8 @@ impl FlexBlock {
             arms: Arms::new(&model, kind),
             kind,
             fixed_dofs: (0..n).filter(|&dof| is_fixed[dof]).collect(),
+            massless_dofs: (0..n).filter(|&dof| model.is_massless(dof / 2)).collect(),
+            surface: None,
             is_fixed,
             extent,
             size: size_of(model.rest_positions()),
@@ -278,6 +285,7 @@ impl FlexBlock {
             &mut self.displacement_q,
             &mut self.rate_q,
         );
+        self.predict_massless(state);
         // The iterate starts from where the body is: the operators of unresolved modes are large and cancel in the solve.
         if self.kind != Frame::Fixed {
             self.displacement.copy_from_slice(&state.displacement);
@@ -294,6 +302,14 @@ impl FlexBlock {
             self.place();
         } else {
             self.position.copy_from_slice(&state.position);
+        }
+    }
+
+    /// Nodes without mass have no history but where they are.
+    fn predict_massless(&mut self, state: &FlexState) {
+        for &dof in &self.massless_dofs {
+            self.displacement_q[dof] = state.displacement[dof];
+            self.rate_q[dof] = 0.0;
         }
     }
 
@@ -394,6 +410,9 @@ impl FlexBlock {
             .add_to(1.0 + rayleigh.mass * weights.b1, &mut self.effective);
         self.effective.constrain(&self.is_fixed);
         self.factored_for = None;
+        if rayleigh.stiffness > 0.0 && self.surface.is_none() && !self.massless_dofs.is_empty() {
+            self.surface = Some(FollowingSurface::new(&self.model, &self.is_fixed)?);
+        }
         self.factor.factorize(&self.effective)?;
         self.n_factorizations += 1;
         self.compliance.clear();

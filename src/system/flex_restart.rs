@@ -17,11 +17,18 @@ impl FlexBlock {
             self.rate[dof] = rate;
             self.displacement[dof] = self.displacement_q[dof] - dt * rate - half * acceleration;
         }
+        self.restart_massless();
         self.frame = self.frame_q;
         self.inertia = self.arms.polar;
         self.solved_angle = None;
         self.clear_contact_force();
         self.place();
+    }
+
+    fn restart_massless(&mut self) {
+        for &dof in &self.massless_dofs {
+            (self.displacement[dof], self.rate[dof]) = (self.displacement_q[dof], 0.0);
+        }
     }
 
     /// Goes back to the beginning and drops what makes the step non-linear: the inertial terms of the displacement in a
@@ -38,8 +45,10 @@ impl FlexBlock {
         let half = 0.5 * dt * dt;
         for dof in 0..self.start_acceleration.len() {
             let acceleration = std::mem::take(&mut self.start_acceleration[dof]);
-            self.rate_q[dof] -= dt * acceleration;
-            self.displacement_q[dof] -= half * acceleration;
+            if !self.model.is_massless(dof / 2) {
+                self.rate_q[dof] -= dt * acceleration;
+                self.displacement_q[dof] -= half * acceleration;
+            }
         }
         self.restart();
         self.is_linear = true;

@@ -9,6 +9,9 @@
 //!
 //! `a_q` the accelerations before the increment, `h` the centripetal and Coriolis terms: the stiffness need never be
 //! multiplied.
+//!
+//! Nodes without mass have no rates of their own to carry them on: their rows hold only `w`, and where they are follows from it, with
+//! `u_q` where they were and `u̇_q = 0`; see `flex_surface` for damped ones.
 
 use super::flex_block::FlexBlock;
 use super::step::Response;
@@ -153,7 +156,12 @@ impl FlexBlock {
             } else {
                 0.0
             };
-            let increment = (target - self.displacement_q[dof]) / b0;
+            let reach = if self.model.is_massless(dof / 2) {
+                self.massless_reach()
+            } else {
+                b0
+            };
+            let increment = (target - self.displacement_q[dof]) / reach;
             let known = increment - self.increment[dof];
             self.local[dof] = known;
             if known != 0.0 {
@@ -233,6 +241,19 @@ impl FlexBlock {
             displacement[dof] = u[dof] + b0 * increment;
             rate[dof] = v[dof] + b1 * increment;
         }
+        for &dof in &self.massless_dofs {
+            let moved = self.massless_reach() * self.increment[dof];
+            self.displacement[dof] = self.displacement_q[dof] + moved;
+            self.rate[dof] = moved / self.step.dt;
+        }
+        self.follow_displacements();
+    }
+
+    /// Displacement per increment where a massless node moves as far as its row tells: `u + β (u - u_q)/dt = w` (s²).
+    fn massless_reach(&self) -> f64 {
+        let Weights { b0, b1 } = self.step.weights;
+        let damping = self.model.rayleigh().stiffness;
+        (b0 + damping * b1) / (1.0 + damping / self.step.dt)
     }
 
     /// Largest displacement in the frame (m).
@@ -292,6 +313,7 @@ impl FlexBlock {
         if self.is_explicit() {
             return;
         }
+        self.follow_rates();
         if self.kind == Frame::Fixed {
             self.velocity.copy_from_slice(&self.rate);
             return;
@@ -314,6 +336,9 @@ impl FlexBlock {
         if self.is_explicit() {
             self.prepare_explicitly(node);
             return;
+        }
+        if let Some(surface) = &mut self.surface {
+            surface.prepare(node, &self.is_fixed);
         }
         if self
             .compliance
@@ -339,7 +364,13 @@ impl FlexBlock {
         if of == Response::ByMass {
             return self.mass_response(at, from);
         }
-        let local = self.compliance.get(at, from);
+        let mut local = self.compliance.get(at, from);
+        if let Some(surface) = self.surface.as_ref().filter(|_| of == Response::Position) {
+            // What `A⁻¹` has of it is damped.
+            let Weights { b0, b1 } = self.step.weights;
+            let damped = b0 + self.model.rayleigh().stiffness * b1;
+            local += (1.0 / b0 - 1.0 / damped) * surface.flexibility(at, from);
+        }
         if self.kind == Frame::Fixed {
             return local;
         }

@@ -16,6 +16,7 @@ mod flex_motion;
 mod flex_path;
 mod flex_restart;
 mod flex_solve;
+mod flex_surface;
 mod link_response;
 mod massless_surface;
 mod moments;
