@@ -25,9 +25,9 @@ pub struct FlexBlock {
     pub(super) is_fixed: Vec<bool>,
     /// The pinned dofs, ascending.
     pub(super) fixed_dofs: Vec<usize>,
-    /// The dofs of the massless nodes, ascending.
-    pub(super) massless_dofs: Vec<usize>,
-    /// Where they follow the others without damping of their own, once factorized.
+    /// The dofs of the massless nodes of a body with stiffness damping, ascending.
+    pub(super) following_dofs: Vec<usize>,
+    /// What they follow the others by, once factorized.
     pub(super) surface: Option<FollowingSurface>,
     /// Largest coordinate of the reference placement (m).
     extent: f64,
@@ -123,6 +123,7 @@ impl FlexBlock {
     ) -> Self {
         let n = model.n_dofs();
         let zeros = || vec![0.0; n];
+        let is_damped = model.rayleigh().stiffness > 0.0;
         let extent = model
             .rest_positions()
             .iter()
@@ -131,7 +132,9 @@ impl FlexBlock {
             arms: Arms::new(&model, kind),
             kind,
             fixed_dofs: (0..n).filter(|&dof| is_fixed[dof]).collect(),
-            massless_dofs: (0..n).filter(|&dof| model.is_massless(dof / 2)).collect(),
+            following_dofs: (0..n)
+                .filter(|&dof| is_damped && model.is_massless(dof / 2))
+                .collect(),
             surface: None,
             is_fixed,
             extent,
@@ -285,7 +288,7 @@ impl FlexBlock {
             &mut self.displacement_q,
             &mut self.rate_q,
         );
-        self.predict_massless(state);
+        self.predict_following(state);
         // The iterate starts from where the body is: the operators of unresolved modes are large and cancel in the solve.
         if self.kind != Frame::Fixed {
             self.displacement.copy_from_slice(&state.displacement);
@@ -305,9 +308,9 @@ impl FlexBlock {
         }
     }
 
-    /// Nodes without mass have no history but where they are.
-    fn predict_massless(&mut self, state: &FlexState) {
-        for &dof in &self.massless_dofs {
+    /// Nodes that follow have no history but where they are.
+    fn predict_following(&mut self, state: &FlexState) {
+        for &dof in &self.following_dofs {
             self.displacement_q[dof] = state.displacement[dof];
             self.rate_q[dof] = 0.0;
         }
@@ -395,56 +398,7 @@ impl FlexBlock {
         self.frame_q = frame;
         self.frame = frame;
     }
-
-    fn factorize(&mut self, weights: Weights) -> Result<(), CholeskyError> {
-        if self.factored_for == Some(weights) {
-            return Ok(());
-        }
-        let rayleigh = self.model.rayleigh();
-        self.effective.assign_scaled(
-            weights.b0 + rayleigh.stiffness * weights.b1,
-            self.model.stiffness(),
-        );
-        self.model
-            .mass()
-            .add_to(1.0 + rayleigh.mass * weights.b1, &mut self.effective);
-        self.effective.constrain(&self.is_fixed);
-        self.factored_for = None;
-        if rayleigh.stiffness > 0.0 && self.surface.is_none() && !self.massless_dofs.is_empty() {
-            self.surface = Some(FollowingSurface::new(&self.model, &self.is_fixed)?);
-        }
-        self.factor.factorize(&self.effective)?;
-        self.n_factorizations += 1;
-        self.compliance.clear();
-        if self.kind == Frame::Free {
-            self.check_rigid_motion(1.0 + rayleigh.mass * weights.b1)?;
-        }
-        self.factored_for = Some(weights);
-        Ok(())
-    }
-
-    /// Refuses a matrix in which rounding of the stiffness hides the mass: `A e = (1 + α b1) M e` for every rigid translation `e`.
-    fn check_rigid_motion(&mut self, factor: f64) -> Result<(), CholeskyError> {
-        self.scratch.iter_mut().enumerate().for_each(|(dof, e)| {
-            *e = if dof % 2 == 0 { 1.0 } else { -1.0 };
-        });
-        self.local.fill(0.0);
-        self.model
-            .mass()
-            .multiply_add(factor, &self.scratch, &mut self.local);
-        self.factor.solve_in_place(&mut self.local);
-        let pairs = self.local.iter().zip(&self.scratch);
-        let error = pairs.fold(0.0f64, |error, (found, e)| error.max((found - e).abs()));
-        if error <= MOST_HIDDEN {
-            Ok(())
-        } else {
-            Err(CholeskyError::IllConditioned { error })
-        }
-    }
 }
-
-/// Error of a rigid motion from which contact iterations no longer converge.
-const MOST_HIDDEN: f64 = 1e-3;
 
 /// Largest side of the box around nodal positions (m).
 fn size_of(dofs: &[f64]) -> f64 {

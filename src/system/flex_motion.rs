@@ -332,9 +332,24 @@ impl FlexBlock {
                     (self.position[dof] - self.start_position[dof]) / self.step.dt;
             }
         }
+        self.settle_surface(state);
         state.split_position(&self.arms, self.kind);
         state.split_velocity(&self.arms, self.kind);
         spread_accelerations(&self.model, &self.is_fixed, &mut state.acceleration);
+    }
+
+    /// Gives massless nodes in contact the velocity they moved with: the trapezoidal rule would let it alternate for ever
+    /// where a contact holds the position.
+    fn settle_surface(&self, state: &mut FlexState) {
+        if !self.has_contact_force {
+            return;
+        }
+        for (node, _) in self.model.massless_support() {
+            if node_vec(&self.contact_force, node) != Vec2::zeros() {
+                let moved = node_vec(&self.position, node) - node_vec(&self.start_position, node);
+                set_node_vec(&mut state.velocity, node, moved / self.step.dt);
+            }
+        }
     }
 
     /// Reaction at a pinned node, the force the pin exerts on the body (N).

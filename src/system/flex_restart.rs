@@ -17,7 +17,7 @@ impl FlexBlock {
             self.rate[dof] = rate;
             self.displacement[dof] = self.displacement_q[dof] - dt * rate - half * acceleration;
         }
-        self.restart_massless();
+        self.restart_following();
         self.frame = self.frame_q;
         self.inertia = self.arms.polar;
         self.solved_angle = None;
@@ -25,8 +25,8 @@ impl FlexBlock {
         self.place();
     }
 
-    fn restart_massless(&mut self) {
-        for &dof in &self.massless_dofs {
+    fn restart_following(&mut self) {
+        for &dof in &self.following_dofs {
             (self.displacement[dof], self.rate[dof]) = (self.displacement_q[dof], 0.0);
         }
     }
@@ -45,7 +45,7 @@ impl FlexBlock {
         let half = 0.5 * dt * dt;
         for dof in 0..self.start_acceleration.len() {
             let acceleration = std::mem::take(&mut self.start_acceleration[dof]);
-            if !self.model.is_massless(dof / 2) {
+            if !self.is_following(dof) {
                 self.rate_q[dof] -= dt * acceleration;
                 self.displacement_q[dof] -= half * acceleration;
             }

@@ -10,8 +10,8 @@
 //! `a_q` the accelerations before the increment, `h` the centripetal and Coriolis terms: the stiffness need never be
 //! multiplied.
 //!
-//! Nodes without mass have no rates of their own to carry them on: their rows hold only `w`, and where they are follows from it, with
-//! `u_q` where they were and `u̇_q = 0`; see `flex_surface` for damped ones.
+//! Nodes without mass of a damped body have no rates of their own to carry them on: their rows hold only `w`, with `u_q` where they were
+//! and `u̇_q = 0`, and where they are is found from what they follow; see `flex_surface`.
 
 use super::flex_block::FlexBlock;
 use super::step::Response;
@@ -156,8 +156,8 @@ impl FlexBlock {
             } else {
                 0.0
             };
-            let reach = if self.model.is_massless(dof / 2) {
-                self.massless_reach()
+            let reach = if self.is_following(dof) {
+                self.following_reach()
             } else {
                 b0
             };
@@ -241,8 +241,8 @@ impl FlexBlock {
             displacement[dof] = u[dof] + b0 * increment;
             rate[dof] = v[dof] + b1 * increment;
         }
-        for &dof in &self.massless_dofs {
-            let moved = self.massless_reach() * self.increment[dof];
+        for &dof in &self.following_dofs {
+            let moved = self.following_reach() * self.increment[dof];
             self.displacement[dof] = self.displacement_q[dof] + moved;
             self.rate[dof] = moved / self.step.dt;
         }
@@ -250,7 +250,7 @@ impl FlexBlock {
     }
 
     /// Displacement per increment where a massless node moves as far as its row tells: `u + β (u - u_q)/dt = w` (s²).
-    fn massless_reach(&self) -> f64 {
+    fn following_reach(&self) -> f64 {
         let Weights { b0, b1 } = self.step.weights;
         let damping = self.model.rayleigh().stiffness;
         (b0 + damping * b1) / (1.0 + damping / self.step.dt)

@@ -99,6 +99,11 @@ impl FlexBlock {
         }
     }
 
+    /// Whether a dof is one of a massless node of a damped body.
+    pub(super) fn is_following(&self, dof: usize) -> bool {
+        self.model.rayleigh().stiffness > 0.0 && self.model.is_massless(dof / 2)
+    }
+
     /// Gives the massless nodes of a damped body the rates of those that they follow.
     pub(super) fn follow_rates(&mut self) {
         let Self {

@@ -9,6 +9,7 @@ mod explicit_motion;
 #[cfg(feature = "serde-serialize")]
 mod explicit_record;
 mod flex_block;
+mod flex_factor;
 mod flex_impulse;
 mod flex_inertia;
 mod flex_momentum;
