@@ -72,6 +72,8 @@ worlds! {
     a_thousand_operations_leave_a_sound_world_7: 0xf135_7aea_2e62_a9c5,
     a_thousand_operations_leave_a_sound_world_8: 0x5851_f42d_4c95_7f2d,
     a_thousand_operations_leave_a_sound_world_9: 0x1405_7b7e_f767_814f,
+    a_thousand_operations_leave_a_sound_world_10: 0x80,
+    a_thousand_operations_leave_a_sound_world_11: 0x98,
 }
 
 /// More worlds than one waits for every day: `FUZZ_SEEDS=100..200 cargo nextest run --release --test fuzz --run-ignored only`.

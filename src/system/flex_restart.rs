@@ -76,12 +76,16 @@ impl FlexBlock {
         self.place();
     }
 
-    /// Whether the loads alone would send the body beyond what can be held: that is no matter of contact.
+    /// Whether the loads alone would send the body beyond what can be held: that is no matter of contact. What acts on pins moves nothing.
     pub fn is_overloaded(&self) -> bool {
-        let most = self
-            .force
-            .iter()
-            .fold(0.0f64, |most, force| most.max(force.abs()));
+        let loads = self.force.iter().zip(&self.is_fixed);
+        let most = loads.fold(0.0f64, |most, (force, &is_fixed)| {
+            if is_fixed {
+                most
+            } else {
+                most.max(force.abs())
+            }
+        });
         !is_held(self.step.dt * most / self.arms.mass)
     }
 
