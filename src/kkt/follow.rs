@@ -210,7 +210,7 @@ impl Island {
             self.note_left();
             self.turn_signed_rows(!misleads && !listing.keeps_rows);
             let solved = self.solve_multipliers(settings, true, tolerance, summary);
-            if solved.is_err() || self.contradicts(settings.b0) {
+            if solved.is_err() || self.contradicts(settings) {
                 return false;
             }
             if n_stopped > 0 && !self.impact.is_known {
@@ -290,8 +290,8 @@ impl Island {
 
     /// Whether some multiplier would move its contact by far more than any motion of the island: then rows contradict each other, and forces
     /// of any size would answer.
-    fn contradicts(&self, b0: f64) -> bool {
-        let farthest = FARTHEST * self.gap_tolerance() / ROUND_OFF;
+    fn contradicts(&self, settings: &SolveSettings) -> bool {
+        let farthest = FARTHEST * self.gap_tolerance(settings) / ROUND_OFF;
         let mut moves = self.contacts.iter().map(|contact| {
             let own = compliance(
                 &self.blocks,
@@ -305,7 +305,7 @@ impl Island {
                     .normal
                     .dot(&(own * contact.kinematics.normal))
             };
-            b0 * contact.multiplier[0] * own.map_or(0.0, along)
+            settings.b0 * contact.multiplier[0] * own.map_or(0.0, along)
         });
         moves.any(|moved| moved.is_nan() || moved > farthest)
     }

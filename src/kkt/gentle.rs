@@ -34,7 +34,7 @@ impl Island {
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
         (summary.is_cut, summary.is_stopped) = (false, true);
-        let tolerance = self.gap_tolerance();
+        let tolerance = self.gap_tolerance(settings);
         if !self.return_to_first_stop() {
             self.return_to_start(settings, memory, tolerance);
         }

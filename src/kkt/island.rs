@@ -65,6 +65,8 @@ pub struct SolveSettings {
     pub restitution_threshold: f64,
     /// Most Newton iterations.
     pub max_newton: usize,
+    /// What counts as one unit of length in the scene (m).
+    pub length_unit: f64,
 }
 
 /// A contact of the working set: its kinematics, multipliers and state.

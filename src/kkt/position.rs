@@ -31,7 +31,7 @@ impl Island {
         memory: &ContactMemory,
         summary: &mut IslandSummary,
     ) {
-        let tolerance = self.gap_tolerance();
+        let tolerance = self.gap_tolerance(settings);
         self.ignores_overlaps = false;
         self.open_working_set(settings, tolerance, memory);
         let is_solved = match &settings.contact {
@@ -92,12 +92,12 @@ impl Island {
     }
 
     /// Round-off of a gap: positions of this size, and their predictions, are no better known.
-    pub(super) fn gap_tolerance(&self) -> f64 {
+    pub(super) fn gap_tolerance(&self, settings: &SolveSettings) -> f64 {
         let size = self.blocks.iter().fold(0.0f64, |size, block| match block {
             Block::Flex(block) => size.max(block.extent()),
             Block::Rigid(block) => size.max(block.start().centre.amax()),
         });
-        ROUND_OFF * (1.0 + size)
+        ROUND_OFF * (settings.length_unit + size)
     }
 
     /// Opens the working set with what pressed in the last step.

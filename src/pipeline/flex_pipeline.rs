@@ -375,6 +375,7 @@ impl FlexPipeline {
             solver: self.parameters.contact_solver,
             restitution_threshold: self.parameters.restitution_threshold,
             max_newton: self.parameters.max_newton,
+            length_unit: f64::from(sets.integration_parameters.length_unit).abs(),
         };
         let mut reserve = self.reserve(flex_bodies);
         let summary = self
