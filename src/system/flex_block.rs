@@ -314,6 +314,9 @@ impl FlexBlock {
             self.displacement_q[dof] = state.displacement[dof];
             self.rate_q[dof] = 0.0;
         }
+        if let Some(surface) = &mut self.surface {
+            surface.begin(&self.model, &state.displacement, self.step.dt);
+        }
     }
 
     /// Writes the accelerations that a new body's loads and spin give it from an unstrained start.

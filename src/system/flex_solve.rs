@@ -366,10 +366,11 @@ impl FlexBlock {
         }
         let mut local = self.compliance.get(at, from);
         if let Some(surface) = self.surface.as_ref().filter(|_| of == Response::Position) {
-            // What `A⁻¹` has of it is damped.
+            // What `A⁻¹` has of it is damped by the weights of the masses.
             let Weights { b0, b1 } = self.step.weights;
             let damped = b0 + self.model.rayleigh().stiffness * b1;
-            local += (1.0 / b0 - 1.0 / damped) * surface.flexibility(at, from);
+            local +=
+                (1.0 / (b0 * surface.slowness()) - 1.0 / damped) * surface.flexibility(at, from);
         }
         if self.kind == Frame::Fixed {
             return local;

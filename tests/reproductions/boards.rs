@@ -67,7 +67,7 @@ fn springboard(rate: f64, n_through: usize, rayleigh: f64) -> Throw {
 }
 
 #[test]
-#[ignore = "open: with 2 and 3 cells the ball is thrown back to -0.34 to 0.10 m, not 0.29 to 0.32 m; 1.4 to 19 % of the energy brought are gained"]
+#[ignore = "open: with 2 and 3 cells the ball is thrown back to -0.34 to 0.18 m, not 0.29 to 0.32 m; 1.4 to 19 % of the energy brought are gained"]
 fn a_springboard_throws_back_whatever_its_cells_its_damping_and_the_step() {
     let mut findings = Findings::default();
     for rayleigh in [2e-3, 5e-3] {
@@ -122,7 +122,6 @@ fn steel_beam(rate: f64, n_through: usize, rayleigh: f64) -> Throw {
 }
 
 #[test]
-#[ignore = "open: with 2 and 4 cells a strongly damped beam stores 1.1 and 2.1 kJ of the 493 J brought"]
 fn a_ball_rebounds_from_a_steel_beam_whatever_the_cells_through_its_thickness() {
     rebound(&[1e-3]);
 }
@@ -179,7 +178,7 @@ fn rebound(dampings: &[f64]) {
 }
 
 #[test]
-#[ignore = "open: held still, 9.4e3 J (1/60 s) and 5.2e6 J (1/120 s) are gained of 160 J stored; 29 of 180 steps are not solved"]
+#[ignore = "open: held still, 2.0e5 J (1/60 s) and 1.7e5 J (1/120 s) are gained of 2,900 and 160 J stored; 42 of 180 steps are not solved"]
 fn a_ball_in_a_cup_on_a_bent_arm_brings_no_energy() {
     let mut findings = Findings::default();
     for rate in [60.0, 120.0] {
