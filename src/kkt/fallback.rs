@@ -51,7 +51,7 @@ impl Island {
             Block::Rigid(block) => has_joints && block.excess_turn() > TURNED,
         });
         if is_thrown || !is_solved {
-            self.hold(summary);
+            self.end_together(summary);
         }
     }
 
@@ -102,13 +102,7 @@ impl Island {
             }
         }
         if is_fed || after > greatest * before {
-            self.hold(summary);
-            for block in &mut self.blocks {
-                if let Block::Flex(block) = block {
-                    block.place_velocities();
-                    block.measure_elastic_energy();
-                }
-            }
+            self.end_together(summary);
             summary.work = self.actual_work(settings);
             summary.end_energy = self.end_energy();
         }
@@ -128,27 +122,6 @@ impl Island {
         let is_parting = contacts.any(|contact| contact.allowance < -deep);
         let gain = after - before - supply;
         summary.is_doubtful && !is_parting && gain > before + supply.max(0.0)
-    }
-
-    /// Leaves every member where the step began, at rest.
-    ///
-    /// Not if loads beyond all measure are to blame: then the step is to be refused.
-    fn hold(&mut self, summary: &mut IslandSummary) {
-        let is_overloaded =
-            |block: &Block| matches!(block, Block::Flex(block) if block.is_overloaded());
-        if self.blocks.iter().any(is_overloaded) {
-            return;
-        }
-        summary.is_held = true;
-        self.contacts.clear();
-        self.pressed_before.clear();
-        self.ties.clear();
-        for block in &mut self.blocks {
-            match block {
-                Block::Flex(block) => block.hold(),
-                Block::Rigid(block) => block.hold(),
-            }
-        }
     }
 
     /// The step that is taken when Newton's iterations fail: every block linearised, three rounds for the working set.

@@ -309,7 +309,7 @@ impl Island {
         self.solver.set_first(settings.solver);
         self.solve_positions(settings, memory, &mut summary);
         let before = self.start_energy();
-        let allowance = self.external_work();
+        let loads = self.external_work();
         let treatment = settings.treatment();
         summary.start_energy = before;
         let finished = treatment.finish(self, settings, &mut summary);
@@ -322,11 +322,18 @@ impl Island {
         }
         self.settle_damping();
         let joint_work = self.joint_work(settings);
-        let allowance = allowance + joint_work;
+        let allowance = loads + joint_work;
         summary.work = self.actual_work(settings) + joint_work;
         summary.end_energy = self.end_energy();
-        if self.has_gained(allowance + reserve.max(0.0), &summary) {
+        // Forces that no solution gave do no work to count on.
+        let supply = loads + reserve.max(0.0);
+        if self.has_gained(supply, &summary) {
             self.end_gently(settings, memory, &mut summary)?;
+        }
+        if self.has_gained(supply, &summary) {
+            self.end_together(&mut summary);
+            summary.work = self.actual_work(settings);
+            summary.end_energy = self.end_energy();
         }
         if treatment.limits_energy() {
             let stored = reserve.max(0.0);

@@ -28,6 +28,7 @@ mod partner;
 mod passage;
 mod position;
 mod sparse;
+mod together;
 mod velocity;
 
 pub use constraint_function::{ConstraintFunction, ContactMethod, EpsilonError};

@@ -1,7 +1,8 @@
 //! Ways back to the beginning of a step whose iterations have failed.
 
 use super::flex_block::FlexBlock;
-use crate::math::is_held;
+use crate::body::Frame;
+use crate::math::{Vec2, is_held, node_vec, perp, set_node_vec};
 
 impl FlexBlock {
     /// Puts the iterate back to the beginning of the step.
@@ -74,6 +75,33 @@ impl FlexBlock {
         self.shift = -start.acceleration;
         self.torque = 0.0;
         self.place();
+    }
+
+    /// Ends the step where it began, moving as a rigid body with this velocity of its centre (m/s) and spin (rad/s).
+    pub fn move_on(&mut self, velocity: Vec2, spin: f64) {
+        self.hold();
+        if self.is_explicit() {
+            self.move_on_explicitly(velocity, spin);
+            return;
+        }
+        (self.frame.velocity, self.frame.spin) = (velocity, spin);
+        if self.kind == Frame::Fixed {
+            for node in 0..self.model.n_nodes() {
+                let arm = node_vec(&self.position, node) - self.frame.centre;
+                set_node_vec(&mut self.rate, node, velocity + spin * perp(arm));
+            }
+        }
+        self.place();
+    }
+
+    /// Whether some dofs are pinned.
+    pub fn is_pinned(&self) -> bool {
+        self.is_fixed.iter().any(|fixed| *fixed)
+    }
+
+    /// Mass (kg) and polar inertia about the centre, at rest (kg m²).
+    pub fn inertia(&self) -> (f64, f64) {
+        (self.arms.mass, self.arms.polar)
     }
 
     /// Whether the loads alone would send the body beyond what can be held: that is no matter of contact. What acts on pins moves nothing.

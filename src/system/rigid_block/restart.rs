@@ -32,6 +32,12 @@ impl RigidBlock {
         self.current.angle = angle;
     }
 
+    /// Gives the body a velocity (m/s) and a spin (rad/s) where it is.
+    pub fn move_on(&mut self, velocity: Vec2, spin: f64) {
+        (self.current.velocity, self.current.spin) = (velocity, spin);
+        self.free = self.current;
+    }
+
     /// Ends the step where it began, without velocities, unless the motion is given.
     pub fn hold(&mut self) {
         if !self.is_prescribed {

@@ -1,0 +1,179 @@
+//! The end of a step that nothing else ends: everybody where the step began, and what touches moves on together.
+//!
+//! The places are those of the step before, so nothing overlaps that did not. Bodies that touch or are joined get the motion of one rigid
+//! body with the momentum and the angular momentum that they have together: no motion with these has less energy. Where one of them is
+//! held by the world, they move as that one does.
+
+use super::island::{Island, IslandSummary};
+use crate::math::{Vec2, cross, perp};
+use crate::system::{Block, RigidMotion};
+
+/// A group of blocks that touch, as one rigid body.
+#[derive(Clone, Copy, Debug, Default)]
+struct Group {
+    mass: f64,
+    moment: Vec2,
+    momentum: Vec2,
+    /// Polar inertia and angular momentum about its centre (kg m², kg m²/s).
+    polar: f64,
+    angular: f64,
+    /// The motion of a member that nothing moves.
+    anchor: Option<RigidMotion>,
+}
+
+impl Group {
+    fn centre(&self) -> Vec2 {
+        self.moment / self.mass
+    }
+
+    /// Velocity at a point (m/s) and spin (rad/s).
+    fn motion_at(&self, point: Vec2) -> (Vec2, f64) {
+        if let Some(anchor) = self.anchor {
+            let velocity = anchor.velocity + anchor.spin * perp(point - anchor.centre);
+            return (velocity, anchor.spin);
+        }
+        let spin = if self.polar > 0.0 {
+            self.angular / self.polar
+        } else {
+            0.0
+        };
+        let velocity = self.momentum / self.mass + spin * perp(point - self.centre());
+        (velocity, spin)
+    }
+}
+
+/// Mass, polar inertia and motion of a block at the beginning of the step, or the motion that it keeps whatever happens.
+fn inertia_of(block: &Block) -> Result<(f64, f64, RigidMotion), RigidMotion> {
+    match block {
+        Block::Flex(body) => {
+            let start = body.start_frame();
+            let motion = RigidMotion {
+                centre: start.centre,
+                angle: start.angle,
+                velocity: start.velocity,
+                spin: start.spin,
+            };
+            if body.is_pinned() {
+                let rest = RigidMotion {
+                    velocity: Vec2::zeros(),
+                    spin: 0.0,
+                    ..motion
+                };
+                return Err(rest);
+            }
+            let (mass, polar) = body.inertia();
+            Ok((mass, polar, motion))
+        }
+        Block::Rigid(body) => {
+            let motion = *body.start();
+            let is_free = body.moves_along().iter().all(|moves| *moves);
+            if body.is_prescribed() || body.link_response().is_some() || !is_free {
+                return Err(motion);
+            }
+            let [mass, _, polar] = body.mass();
+            Ok((mass, polar, motion))
+        }
+    }
+}
+
+impl Island {
+    /// Ends the step where it began.
+    ///
+    /// Not if loads beyond all measure are to blame: then the step is to be refused.
+    pub(super) fn end_together(&mut self, summary: &mut IslandSummary) {
+        let is_overloaded =
+            |block: &Block| matches!(block, Block::Flex(block) if block.is_overloaded());
+        if self.blocks.iter().any(is_overloaded) {
+            return;
+        }
+        (summary.is_cut, summary.is_stopped) = (false, true);
+        let leaders = self.touching_groups();
+        let mut groups = vec![Group::default(); self.blocks.len()];
+        for (block, &leader) in self.blocks.iter().zip(&leaders) {
+            let group = &mut groups[leader];
+            match inertia_of(block) {
+                Ok((mass, _, motion)) => {
+                    group.mass += mass;
+                    group.moment += mass * motion.centre;
+                    group.momentum += mass * motion.velocity;
+                }
+                Err(motion) => group.anchor = group.anchor.or(Some(motion)),
+            }
+        }
+        for (block, &leader) in self.blocks.iter().zip(&leaders) {
+            let group = &mut groups[leader];
+            if let Ok((mass, polar, motion)) = inertia_of(block) {
+                let arm = motion.centre - group.centre();
+                group.polar += polar + mass * arm.norm_squared();
+                group.angular += polar * motion.spin + mass * cross(arm, motion.velocity);
+            }
+        }
+        self.contacts.clear();
+        self.pressed_before.clear();
+        self.ties.clear();
+        for (block, &leader) in self.blocks.iter_mut().zip(&leaders) {
+            let own = inertia_of(block);
+            let (velocity, spin) = match own {
+                Ok((_, _, motion)) | Err(motion) => groups[leader].motion_at(motion.centre),
+            };
+            match block {
+                Block::Flex(body) if body.is_pinned() => body.move_on(Vec2::zeros(), 0.0),
+                Block::Flex(body) => body.move_on(velocity, spin),
+                Block::Rigid(body) => {
+                    body.hold();
+                    if own.is_ok() {
+                        body.move_on(velocity, spin);
+                    }
+                }
+            }
+        }
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.place_velocities();
+                block.measure_elastic_energy();
+            }
+        }
+    }
+
+    /// For each block the first one of those that it touches or is joined with, directly or by others.
+    fn touching_groups(&self) -> Vec<usize> {
+        let mut leaders: Vec<usize> = (0..self.blocks.len()).collect();
+        let mut join = |blocks: &mut dyn Iterator<Item = usize>| {
+            let mut first = None;
+            for block in blocks {
+                let found = leader_of(&leaders, block);
+                match first {
+                    None => first = Some(found),
+                    Some(other) => {
+                        let (low, high) = (found.min(other), found.max(other));
+                        leaders[high] = low;
+                        first = Some(low);
+                    }
+                }
+            }
+        };
+        let margin = self.path.least_margin();
+        for contact in &self.contacts {
+            let touches =
+                contact.is_closed() || contact.base.is_some_and(|base| base.gap <= margin);
+            if touches {
+                let attachments = contact.kinematics.attachments().iter();
+                join(&mut attachments.map(|attachment| attachment.block));
+            }
+        }
+        for tie in &self.ties {
+            let (from, to) = tie.row.grips;
+            join(&mut self.joint_grips[from..to].iter().map(|grip| grip.block));
+        }
+        (0..self.blocks.len())
+            .map(|block| leader_of(&leaders, block))
+            .collect()
+    }
+}
+
+fn leader_of(leaders: &[usize], mut block: usize) -> usize {
+    while leaders[block] != block {
+        block = leaders[block];
+    }
+    block
+}
