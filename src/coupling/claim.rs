@@ -80,6 +80,8 @@ pub(crate) struct Claims {
     pub(super) neighbours: Vec<ColliderHandle>,
     /// How far the fastest body goes in the step (m).
     pub(super) farthest: Real,
+    /// By how much members have left the boxes they were looked for in (m), when the step is solved again for that.
+    pub(super) excess: Real,
     /// Flexible bodies that sleep, and take no part, in the order of their slots.
     pub(super) asleep: Vec<Sleeper>,
     /// Their surfaces.
@@ -117,6 +119,7 @@ impl Claims {
     /// Looks ahead along the velocities of the flexible bodies, before the detection step.
     pub fn look_ahead(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
         let dt = f64::from(sets.integration_parameters.dt);
+        self.excess = 0.0;
         self.flex.clear();
         self.flex_of_collider.clear();
         self.asleep.clear();
@@ -306,7 +309,7 @@ impl Claims {
             return;
         };
         let dt = sets.integration_parameters.dt;
-        let own_box = swept_box(sets.bodies, own_collider, dt);
+        let own_box = loosened(swept_box(sets.bodies, own_collider, dt), self.excess);
         self.neighbours.clear();
         for pair in sets.narrow_phase.contact_pairs_with(own) {
             let other = if pair.collider1 == own {

@@ -65,6 +65,8 @@ pub(crate) struct GatherSettings {
     pub step: Step,
     /// Prediction distance of rapier (m).
     pub prediction: f64,
+    /// By how much members have left the boxes they were looked for in (m).
+    pub excess: f64,
     /// Whether flexible surfaces are led along a feasible path.
     pub uses_path: bool,
 }

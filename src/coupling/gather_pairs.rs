@@ -172,9 +172,10 @@ impl Gatherer {
         else {
             return false;
         };
-        let (reach, turn) = self
-            .agitation
-            .reach([one, other], settings.prediction + law.skin);
+        let (reach, turn) = self.agitation.reach(
+            [one, other],
+            settings.prediction + settings.excess + law.skin,
+        );
         for handle in handles {
             if let Some(collider) = sets.colliders.get(handle) {
                 self.outlines.outline(handle, collider);

@@ -20,6 +20,7 @@ mod hooks;
 mod joints;
 mod link_gate;
 mod links;
+mod look_again;
 mod masters;
 mod multibody;
 mod multibody_rows;

@@ -114,8 +114,9 @@ impl Claims {
         };
         let dt = sets.integration_parameters.dt;
         let travel = body.linvel().length() * dt;
-        let swept = swept_box(sets.bodies, collider, dt);
-        if travel + self.farthest <= sets.integration_parameters.prediction_distance() {
+        let swept = loosened(swept_box(sets.bodies, collider, dt), self.excess);
+        if travel + self.farthest + self.excess <= sets.integration_parameters.prediction_distance()
+        {
             return;
         }
         let mut meets_itself = false;

@@ -66,6 +66,9 @@ impl Default for FlexPipeline {
     }
 }
 
+/// Times that a step is solved again because members have left the boxes they were looked for in: each time with more of what is there.
+const MOST_LOOKS: usize = 3;
+
 impl FlexPipeline {
     /// A pipeline with `Beta2::damped(0.9)` and stabilized impacts.
     pub fn new() -> Self {
@@ -226,7 +229,7 @@ impl FlexPipeline {
         if let Some(joint) = self.claims.joint_to_carrier(sets) {
             return Err(StepError::CarrierJoint(joint));
         }
-        let is_detected = step.dt == 0.0
+        let mut is_detected = step.dt == 0.0
             || is_changed
             || self.claims.needs_detection(sets)
             || self.claims.has_attached_bodies(sets);
@@ -250,14 +253,30 @@ impl FlexPipeline {
         self.gatherer.retain(sets, flex_bodies);
         self.note_newcomers(sets, flex_bodies);
         clock.lap(&mut self.report.times.claim);
-        if let Err(error) = self.solve_islands(step, sets, flex_bodies, &mut clock) {
-            self.undo(flex_bodies, dissipated);
-            if is_detected {
-                // As above.
-                self.detect(sets);
+        for look in 0..=MOST_LOOKS {
+            if let Err(error) = self.solve_islands(step, sets, flex_bodies, &mut clock) {
+                self.undo(flex_bodies, dissipated);
+                if is_detected {
+                    // As above.
+                    self.detect(sets);
+                }
+                return Err(error);
             }
-            return Err(error);
+            if look == MOST_LOOKS || !self.looks_again(sets) {
+                break;
+            }
+            for (_, body) in flex_bodies.iter_mut() {
+                body.forget_start();
+            }
+            self.report.forget_solution(dissipated);
+            if !is_detected {
+                self.detect(sets);
+                is_detected = true;
+            }
+            self.claims.sweep(sets);
+            self.claims.walk(sets);
         }
+        self.report.is_detected = is_detected;
         self.keep_awake(sets, flex_bodies);
         hand_back(&mut self.landings, sets);
         self.links.lend(step, &self.claims, sets);
@@ -276,6 +295,13 @@ impl FlexPipeline {
         self.events.tell(sets);
         clock.lap(&mut self.report.times.hand_back);
         Ok(())
+    }
+
+    /// Whether members have left the boxes they were looked for in; these have grown then.
+    fn looks_again(&mut self, sets: &RapierSets<'_>) -> bool {
+        let gatherer = &self.gatherer;
+        self.claims
+            .widen(|index| gatherer.block(index), &self.landings, sets)
     }
 
     /// Rapier's step without length: what it stops is not told before the full step confirms it.
@@ -351,6 +377,7 @@ impl FlexPipeline {
             component,
             step,
             prediction: f64::from(sets.integration_parameters.prediction_distance()),
+            excess: self.claims.excess(),
             uses_path: self.parameters.feasible_path
                 && !step.is_explicit()
                 && self.parameters.contact_method == crate::kkt::ContactMethod::Lagrange,
