@@ -60,6 +60,22 @@ struct BlockBase {
     nodes: Option<usize>,
 }
 
+/// A copy of the base.
+#[derive(Debug, Default)]
+struct KeptBase {
+    base: Vec<BlockBase>,
+    nodes: Vec<f64>,
+}
+
+/// Which copy of the base.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Kept {
+    /// Where a step was stopped first.
+    Stop = 0,
+    /// The best place that the whole of it reached.
+    Arrival = 1,
+}
+
 impl BlockBase {
     fn motion(&self) -> RigidMotion {
         RigidMotion {
@@ -87,8 +103,8 @@ pub struct FeasiblePath {
     base: Vec<BlockBase>,
     /// Nodes of the flexible blocks at the base, interleaved (m).
     nodes: Vec<f64>,
-    kept_base: Vec<BlockBase>,
-    kept_nodes: Vec<f64>,
+    /// Copies of the base: where a step was stopped first, and the best place that the whole of it reached.
+    kept: [KeptBase; 2],
     scratch: Vec<Vec2>,
     edges: Vec<[u32; 2]>,
     /// Vertices at which forces have slid off within the step.
@@ -407,15 +423,17 @@ impl FeasiblePath {
     }
 
     /// Keeps a copy of the base.
-    pub(super) fn keep_base(&mut self) {
-        self.kept_base.clone_from(&self.base);
-        self.kept_nodes.clone_from(&self.nodes);
+    pub(super) fn keep_base(&mut self, which: Kept) {
+        let kept = &mut self.kept[which as usize];
+        kept.base.clone_from(&self.base);
+        kept.nodes.clone_from(&self.nodes);
     }
 
     /// Goes back to the copy kept; surfaces stay where they are.
-    pub(super) fn return_to_kept(&mut self) {
-        self.base.clone_from(&self.kept_base);
-        self.nodes.clone_from(&self.kept_nodes);
+    pub(super) fn return_to_kept(&mut self, which: Kept) {
+        let kept = &self.kept[which as usize];
+        self.base.clone_from(&kept.base);
+        self.nodes.clone_from(&kept.nodes);
     }
 
     /// Leaves the blocks at the base, with what else the iterate found.

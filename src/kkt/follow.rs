@@ -9,6 +9,7 @@ mod listing;
 
 use self::listing::Listing;
 use super::delassus::compliance;
+use super::feasible::Kept;
 use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
 use super::iterate::{ANGLE_TOLERANCE, ROWS_KEPT_FROM};
 use super::joint_rows::ActiveJoint;
@@ -91,6 +92,7 @@ impl Island {
             self.keep_applied_rows();
             self.arrival = stage;
             self.correct();
+            self.path.return_to_kept(Kept::Arrival);
             return Passed::Arrived;
         }
         if self.return_to_first_stop() {
@@ -248,7 +250,7 @@ impl Island {
         let mut stage = std::mem::take(&mut self.impact);
         self.keep(&mut stage, 0.0);
         self.impact = stage;
-        self.path.keep_base();
+        self.path.keep_base(Kept::Stop);
     }
 
     /// Goes back to the first impact; returns whether there was one.
@@ -259,7 +261,7 @@ impl Island {
         let stage = std::mem::take(&mut self.impact);
         self.return_to(&stage);
         self.impact = stage;
-        self.path.return_to_kept();
+        self.path.return_to_kept(Kept::Stop);
         true
     }
 
@@ -317,6 +319,7 @@ impl Island {
             let mut stage = std::mem::take(&mut self.arrival);
             self.keep(&mut stage, error);
             self.arrival = stage;
+            self.path.keep_base(Kept::Arrival);
         }
     }
 

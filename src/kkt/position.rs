@@ -54,7 +54,10 @@ impl Island {
         } else {
             match self.follow_path(settings, memory, tolerance, summary) {
                 Passed::Solved => {}
-                Passed::Arrived => summary.is_cut = true,
+                Passed::Arrived => {
+                    summary.is_cut = true;
+                    self.path.stop(&mut self.blocks);
+                }
                 Passed::Stopped => {
                     summary.is_stopped = true;
                     self.path.stop(&mut self.blocks);
