@@ -306,14 +306,6 @@ impl FeasiblePath {
                 .time_of_impact(&self.surfaces, &self.motion, &self.pairs, &mut self.hits);
         let part = impact.t.min(1.0).min(self.turning_part(blocks));
         self.look_back(part);
-        if std::env::var("FP").is_ok() && part < 1.0 {
-            eprintln!(
-                "   advance t {} turn {} hits {:?}",
-                impact.t,
-                self.turning_part(blocks),
-                self.hits
-            );
-        }
         self.go(part, blocks);
         part >= 1.0
     }

@@ -11,7 +11,7 @@ use self::listing::Listing;
 use super::delassus::compliance;
 use super::feasible::Kept;
 use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
-use super::iterate::{ANGLE_TOLERANCE, ROWS_KEPT_FROM};
+use super::iterate::ANGLE_TOLERANCE;
 use super::joint_rows::ActiveJoint;
 use super::position::{PARTING_RATE, ROUND_OFF};
 use crate::constraint::contact::ContactMemory;
@@ -28,9 +28,6 @@ const LARGE_TOLERANCE: f64 = 1e-3;
 
 /// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
 const PASSES_PER_ITERATION: usize = 2;
-
-/// Passes after which rows are measured anew.
-const ROUND: usize = 10;
 
 /// Share of the margin by which true gaps may miss what the law asks for (-).
 const CLOSE_ENOUGH: f64 = 0.05;
@@ -79,11 +76,7 @@ impl Island {
         self.impact.is_known = false;
         self.arrival.is_known = false;
         self.left.clear();
-        let ok = self.try_passes(settings, memory, tolerance, summary);
-        if std::env::var("FP").is_ok() {
-            eprintln!("STEP solved {ok} arrival {}", self.arrival.is_known);
-        }
-        if ok {
+        if self.try_passes(settings, memory, tolerance, summary) {
             return Passed::Solved;
         }
         if self.arrival.is_known {
@@ -120,8 +113,7 @@ impl Island {
         self.list_near(&listing);
         listing.memory = None;
         let mut turned = self.correct();
-        let (mut n_stopped, mut n_arrived, mut n_stops) = (0, 0, 0);
-        let mut last_error = f64::INFINITY;
+        let mut n_stopped = 0;
         for pass in 0..PASSES_PER_ITERATION * settings.max_newton {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
@@ -137,14 +129,11 @@ impl Island {
             if !misleads {
                 arrives = self.path.advance(&self.blocks);
                 n_stopped += usize::from(!arrives);
-                n_arrived += usize::from(arrives);
-                n_stops = if arrives { 0 } else { n_stops + 1 };
-                // Where the base has been stopped, geometry is not what the rows were measured in.
-                listing.keeps_rows = false;
                 listing.pass = pass + 1;
+                // Rows that turn to and fro are left as they are in the end: gaps are true all the same.
+                listing.keeps_rows = is_eased && arrives;
                 self.list_near(&listing);
                 error = self.measure(false);
-                last_error = error;
             }
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
             // Forces of the last step that are kept must be right, or what rests creeps.
@@ -154,41 +143,6 @@ impl Island {
                 self.enough(is_eased, tolerance)
             };
             let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
-            if std::env::var("FP").is_ok() {
-                eprintln!(
-                    "  pass {pass} n {} arrives {arrives} misleads {misleads} err {error:.2e} enough {enough:.2e} turned {turned:.2e} more {has_more} large {}",
-                    self.contacts.len(),
-                    self.is_large()
-                );
-                for c in &self.contacts {
-                    let e = match c.base {
-                        Some(b) => format!(
-                            "{:?} {} m {}",
-                            b.near.point,
-                            match b.near.target {
-                                crate::path::Target::Edge(e) => format!("E{e} xi {:.3}", b.near.xi),
-                                crate::path::Target::Vertex(v) => format!("V{v}"),
-                            },
-                            b.is_meeting
-                        ),
-                        None => format!("signed {}", c.candidate),
-                    };
-                    if c.multiplier[0] != 0.0 || c.gap() < 1e-5 {
-                        eprintln!(
-                            "      {e} lost {} p {:.3e} {:.3e} gap {:.3e} slip {:.3e} {:?} n {:.4} {:.4} hard {}",
-                            c.is_lost,
-                            c.multiplier[0],
-                            c.multiplier[1],
-                            c.gap(),
-                            c.slip,
-                            c.status,
-                            c.kinematics.normal.x,
-                            c.kinematics.normal.y,
-                            c.is_hard
-                        );
-                    }
-                }
-            }
             if arrives && is_close && !has_more {
                 self.keep_applied_rows();
                 return true;
@@ -196,7 +150,7 @@ impl Island {
             if arrives && !has_more && turned <= CLOSE_ENOUGH {
                 self.keep_arrival(error);
             }
-            if !misleads && self.path.retreat(&self.blocks) {
+            if !misleads && !listing.keeps_rows && self.path.retreat(&self.blocks) {
                 self.list_near(&Listing {
                     is_again: true,
                     ..listing
@@ -210,7 +164,7 @@ impl Island {
                 self.restiffen_turns(settings);
             }
             self.note_left();
-            self.turn_signed_rows(!misleads && !listing.keeps_rows);
+            self.turn_signed_rows(!misleads);
             let solved = self.solve_multipliers(settings, true, tolerance, summary);
             if solved.is_err() || self.contradicts(settings) {
                 return false;

@@ -7,11 +7,14 @@
 
 use super::{FeasiblePath, Way};
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
-use crate::math::Vec2;
+use crate::math::{Vec2, perp};
 use crate::path::{NearPair, Target};
 
 /// Passes within a step that have a force slide off at a vertex before its two sides are held together there.
 const SLIDES: usize = 2;
+
+/// Times within a step that vertices are held together.
+const MOST_HELD: usize = 2;
 
 /// Marks the names of meetings in contact keys.
 const MEETING: u32 = 1 << 30;
@@ -28,15 +31,18 @@ pub(super) struct Meeting {
     /// Normals and directions of force on the first member, the two that are farthest from each other; of length one.
     normals: [Vec2; 2],
     forces: [Vec2; 2],
-    /// Whether the vertices are held together.
+    /// Whether the vertices are held together, and how often they were and need not be.
     is_held: bool,
+    n_over: usize,
 }
 
 impl FeasiblePath {
-    /// Notes that the force of a contact has slid from one near pair to another, with the rows of both, in a pass of the step.
+    /// Notes that the force of a contact has slid from one near pair to another, or off a corner, with the rows of both (or twice the same
+    /// one), in a pass of the step.
     pub(in crate::kkt) fn note_slide(
         &mut self,
-        [from, to]: [&NearPair; 2],
+        from: &NearPair,
+        to: Option<&NearPair>,
         rows: [&Kinematics; 2],
         multiplier: [f64; 2],
         pass: usize,
@@ -50,16 +56,21 @@ impl FeasiblePath {
         } else {
             ([met, point], -1.0)
         };
-        let signs = [sign, if to.point == from.point { sign } else { -sign }];
-        let forces = [0, 1].map(|side| {
-            let (normal, tangent) = (rows[side].normal, rows[side].tangent());
-            signs[side] * (multiplier[0] * normal + multiplier[1] * tangent)
-        });
-        if forces[0].norm() <= 0.0 {
+        let row = rows[0];
+        let own = sign * row.normal;
+        let next = match to {
+            Some(to) if to.point == from.point => sign * rows[1].normal,
+            Some(_) => -sign * rows[1].normal,
+            None => sign * self.other_normal(from, met, row.normal),
+        };
+        let force = multiplier[0] * own + multiplier[1] * sign * row.tangent();
+        if force.norm() <= 0.0 {
             return;
         }
-        let forces = forces.map(|force| force.normalize());
-        let normals = [0, 1].map(|side| signs[side] * rows[side].normal);
+        let force = force.normalize();
+        // The same share of friction on the other side.
+        let turned = force.dot(&own) * next + force.dot(&perp(own)) * perp(next);
+        let (normals, forces) = ([own, next], [force, turned]);
         let known = self
             .meetings
             .iter_mut()
@@ -75,6 +86,7 @@ impl FeasiblePath {
                     normals,
                     forces,
                     is_held: false,
+                    n_over: 0,
                 });
                 let Some(meeting) = self.meetings.last_mut() else {
                     return;
@@ -86,8 +98,26 @@ impl FeasiblePath {
         (meeting.last, meeting.normals, meeting.forces) = (pass, normals, forces);
         let is_wide = |[a, b]: [Vec2; 2]| a.dot(&b) <= LEAST_COSINE;
         let turns = (normals[0] - normals[1]).norm() > SAME;
-        meeting.is_held =
-            turns && meeting.slides >= SLIDES && !is_wide(normals) && !is_wide(forces);
+        meeting.is_held = turns
+            && meeting.n_over < MOST_HELD
+            && meeting.slides >= SLIDES
+            && !is_wide(normals)
+            && !is_wide(forces);
+    }
+
+    /// The normal on the other side of a vertex that is slid over, on the side of this normal; this normal where there is none.
+    fn other_normal(&self, near: &NearPair, vertex: usize, normal: Vec2) -> Vec2 {
+        let is_other = |edge: &&u32| near.target != Target::Edge(**edge as usize);
+        let Some(&edge) = self.surfaces.edges_at(vertex).iter().find(is_other) else {
+            return normal;
+        };
+        let [from, to] = self.surfaces.ends(edge as usize);
+        let across = perp(to - from).normalize();
+        if across.dot(&normal) < 0.0 {
+            -across
+        } else {
+            across
+        }
     }
 
     /// The vertices of the point and of the target that a near pair has come to: where another near pair takes over.
@@ -191,6 +221,7 @@ impl FeasiblePath {
         let held = self.meetings.iter_mut();
         for meeting in held.filter(|one| one.vertices == [near.point, vertex]) {
             (meeting.is_held, meeting.slides) = (false, 0);
+            meeting.n_over += 1;
         }
     }
 }

@@ -70,22 +70,6 @@ impl FeasiblePath {
         if last.wanted > WHOLE {
             last.wanted = 1.0;
         }
-        if std::env::var("FP").is_ok() {
-            eprintln!(
-                "   share {share} wanted {} part {part} now {:e} before {:e}",
-                last.wanted,
-                last.now
-                    .iter()
-                    .map(|v| v.norm_squared())
-                    .sum::<f64>()
-                    .sqrt(),
-                last.before
-                    .iter()
-                    .map(|v| v.norm_squared())
-                    .sum::<f64>()
-                    .sqrt()
-            );
-        }
         last.part = part;
     }
 

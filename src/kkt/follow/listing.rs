@@ -15,10 +15,10 @@ pub(super) struct Listing<'a> {
     pub memory: Option<&'a ContactMemory>,
     /// Passes of the step so far.
     pub pass: usize,
-    /// Whether no forces have been found since the last list.
-    pub is_again: bool,
     /// Whether rows that are at work stay as they are.
     pub keeps_rows: bool,
+    /// Whether no forces have been found since the last list.
+    pub is_again: bool,
     /// Overlap beyond which a contact parts by and by (m), and the share of it that stays for this step.
     pub slop: f64,
     pub kept: f64,
@@ -119,6 +119,13 @@ impl Island {
                 is_lost: true,
                 ..*contact
             });
+            let may_meet = !listing.is_again && !base.is_meeting && !contact.is_lost;
+            if may_meet && !self.path.is_at_meeting(&base.near) {
+                let rows = [&contact.kinematics; 2];
+                let multiplier = contact.multiplier;
+                self.path
+                    .note_slide(&base.near, None, rows, multiplier, listing.pass);
+            }
             return;
         };
         let met = self.contacts[next];
@@ -143,7 +150,8 @@ impl Island {
         {
             let rows = [&contact.kinematics, &met.kinematics];
             self.path.note_slide(
-                [&base.near, &now.near],
+                &base.near,
+                Some(&now.near),
                 rows,
                 contact.multiplier,
                 listing.pass,
@@ -151,7 +159,7 @@ impl Island {
         }
     }
 
-    /// The contact, new in this list, of the vertices where another one has slid off.
+    /// The contact, new in this list or without a force, of the vertices where another one has slid off.
     fn next_of(&self, contact: &ActiveContact, base: &AtBase) -> Option<usize> {
         let vertices = self.path.slid_over(&base.near)?;
         let normal = contact.kinematics.normal;
@@ -168,7 +176,11 @@ impl Island {
             (near.pair == base.near.pair && self.path.is_at(near, vertices))
                 .then(|| (slot, side(near) * next.kinematics.normal.dot(&normal)))
         };
-        let found = self.fresh.iter().filter_map(|&slot| along(slot));
+        let is_free = |&slot: &usize| {
+            let next = &self.contacts[slot];
+            !next.is_lost && (next.multiplier == [0.0; 2] || self.fresh.contains(&slot))
+        };
+        let found = (0..self.contacts.len()).filter(is_free).filter_map(along);
         let nearest = found.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
         (nearest.1 > 0.0).then_some(nearest.0)
     }
