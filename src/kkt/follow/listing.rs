@@ -119,7 +119,9 @@ impl Island {
                 is_lost: true,
                 ..*contact
             });
-            let may_meet = !listing.is_again && !base.is_meeting && !contact.is_lost;
+            // Corners of rigid bodies lose forces for good.
+            let may_meet =
+                !contact.is_hard && !listing.is_again && !base.is_meeting && !contact.is_lost;
             if may_meet && !self.path.is_at_meeting(&base.near) {
                 let rows = [&contact.kinematics; 2];
                 let multiplier = contact.multiplier;
