@@ -130,9 +130,7 @@ fn hit(
     let at = dice.between(0.2, 1.0) * width;
     let is_led = dice.roll() < 0.5;
     let mut scene = Scene::in_free_space(1.0 / rate).with_integrator(integrator);
-    if is_led {
-        scene = scene.on_feasible_path();
-    }
+    scene.flex.parameters.feasible_path = is_led;
     let body = FlexBodyBuilder::rectangle([width, height], cells)
         .material(elastic(young, 1000.0, stiffness).damping(Rayleigh { mass, stiffness }));
     let body = match hold {

@@ -50,7 +50,7 @@ fn rows(scene: &mut Scene, [n_columns, n_rows]: [usize; 2], gap: f64) -> Vec<Rig
 
 /// The fastest of such boxes if rapier alone is given them just touching (m/s): what it does with a pile that it has not stacked.
 fn settling(size: [usize; 2]) -> f64 {
-    let mut scene = Scene::new(DT).on_feasible_path();
+    let mut scene = Scene::new(DT);
     let boxes = rows(&mut scene, size, 0.0);
     let speeds = (0..60).map(|_| {
         scene.try_step().expect("rapier steps alone");
@@ -62,7 +62,7 @@ fn settling(size: [usize; 2]) -> f64 {
 /// Lays a soft block on rows of boxes that rapier has brought to rest, and lifts it off again.
 fn claim_and_release(findings: &mut Findings, size: [usize; 2]) {
     let [n_columns, n_rows] = size;
-    let mut scene = Scene::new(DT).on_feasible_path();
+    let mut scene = Scene::new(DT);
     let boxes = rows(&mut scene, size, 1e-3);
     let name = format!("{n_rows} rows of {n_columns}");
     for _ in 0..180 {
@@ -197,7 +197,7 @@ fn boxes_poured_on_a_plank_come_to_rest_on_it() {
 fn nine_soft_blocks_poured_into_a_bin_come_to_rest() {
     let mut findings = Findings::default();
     for young in [1e6, 1e7] {
-        let mut scene = Scene::new(DT).on_feasible_path();
+        let mut scene = Scene::new(DT);
         scene.ground(0.5);
         for x in [-1.0, 1.0] {
             scene.fixed(ColliderBuilder::cuboid(0.1, 3.0).translation(vec2(x, 3.0)));

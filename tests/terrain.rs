@@ -18,7 +18,7 @@ const GROUNDS: [(Made, Relief); 7] = [
 
 /// A soft body that falls a metre or so on a ground, for 3 s; with the first and the last half second.
 fn land(findings: &mut Findings, form: Form, young: f64, (made, relief): (Made, Relief)) {
-    let mut scene = Scene::new(DT).on_feasible_path();
+    let mut scene = Scene::new(DT);
     scene.fixed(ground_of(made, relief, 5.0));
     let body = scene.flexible(
         form.builder()
@@ -131,7 +131,7 @@ fn soft_stars_stay_above_the_ground_where_it_is_open() {
 fn boxes_and_soft_bodies_gather_in_a_valley() {
     let mut findings = Findings::default();
     for (made, young) in [(Made::Polyline(0.1), 1e6), (Made::Heights(0.2), 1e7)] {
-        let mut scene = Scene::new(DT).on_feasible_path();
+        let mut scene = Scene::new(DT);
         scene.fixed(ground_of(made, Relief::Valley, 5.0).friction(0.5));
         let mut mass = 0.0;
         for k in 0..16 {
@@ -172,7 +172,7 @@ fn boxes_and_soft_bodies_gather_in_a_valley() {
 
 /// How far a car gets in 5 s (m), and how fast it is in the last (m/s).
 fn drive(ground: (Made, Relief), young: Option<f64>) -> ([f64; 2], Onlooker) {
-    let mut scene = Scene::new(DT).on_feasible_path();
+    let mut scene = Scene::new(DT);
     scene.fixed(ground_of(ground.0, ground.1, 40.0).friction(1.0));
     let chassis = car(&mut scene, young);
     let place = |scene: &Scene| place_of(&scene.world.bodies[chassis])[0];
@@ -232,7 +232,7 @@ fn a_car_with_soft_tyres_drives_over_waves() {
 
 /// Speed along the ground (m/s), and largest speed across in its last half (m/s), of what slid for a second from 10 m/s.
 fn slide(made: Made, friction: f64, put: impl Fn(&mut Scene)) -> ([f64; 2], Onlooker) {
-    let mut scene = Scene::new(DT).on_feasible_path();
+    let mut scene = Scene::new(DT);
     scene.fixed(
         ground_of(made, Relief::Flat, 30.0)
             .friction(real(friction))

@@ -31,7 +31,7 @@ enum Foot {
 
 /// Boxes on each other, this far apart (m).
 fn tower(foot: Foot, n: usize, gap: f64) -> (Scene, FlexBodyHandle, Vec<RigidBodyHandle>) {
-    let mut scene = Scene::new(DT).on_feasible_path();
+    let mut scene = Scene::new(DT);
     scene.ground(0.5);
     let (builder, top) = match foot {
         Foot::Block(young) => {
@@ -203,7 +203,7 @@ const LIMIT: f64 = 0.1075;
 
 /// A semicircular arch of so many rigid stones, between springings of which `n_flexible` are flexible.
 fn arch(n: usize, thickness: f64, n_flexible: usize) -> (Scene, Vec<RigidBodyHandle>) {
-    let mut scene = Scene::new(DT).on_feasible_path();
+    let mut scene = Scene::new(DT);
     let mut is_flexible = [false; 2];
     for (side, is_flexible) in is_flexible.iter_mut().enumerate() {
         let x = RADIUS * (2.0 * side as f64 - 1.0);

@@ -1,10 +1,13 @@
 //! The feasible path of an island: which surfaces are kept apart, where they are at the base of the path, and what of it the rows need.
 
 mod around;
+mod kept;
 mod meetings;
 mod retreat;
 mod rows;
 
+pub(super) use self::kept::Kept;
+use self::kept::KeptBase;
 use self::meetings::Meeting;
 use self::retreat::LastWay;
 use crate::constraint::contact::{ContactLaw, ContactMemory, Owner};
@@ -58,22 +61,6 @@ struct BlockBase {
     centre: Vec2,
     angle: f64,
     nodes: Option<usize>,
-}
-
-/// A copy of the base.
-#[derive(Debug, Default)]
-struct KeptBase {
-    base: Vec<BlockBase>,
-    nodes: Vec<f64>,
-}
-
-/// Which copy of the base.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Kept {
-    /// Where a step was stopped first.
-    Stop = 0,
-    /// The best place that the whole of it reached.
-    Arrival = 1,
 }
 
 impl BlockBase {
@@ -412,20 +399,6 @@ impl FeasiblePath {
                 }
             }
         }
-    }
-
-    /// Keeps a copy of the base.
-    pub(super) fn keep_base(&mut self, which: Kept) {
-        let kept = &mut self.kept[which as usize];
-        kept.base.clone_from(&self.base);
-        kept.nodes.clone_from(&self.nodes);
-    }
-
-    /// Goes back to the copy kept; surfaces stay where they are.
-    pub(super) fn return_to_kept(&mut self, which: Kept) {
-        let kept = &self.kept[which as usize];
-        self.base.clone_from(&kept.base);
-        self.nodes.clone_from(&kept.nodes);
     }
 
     /// Leaves the blocks at the base, with what else the iterate found.

@@ -312,7 +312,6 @@ impl ActiveContact {
             return f64::MAX;
         }
         if base.is_meeting && self.status[1] != Status::Stick {
-            // Vertices that need not be held together are not.
             return f64::MAX;
         }
         self.law_error(gap, friction)

@@ -2,6 +2,7 @@
 
 mod accounts;
 mod checks;
+mod clearing;
 mod clock;
 #[cfg(feature = "debug-render")]
 mod debug_render;
@@ -17,6 +18,7 @@ mod rest;
 mod settings;
 #[cfg(feature = "serde-serialize")]
 mod snapshot;
+mod solve;
 
 #[cfg(feature = "debug-render")]
 pub use debug_render::FlexDebugRender;

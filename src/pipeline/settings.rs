@@ -36,8 +36,11 @@ pub struct FlexParameters {
     /// Most passes (Newton iterations) of an island in a step, at least 1; 20 by default, twice as many along a feasible path. What becomes of an island that needs more is told
     /// by [`StepReport::quality`](super::StepReport::quality).
     pub max_newton: usize,
-    /// Whether implicit steps with Lagrange multipliers lead the surfaces of flexible bodies along a *feasible path*: from placement to
-    /// placement without overlap, however the forces come out; no by default. See [`FlexPipeline::on_feasible_path`].
+    /// Whether implicit steps with Lagrange multipliers lead the surfaces of bodies along a *feasible path*; yes by default.
+    ///
+    /// A step goes from placement to placement and stops where surfaces would meet, whatever the forces are. What is not solved within the
+    /// budget ends there, and [`StepReport::quality`](super::StepReport::quality) tells of it. Flexible bodies rest
+    /// [`FlexBody::contact_offset`](crate::body::FlexBody::contact_offset) apart. Pairs shown to hooks and what overlaps to begin with are not led.
     pub feasible_path: bool,
     /// Whether steps longer than the critical one are taken all the same; no by default. See [`FlexPipeline::insisting`].
     pub insists: bool,
@@ -121,19 +124,6 @@ impl FlexPipeline {
     /// explicit body.
     pub fn insisting(mut self) -> Self {
         self.parameters.insists = true;
-        self
-    }
-
-    /// Leads the surfaces of flexible bodies along a *feasible path*, in implicit steps with Lagrange multipliers.
-    ///
-    /// A step goes from placement to placement and stops where the surfaces of flexible bodies would meet, whatever the forces are. What is not
-    /// solved within the budget ends there, and [`StepReport::quality`](super::StepReport::quality) tells of it. Flexible bodies rest a
-    /// hundredth of their shortest edge apart. Pairs of rigid bodies, pairs shown to hooks, and what overlaps when it is inserted are not led.
-    ///
-    /// The way is new. It helps where flexible bodies meet polylines and height fields, into which the ordinary way lets them sink. It leaves
-    /// more steps unsolved where corners meet the nodes of soft surfaces, and in piles, where it may also gain energy.
-    pub fn on_feasible_path(mut self) -> Self {
-        self.parameters.feasible_path = true;
         self
     }
 

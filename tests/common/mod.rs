@@ -90,12 +90,6 @@ impl Scene {
         scene
     }
 
-    /// With every step on the feasible path: see [`FlexPipeline::on_feasible_path`].
-    pub fn on_feasible_path(mut self) -> Self {
-        self.flex.parameters.feasible_path = true;
-        self
-    }
-
     pub fn with_gravity(mut self, x: f64, y: f64) -> Self {
         self.world.gravity = vec2(x, y);
         self

@@ -20,7 +20,7 @@ fn boxes(scene: &mut Scene, n: usize, n_columns: usize, pitch: f64, left: f64) {
 
 /// Boxes in twenty columns on a flexible slab held at both ends.
 fn slab(n: usize) -> Onlooker {
-    let mut scene = Scene::new(1.0 / 60.0).on_feasible_path();
+    let mut scene = Scene::new(1.0 / 60.0);
     scene.flexible(
         FlexBodyBuilder::rectangle([8.0, 0.4], [64, 4])
             .material(elastic(1e8, 1000.0, 2e-3))
@@ -76,7 +76,7 @@ fn boxes_at_rest_on_a_slab_cost_in_proportion_to_their_number() {
 
 /// Sixty boxes in six rows on fixed ground, and a soft block that falls on them if it `has_block`.
 fn pile(has_block: bool) -> (Scene, Onlooker) {
-    let mut scene = Scene::new(1.0 / 60.0).on_feasible_path();
+    let mut scene = Scene::new(1.0 / 60.0);
     scene.ground(0.5);
     boxes(&mut scene, 60, 10, 0.31, -1.5);
     if has_block {
@@ -125,7 +125,7 @@ fn a_soft_block_comes_to_rest_on_a_pile_of_sixty_boxes() {
 
 /// Middle time of a step of so many separate blocks at rest on a floor (s).
 fn separate(n: usize) -> f64 {
-    let mut scene = Scene::new(1.0 / 60.0).on_feasible_path();
+    let mut scene = Scene::new(1.0 / 60.0);
     scene.fixed(ColliderBuilder::cuboid(500.0, 0.5).translation(vec2(0.0, -0.5)));
     for i in 0..n {
         scene.flexible(

@@ -4,7 +4,7 @@ use crate::common::*;
 
 /// Where a car with these tyres is after 5 s (m), and what was seen.
 fn drive(young: Option<f64>) -> (f64, Onlooker) {
-    let mut scene = Scene::new(1.0 / 60.0).on_feasible_path();
+    let mut scene = Scene::new(1.0 / 60.0);
     scene.fixed(ground_of(Made::Polyline(0.1), Relief::Flat, 40.0).friction(1.0));
     let chassis = car(&mut scene, young);
     let mut onlooker = Onlooker::default();
@@ -35,7 +35,7 @@ fn roll(
     speed: f64,
     time: f64,
 ) -> (Scene, FlexBodyHandle, Onlooker) {
-    let mut scene = Scene::new(1.0 / 60.0).on_feasible_path();
+    let mut scene = Scene::new(1.0 / 60.0);
     scene.fixed(ground_of(made, Relief::Flat, 60.0).friction(1.0));
     let spin = -speed / WHEEL[0];
     let tyre = scene.flexible(tyre([0.0, 0.451], young).linvel([speed, 0.0]).angvel(spin));
