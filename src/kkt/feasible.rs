@@ -6,8 +6,7 @@ mod meetings;
 mod retreat;
 mod rows;
 
-pub(super) use self::kept::Kept;
-use self::kept::KeptBase;
+pub(super) use self::kept::KeptBase;
 use self::meetings::Meeting;
 use self::retreat::LastWay;
 use crate::constraint::contact::{ContactLaw, ContactMemory, Owner};
@@ -90,8 +89,6 @@ pub struct FeasiblePath {
     base: Vec<BlockBase>,
     /// Nodes of the flexible blocks at the base, interleaved (m).
     nodes: Vec<f64>,
-    /// Copies of the base: where a step was stopped first, and the best place that the whole of it reached.
-    kept: [KeptBase; 2],
     scratch: Vec<Vec2>,
     edges: Vec<[u32; 2]>,
     /// Vertices at which forces have slid off within the step.
@@ -397,20 +394,6 @@ impl FeasiblePath {
                 if let Point::Arm(arm) = own.point {
                     *place = pose.point(arm);
                 }
-            }
-        }
-    }
-
-    /// Leaves the blocks at the base, with what else the iterate found.
-    pub(super) fn stop(&self, blocks: &mut [Block]) {
-        for (base, block) in self.base.iter().zip(blocks) {
-            match (block, base.nodes) {
-                (Block::Flex(body), Some(first)) => {
-                    let n = body.positions().len();
-                    body.stop_at(&self.nodes[first..first + n]);
-                }
-                (Block::Rigid(body), _) => body.stop_at(base.centre, base.angle),
-                _ => {}
             }
         }
     }

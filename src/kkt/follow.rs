@@ -9,7 +9,7 @@ mod listing;
 
 use self::listing::Listing;
 use super::delassus::compliance;
-use super::feasible::Kept;
+use super::feasible::KeptBase;
 use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
 use super::iterate::ANGLE_TOLERANCE;
 use super::joint_rows::ActiveJoint;
@@ -53,6 +53,7 @@ pub(super) struct Stage {
     contacts: Vec<ActiveContact>,
     ties: Vec<ActiveJoint>,
     grips: Vec<JointGrip>,
+    base: KeptBase,
     /// How far the laws are from holding (m).
     error: f64,
 }
@@ -113,7 +114,9 @@ impl Island {
         self.list_near(&listing);
         listing.memory = None;
         let mut turned = self.correct();
-        let mut n_stopped = 0;
+        let (mut n_stopped, mut n_arrived, mut n_stops) = (0, 0, 0);
+        let mut last_error = f64::INFINITY;
+        let mut has_left = false;
         for pass in 0..PASSES_PER_ITERATION * settings.max_newton {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
@@ -123,11 +126,14 @@ impl Island {
             let misleads = is_guess && self.measure(true) > near;
             let mut arrives = false;
             let mut error = 0.0;
-            if !self.is_finite() || self.leads_around() {
+            if !self.is_finite() || has_left && self.leads_around() {
                 return false;
             }
             if !misleads {
                 arrives = self.path.advance(&self.blocks);
+                if !arrives {
+                    self.path.list_stopping(&mut self.left);
+                }
                 n_stopped += usize::from(!arrives);
                 listing.pass = pass + 1;
                 // Rows that turn to and fro are left as they are in the end: gaps are true all the same.
@@ -145,9 +151,9 @@ impl Island {
             let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
             if arrives && is_close && !has_more {
                 self.keep_applied_rows();
-                return true;
+                return !self.leads_around();
             }
-            if arrives && !has_more && turned <= CLOSE_ENOUGH {
+            if arrives && !has_more && turned <= CLOSE_ENOUGH && !self.leads_around() {
                 self.keep_arrival(error);
             }
             if !misleads && !listing.keeps_rows && self.path.retreat(&self.blocks) {
@@ -163,8 +169,8 @@ impl Island {
             if !self.ties.is_empty() && pass > 0 && pass % 5 == 0 {
                 self.restiffen_turns(settings);
             }
-            self.note_left();
-            self.turn_signed_rows(!misleads);
+            has_left = self.note_left();
+            self.turn_signed_rows(!misleads && !listing.keeps_rows);
             let solved = self.solve_multipliers(settings, true, tolerance, summary);
             if solved.is_err() || self.contradicts(settings) {
                 return false;
@@ -204,7 +210,6 @@ impl Island {
         let mut stage = std::mem::take(&mut self.impact);
         self.keep(&mut stage, 0.0);
         self.impact = stage;
-        self.path.keep_base(Kept::Stop);
     }
 
     /// Goes back to the first impact; returns whether there was one.
@@ -215,7 +220,6 @@ impl Island {
         let stage = std::mem::take(&mut self.impact);
         self.return_to(&stage);
         self.impact = stage;
-        self.path.return_to_kept(Kept::Stop);
         true
     }
 
@@ -283,30 +287,35 @@ impl Island {
         stage.contacts.clone_from(&self.contacts);
         stage.ties.clone_from(&self.ties);
         stage.grips.clone_from(&self.joint_grips);
+        self.path.keep_base(&mut stage.base);
     }
 
+    /// Puts the forces and the blocks back. Forces alone do not tell where a body is that turns under them: what is found from them begins
+    /// there.
     fn return_to(&mut self, stage: &Stage) {
         self.contacts.clone_from(&stage.contacts);
         self.ties.clone_from(&stage.ties);
         self.joint_grips.clone_from(&stage.grips);
+        self.path.return_to(&stage.base);
+        self.path.stop(&mut self.blocks);
     }
 
-    /// Notes what has slid off the other body of its contact within the step: its force is taken out by the next solve.
-    fn note_left(&mut self) {
+    /// Notes what has slid off the other body of its contact within the step: its force is taken out by the next solve. Returns whether
+    /// anything has.
+    fn note_left(&mut self) -> bool {
         let lost = self.contacts.iter().filter(|contact| contact.is_lost);
         let keys = lost.map(|contact| self.candidates[contact.candidate].key);
-        self.path.list_left(keys, &mut self.left);
+        self.path.list_left(keys, &mut self.left)
     }
 
-    /// Whether something that has slid off ends, without that contact's force, behind what it met: it would have gone around within the
-    /// step.
+    /// Whether something that was stopped or has slid off within the step and is near no more ends, without a force, behind what it met: it
+    /// would have gone around within the step.
     fn leads_around(&mut self) -> bool {
         let left = std::mem::take(&mut self.left);
         let is_led = left
             .iter()
             .any(|way| self.path.leads_around(*way, &self.blocks));
         self.left = left;
-        self.left.clear();
         is_led
     }
 

@@ -54,14 +54,11 @@ impl Island {
         } else {
             match self.follow_path(settings, memory, tolerance, summary) {
                 Passed::Solved => {}
-                Passed::Arrived => {
-                    summary.is_cut = true;
-                    self.path.stop(&mut self.blocks);
-                }
-                Passed::Stopped => {
-                    summary.is_stopped = true;
-                    self.path.stop(&mut self.blocks);
-                }
+                Passed::Arrived => summary.is_cut = true,
+                Passed::Stopped => summary.is_stopped = true,
+            }
+            if summary.is_cut || summary.is_stopped {
+                self.path.stop(&mut self.blocks);
             }
             for contact in &mut self.contacts {
                 contact.is_lost = false;

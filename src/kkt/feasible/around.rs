@@ -8,8 +8,11 @@ use crate::system::Block;
 
 impl FeasiblePath {
     /// Whether the straight way of two members from the beginning of the step to the blocks' iterate leads through one another: then the
-    /// path has led around, where no motion of one step leads.
+    /// path has led around, where no motion of one step leads. Not asked while something of them is near.
     pub(in crate::kkt) fn leads_around(&mut self, way: usize, blocks: &[Block]) -> bool {
+        if self.near.iter().any(|near| near.pair == way) {
+            return false;
+        }
         self.scratch.clear();
         self.scratch.extend_from_slice(self.surfaces.points());
         let members = self.ways[way].members;
@@ -38,14 +41,22 @@ impl FeasiblePath {
         impact.t < 1.0
     }
 
-    /// Lists the ways of contacts that are lost and that have no near pairs any more.
+    /// Adds the ways that stopped the base when it was moved last.
+    pub(in crate::kkt) fn list_stopping(&self, ways: &mut Vec<usize>) {
+        ways.extend(self.hits.iter().map(|hit| hit.pair));
+        ways.sort_unstable();
+        ways.dedup();
+    }
+
+    /// Adds the ways of contacts that are lost; returns whether there are any.
     pub(in crate::kkt) fn list_left(
         &self,
         lost: impl Iterator<Item = ContactKey>,
         left: &mut Vec<usize>,
-    ) {
-        left.clear();
+    ) -> bool {
+        let mut is_any = false;
         for key in lost {
+            is_any = true;
             let owners = key.owners();
             let is_named = |way: &Way| {
                 let [one, other] = way.owners;
@@ -56,6 +67,6 @@ impl FeasiblePath {
         }
         left.sort_unstable();
         left.dedup();
-        left.retain(|way| !self.near.iter().any(|near| near.pair == *way));
+        is_any
     }
 }

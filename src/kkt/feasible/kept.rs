@@ -1,35 +1,39 @@
-//! Copies of the base, to end a step at.
+//! Places on the path that a step may come back to.
 
 use super::{BlockBase, FeasiblePath};
+use crate::system::Block;
 
 /// A copy of the base.
 #[derive(Debug, Default)]
-pub(super) struct KeptBase {
+pub(in crate::kkt) struct KeptBase {
     base: Vec<BlockBase>,
     nodes: Vec<f64>,
 }
 
-/// Which copy of the base.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::kkt) enum Kept {
-    /// Where a step was stopped first.
-    Stop = 0,
-    /// The best place that the whole of it reached.
-    Arrival = 1,
-}
-
 impl FeasiblePath {
-    /// Keeps a copy of the base.
-    pub(in crate::kkt) fn keep_base(&mut self, which: Kept) {
-        let kept = &mut self.kept[which as usize];
+    /// Copies the base.
+    pub(in crate::kkt) fn keep_base(&self, kept: &mut KeptBase) {
         kept.base.clone_from(&self.base);
         kept.nodes.clone_from(&self.nodes);
     }
 
-    /// Goes back to the copy kept; surfaces stay where they are.
-    pub(in crate::kkt) fn return_to_kept(&mut self, which: Kept) {
-        let kept = &self.kept[which as usize];
+    /// Goes back to a copy; surfaces stay where they are.
+    pub(in crate::kkt) fn return_to(&mut self, kept: &KeptBase) {
         self.base.clone_from(&kept.base);
         self.nodes.clone_from(&kept.nodes);
+    }
+
+    /// Leaves the blocks at the base, with what else the iterate found.
+    pub(in crate::kkt) fn stop(&self, blocks: &mut [Block]) {
+        for (base, block) in self.base.iter().zip(blocks) {
+            match (block, base.nodes) {
+                (Block::Flex(body), Some(first)) => {
+                    let n = body.positions().len();
+                    body.stop_at(&self.nodes[first..first + n]);
+                }
+                (Block::Rigid(body), _) => body.stop_at(base.centre, base.angle),
+                _ => {}
+            }
+        }
     }
 }
