@@ -1,7 +1,7 @@
 //! The range: a target, a projectile aimed at it, and what became of them.
 
 use crate::common::*;
-use crate::crossing::{Frame, P, mix, net_crossings, side};
+use crate::crossing::{Frame, P, encloses, mix, net_crossings, side};
 use std::f64::consts::{PI, TAU};
 
 /// What is shot at.
@@ -281,39 +281,70 @@ impl Range {
         sick_flexible(&self.scene.bodies).is_none() && sick_rigid(&self.scene.world).is_none()
     }
 
+    /// The surface of a flexible projectile.
+    fn surface(&self) -> Vec<P> {
+        let Some(bullet) = self.bullet else {
+            return Vec::new();
+        };
+        let body = self.scene.body(bullet);
+        let nodes = body.mesh().boundary().nodes().iter();
+        nodes.map(|&node| body.position(node)).collect()
+    }
+
     /// Steps until the shot must have arrived and been turned back.
+    ///
+    /// What is inside of a body that is crushed to nothing comes out of its surface, as nothing but small strains keeps it there. Then the
+    /// report must say so, and the body is where most of its surface is.
     pub fn run(&mut self) -> Outcome {
         let mut outcome = Outcome::default();
         let flight = (self.shot.distance + self.shot.size) / (self.shot.speed * self.shot.dt);
         let n_steps = flight.ceil() as usize + 12;
         let mut net = 0;
-        let mut before = self.frame();
+        let (mut before, mut surface_before) = (self.frame(), self.surface());
+        let mut surface_nets = vec![0; surface_before.len()];
         let mut is_round = false;
         for step in 0..n_steps {
-            let report = match self.scene.try_step() {
-                Ok(report) => report,
+            let is_overbent = match self.scene.try_step() {
+                Ok(report) => {
+                    outcome.n_held += report.n_held();
+                    let mut overbent = report.overbent().iter();
+                    overbent.any(|one| Some(one.body) == self.bullet)
+                }
                 Err(error) => {
                     outcome.error = Some(format!("step {step}: {error}"));
                     return outcome;
                 }
             };
-            outcome.n_held += report.n_held();
             if !self.is_finite() {
                 outcome.not_finite = true;
                 return outcome;
             }
-            let after = self.frame();
+            let (mut after, surface) = (self.frame(), self.surface());
             net += net_crossings(&before, &after);
+            let middle = after.point;
+            for (node, total) in surface_nets.iter_mut().enumerate() {
+                (before.point, after.point) = (surface_before[node], surface[node]);
+                *total += net_crossings(&before, &after);
+            }
+            after.point = middle;
             let now = side(&after);
             is_round |= now == 0;
+            let is_crushed = self.bullet.is_some() && !encloses(&surface, middle);
+            let n_passed = surface_nets.iter().filter(|net| **net != 0).count();
             if outcome.tunnelled.is_none() {
-                if net != 0 {
+                if is_crushed {
+                    if !is_overbent {
+                        outcome.tunnelled = Some(format!("step {step}: crushed without a word"));
+                    } else if 2 * n_passed > surface.len() {
+                        outcome.tunnelled = Some(format!("step {step}: {n_passed} of the surface"));
+                    }
+                } else if net != 0 {
                     outcome.tunnelled = Some(format!("step {step}: net {net}, side {now}"));
                 } else if !is_round && now != BEGAN {
                     outcome.tunnelled = Some(format!("step {step}: side {now}"));
                 }
             }
-            before = after;
+            (before, surface_before) = (after, surface);
         }
         outcome
     }

@@ -30,8 +30,8 @@ fn a_thousand_random_shots_never_pass_through_what_they_hit() {
     findings.report();
 }
 
-/// Shots that once came to the other side: places that the path had reached were found anew from their forces, elsewhere (565, 903, 9368), and bodies
-/// that had been stopped went round an end within the step (2388, 10281, 11500).
+/// Shots that once came to the other side: places that the path had reached were found anew from their forces, elsewhere (565, 903, 9368),
+/// and bodies that had been stopped went round an end within the step (2388, 10281, 11500).
 #[test]
 fn shots_that_slide_from_edge_to_edge_and_past_ends_stay_on_their_side() {
     let mut findings = Findings::default();
