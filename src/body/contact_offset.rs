@@ -2,18 +2,18 @@
 
 use super::FlexBody;
 use crate::fe::model::Model;
-use crate::math::node_vec;
+use crate::math::{REAL_EPSILON, node_vec};
 
 /// Offset between a flexible surface and what it touches, relative to its shortest edge at rest: far above rounding, far below what
 /// the mesh resolves. Between two hundredths and a thousandth of an edge no result depends on it but by its own size.
 const OFFSET: f64 = 1e-2;
 
-/// Spacings of single precision, at the coordinates of the body, that an offset is never below: rapier holds poses in it.
+/// Spacings of rapier's numbers, at the coordinates of the body, that an offset is never below: rapier holds poses in it.
 const SPACINGS: f64 = 8.0;
 
 /// The offset of a flexible body's surface, with the largest of its coordinates (m).
 pub(crate) fn contact_offset(model: &Model, extent: f64) -> f64 {
-    let spacing = SPACINGS * f64::from(f32::EPSILON) * extent;
+    let spacing = SPACINGS * REAL_EPSILON * extent;
     (OFFSET * shortest_edge(model)).max(spacing)
 }
 
@@ -27,7 +27,7 @@ fn shortest_edge(model: &Model) -> f64 {
 
 impl FlexBody {
     /// Distance at which the surface closes with other flexible bodies and with terrain that has no thickness (m): a hundredth of its shortest edge, of
-    /// two bodies the smaller one; more only where single precision holds no such distance. Rigid bodies with an inside it touches without.
+    /// two bodies the smaller one; more only where rapier's numbers hold no such distance. Rigid bodies with an inside it touches without.
     pub fn contact_offset(&self) -> f64 {
         let positions = self.positions();
         let extent = positions.iter().fold(0.0f64, |most, x| most.max(x.abs()));

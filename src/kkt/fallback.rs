@@ -51,8 +51,7 @@ impl Island {
             Block::Rigid(block) => has_joints && block.excess_turn() > TURNED,
         });
         if is_thrown || !is_solved {
-            summary.is_held = true;
-            self.end_together(summary);
+            summary.is_held = self.end_together(summary);
         }
     }
 
@@ -103,10 +102,8 @@ impl Island {
             }
         }
         if is_fed || after > greatest * before {
-            summary.is_held = true;
-            self.end_together(summary);
-            summary.work = self.actual_work(settings);
-            summary.end_energy = self.end_energy();
+            summary.is_held = self.end_together(summary);
+            self.measure_ended(settings, summary);
         }
     }
 

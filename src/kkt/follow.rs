@@ -86,7 +86,6 @@ impl Island {
             self.keep_applied_rows();
             self.arrival = stage;
             self.correct();
-            self.path.return_to_kept(Kept::Arrival);
             return Passed::Arrived;
         }
         if self.return_to_first_stop() {
@@ -114,8 +113,7 @@ impl Island {
         self.list_near(&listing);
         listing.memory = None;
         let mut turned = self.correct();
-        let (mut n_stopped, mut n_arrived, mut n_stops) = (0, 0, 0);
-        let mut last_error = f64::INFINITY;
+        let mut n_stopped = 0;
         let mut has_left = false;
         for pass in 0..PASSES_PER_ITERATION * settings.max_newton {
             summary.n_newton += 1;
@@ -198,7 +196,7 @@ impl Island {
     fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
         if is_eased {
             CLOSE_ENOUGH * self.path.least_margin()
-        } else if self.is_large() {
+        } else if self.is_sparse(2 * self.contacts.len() + self.ties.len()) {
             tolerance.max(LARGE_TOLERANCE * self.path.least_margin())
         } else {
             tolerance
@@ -277,7 +275,6 @@ impl Island {
             let mut stage = std::mem::take(&mut self.arrival);
             self.keep(&mut stage, error);
             self.arrival = stage;
-            self.path.keep_base(Kept::Arrival);
         }
     }
 
@@ -317,11 +314,6 @@ impl Island {
             .any(|way| self.path.leads_around(*way, &self.blocks));
         self.left = left;
         is_led
-    }
-
-    /// Whether the contacts at hand are solved as a sparse problem.
-    fn is_large(&self) -> bool {
-        self.is_sparse(2 * self.contacts.len() + self.ties.len())
     }
 
     /// Goes back to the rows that the forces of the iterate acted along, with the gaps of the base.

@@ -15,10 +15,10 @@ const GAINED: f64 = 0.01;
 const TOUCHING: f64 = 1.0;
 
 impl Island {
-    /// Whether a step that is not solved has gained energy.
+    /// Whether a step along the path that is not solved has gained energy.
     pub(super) fn has_gained(&self, supply: f64, summary: &IslandSummary) -> bool {
         let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
-        let is_unsolved = summary.is_cut || summary.is_stopped;
+        let is_unsolved = (summary.is_cut || summary.is_stopped) && !self.path.is_empty();
         let gain = after - before - supply.max(0.0);
         is_unsolved && (gain.is_nan() || gain > GAINED * (before + supply.max(0.0)))
     }

@@ -332,8 +332,7 @@ impl Island {
         }
         if self.has_gained(supply, &summary) {
             self.end_together(&mut summary);
-            summary.work = self.actual_work(settings);
-            summary.end_energy = self.end_energy();
+            self.measure_ended(settings, &mut summary);
         }
         if treatment.limits_energy() {
             let stored = reserve.max(0.0);

@@ -4,7 +4,7 @@
 //! body with the momentum and the angular momentum that they have together: no motion with these has less energy. Where one of them is
 //! held by the world, they move as that one does.
 
-use super::island::{Island, IslandSummary};
+use super::island::{Island, IslandSummary, SolveSettings};
 use crate::math::{Vec2, cross, perp};
 use crate::system::{Block, RigidMotion};
 
@@ -53,7 +53,7 @@ fn inertia_of(block: &Block) -> Result<(f64, f64, RigidMotion), RigidMotion> {
                 velocity: start.velocity,
                 spin: start.spin,
             };
-            if body.is_pinned() {
+            if body.is_pinned() || body.is_explicit() {
                 let rest = RigidMotion {
                     velocity: Vec2::zeros(),
                     spin: 0.0,
@@ -77,16 +77,19 @@ fn inertia_of(block: &Block) -> Result<(f64, f64, RigidMotion), RigidMotion> {
 }
 
 impl Island {
-    /// Ends the step where it began.
+    /// Ends the step where it began; returns whether it does.
     ///
     /// Not if loads beyond all measure are to blame: then the step is to be refused.
-    pub(super) fn end_together(&mut self, summary: &mut IslandSummary) {
+    pub(super) fn end_together(&mut self, summary: &mut IslandSummary) -> bool {
         let is_overloaded =
             |block: &Block| matches!(block, Block::Flex(block) if block.is_overloaded());
         if self.blocks.iter().any(is_overloaded) {
-            return;
+            return false;
         }
         (summary.is_cut, summary.is_stopped) = (false, true);
+        // Explicit bodies wait at rest for their forces, and so does what they meet.
+        let is_explicit = |block: &Block| matches!(block, Block::Flex(body) if body.is_explicit());
+        let has_explicit = self.blocks.iter().any(is_explicit);
         let leaders = self.touching_groups();
         let mut groups = vec![Group::default(); self.blocks.len()];
         for (block, &leader) in self.blocks.iter().zip(&leaders) {
@@ -117,22 +120,29 @@ impl Island {
                 Ok((_, _, motion)) | Err(motion) => groups[leader].motion_at(motion.centre),
             };
             match block {
-                Block::Flex(body) if body.is_pinned() => body.move_on(Vec2::zeros(), 0.0),
+                Block::Flex(body) if body.is_pinned() || body.is_explicit() => body.hold(),
                 Block::Flex(body) => body.move_on(velocity, spin),
                 Block::Rigid(body) => {
                     body.hold();
-                    if own.is_ok() {
+                    if own.is_ok() && !has_explicit {
                         body.move_on(velocity, spin);
                     }
                 }
             }
         }
+        true
+    }
+
+    /// Makes velocities and energies known of members that have been put elsewhere after the stages.
+    pub(super) fn measure_ended(&mut self, settings: &SolveSettings, summary: &mut IslandSummary) {
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {
                 block.place_velocities();
                 block.measure_elastic_energy();
             }
         }
+        summary.work = self.actual_work(settings);
+        summary.end_energy = self.end_energy();
     }
 
     /// For each block the first one of those that it touches or is joined with, directly or by others.

@@ -27,3 +27,6 @@ pub fn is_held(value: f64) -> bool {
 pub fn are_held(values: &[f64]) -> bool {
     values.iter().fold(true, |all, &value| all & is_held(value))
 }
+
+/// Spacing of rapier's numbers at one.
+pub const REAL_EPSILON: f64 = Real::EPSILON as f64;

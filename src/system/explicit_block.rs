@@ -254,13 +254,6 @@ impl FlexBlock {
         self.explicit.acceleration.fill(0.0);
     }
 
-    pub(super) fn move_on_explicitly(&mut self, velocity: Vec2, spin: f64) {
-        for node in 0..self.model.n_nodes() {
-            let arm = node_vec(&self.position, node) - self.frame.centre;
-            set_node_vec(&mut self.velocity, node, velocity + spin * perp(arm));
-        }
-    }
-
     /// Ratio `β / dt` of the damping term (-).
     pub(super) fn lag(&self) -> f64 {
         self.model.rayleigh().stiffness / self.step.dt

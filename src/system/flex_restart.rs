@@ -77,13 +77,9 @@ impl FlexBlock {
         self.place();
     }
 
-    /// Ends the step where it began, moving as a rigid body with this velocity of its centre (m/s) and spin (rad/s).
+    /// Ends the step where it began, moving as a rigid body with this velocity of its centre (m/s) and spin (rad/s); implicit steps only.
     pub fn move_on(&mut self, velocity: Vec2, spin: f64) {
         self.hold();
-        if self.is_explicit() {
-            self.move_on_explicitly(velocity, spin);
-            return;
-        }
         (self.frame.velocity, self.frame.spin) = (velocity, spin);
         if self.kind == Frame::Fixed {
             for node in 0..self.model.n_nodes() {
