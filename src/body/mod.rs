@@ -10,6 +10,7 @@ mod error;
 mod flex_body;
 mod frame;
 mod handle;
+mod kept_motion;
 mod pick;
 mod pin;
 #[cfg(feature = "serde-serialize")]
@@ -31,6 +32,7 @@ pub use error::{BuildError, FlexBodyError};
 pub use flex_body::FlexBody;
 pub use frame::{Arms, Frame, frame_of_pins};
 pub use handle::FlexBodyHandle;
+pub(crate) use kept_motion::KeptMotion;
 pub use pick::SurfacePick;
 pub use pin::Pin;
 #[cfg(feature = "serde-serialize")]

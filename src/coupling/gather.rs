@@ -11,6 +11,7 @@ use super::rigid_pairs::Agitation;
 use super::rigid_ways::RigidCores;
 use super::sets::RapierSets;
 use super::shapes::ShapeCache;
+use super::under_way::{Span, UnderWay};
 use super::ways::Draft;
 use crate::body::FlexBodySet;
 use crate::constraint::contact::Owner;
@@ -46,6 +47,8 @@ pub(crate) struct Gatherer {
     block_of_body: HashMap<RigidBodyHandle, usize>,
     pub(super) flex_blocks: HashMap<usize, usize>,
     pub(super) agitation: Agitation,
+    /// Where members are between two parts of a step.
+    pub under_way: UnderWay,
     /// Multipliers of joints in the last step.
     pub joint_memory: JointMemory,
     /// What the user's hooks said of the contacts gathered.
@@ -61,8 +64,10 @@ pub(crate) struct Gatherer {
 pub(crate) struct GatherSettings {
     /// The component of the claim to gather.
     pub component: usize,
-    /// Step length and weights.
+    /// Step length and weights, those of the part that is solved.
     pub step: Step,
+    /// Which part of the step it is.
+    pub span: Span,
     /// Prediction distance of rapier (m).
     pub prediction: f64,
     /// By how much members have left the boxes they were looked for in (m).
@@ -226,10 +231,14 @@ impl Gatherer {
                 outcome.is_ok()
             });
         }
+        let rest = body.model().rest_positions();
+        let pins = self
+            .under_way
+            .pins(index, settings.span, rest, body.prescribed());
         let load = FlexLoad {
             force: body.nodal_force(),
             gravity,
-            prescribed: body.prescribed(),
+            prescribed: pins.as_deref().unwrap_or(body.prescribed()),
             reaction: body.reactions(),
         };
         let outcome = outcome.and_then(|()| block.predict(settings.step, body.state(), &load));
@@ -254,7 +263,10 @@ impl Gatherer {
             return Ok(());
         };
         let load = load_of(body, from_rapier(sets.gravity));
-        let (mut motion, acceleration) = masters.motion(handle, body, load.drive());
+        let (mut motion, acceleration) = match self.under_way.rigid(handle) {
+            Some(known) => known,
+            None => masters.motion(handle, body, load.drive()),
+        };
         cap_speed(&mut motion, body, sets.integration_parameters);
         if !is_held_motion(&motion) || !is_held_load(&load) {
             return Err(GatherError::RigidBody(handle));

@@ -8,7 +8,7 @@ use super::reading::GatherError;
 use super::sets::RapierSets;
 use crate::body::{Anchor, Attachment, AttachmentKind, AttachmentTarget, FlexBodySet, Shift};
 use crate::constraint::joint::{
-    JointGrip, JointKey, JointLaw, JointOwner, JointRow, Measure, Spring,
+    JointGrip, JointKey, JointLaw, JointMemory, JointOwner, JointRow, Measure, Spring,
 };
 use crate::kkt::Island;
 use crate::math::Vec2;
@@ -78,13 +78,22 @@ impl Gatherer {
         };
         let mut writer = RowWriter {
             island,
-            memory: &self.joint_memory,
+            memory: self.last_joints(settings),
             owner: joints::owner_of(handle),
             sides: [first, second],
             dt: settings.step.dt,
         };
         writer.write(&joint.data);
         Ok(())
+    }
+
+    /// Multipliers of joints where the step, or its part, begins.
+    fn last_joints(&self, settings: &GatherSettings) -> &JointMemory {
+        if settings.span.is_first() {
+            &self.joint_memory
+        } else {
+            &self.under_way.joints
+        }
     }
 
     /// The block of a rigid body: its own if it is claimed, or one that moves as rapier says.
@@ -113,7 +122,7 @@ impl Gatherer {
         let [own, other] = flex.map(|flex| flex.and_then(|flex| self.flex_block(flex)));
         let (target, centre) = match attachment.target {
             AttachmentTarget::World => {
-                let block = moved_world(attachment, settings.step.dt);
+                let block = moved_world(attachment, settings);
                 (Some(self.push_rigid(block, None, island)), attachment.pivot)
             }
             AttachmentTarget::RigidBody(handle) => {
@@ -138,7 +147,7 @@ impl Gatherer {
             for (measure, law) in rows_of(attachment.kind) {
                 let key = JointKey { owner, row };
                 row += 1;
-                let remembered = self.joint_memory.recall(&key);
+                let remembered = self.last_joints(settings).recall(&key);
                 let first = island.joint_grips.len();
                 hold_anchor(island, (target, centre), anchor);
                 let weight = 1.0 / nodes.len() as f64;
@@ -214,7 +223,8 @@ fn rows_of(kind: AttachmentKind) -> impl Iterator<Item = (Measure, JointLaw)> {
 }
 
 /// The world's side of an attachment, which moves as the user has said.
-fn moved_world(attachment: &Attachment, dt: f64) -> RigidBlock {
+fn moved_world(attachment: &Attachment, settings: &GatherSettings) -> RigidBlock {
+    let dt = settings.step.dt / settings.span.share();
     let Attachment {
         pivot, last, next, ..
     } = attachment;
@@ -224,5 +234,6 @@ fn moved_world(attachment: &Attachment, dt: f64) -> RigidBlock {
         velocity: (next.offset - last.offset) / dt,
         spin: (next.angle - last.angle) / dt,
     };
-    RigidBlock::prescribed(place(last), place(next))
+    let [start, end] = settings.span.of(place(last), place(next));
+    RigidBlock::prescribed(start, end)
 }

@@ -3,10 +3,10 @@
 //! All axes are locked for that step, so neither contacts nor gravity act, and the velocity is the one that lands the
 //! body on our result; then axes and true end velocities return.
 
-use super::masters::{Masters, cap_speed};
+use super::masters::{Masters, cap_speed, local_centre};
 use super::sets::RapierSets;
-use crate::math::{Vec2, atan2, from_rapier, tan, to_rapier};
-use crate::rapier::math::Real;
+use crate::math::{self, REAL_EPSILON, Vec2, atan2, from_rapier, tan, to_rapier};
+use crate::rapier::math::{Pose, Real, Rotation};
 use crate::rapier::prelude::*;
 use crate::system::RigidBlock;
 use crate::system::RigidMotion;
@@ -68,9 +68,18 @@ pub(crate) fn hand_back(landings: &mut [Landing], sets: &mut RapierSets<'_>) {
 
 /// Restores axes and end velocities after rapier's step, and keeps the motions in `f64`.
 ///
-/// Where rapier's continuous collision detection stopped a body earlier, its pose counts.
-pub(crate) fn land(landings: &[Landing], sets: &mut RapierSets<'_>, masters: &mut Masters) {
+/// Rapier's continuous collision detection sweeps every fast body along a straight way and stops it where nothing was solved. What `is_led`
+/// along a feasible path passes through nothing, and is put where it was led to; of others rapier's pose counts.
+pub(crate) fn land(
+    landings: &[Landing],
+    is_led: bool,
+    sets: &mut RapierSets<'_>,
+    masters: &mut Masters,
+) {
     for landing in landings {
+        if is_led {
+            put_where_led(landing, sets);
+        }
         let Some(body) = sets.bodies.get_mut(landing.handle) else {
             continue;
         };
@@ -89,6 +98,45 @@ pub(crate) fn land(landings: &[Landing], sets: &mut RapierSets<'_>, masters: &mu
     }
     masters.turn_over(sets.bodies);
 }
+
+/// Puts a body where it was led to, if rapier has stopped it on the way.
+fn put_where_led(landing: &Landing, sets: &mut RapierSets<'_>) {
+    let Some(body) = sets.bodies.get_mut(landing.handle) else {
+        return;
+    };
+    let motion = &landing.motion;
+    let angle = atan2(f64::from(body.rotation().im), f64::from(body.rotation().re));
+    let missed = from_rapier(body.center_of_mass()) - motion.centre;
+    let rounding = LANDED * REAL_EPSILON;
+    let is_there = missed.norm() <= rounding * (1.0 + motion.centre.norm())
+        && wrap(motion.angle - angle).abs() <= rounding;
+    if is_there || !body.is_enabled() {
+        return;
+    }
+    let turn = math::rotation(motion.angle);
+    let rotation = Rotation {
+        re: turn.m11 as Real,
+        im: turn.m21 as Real,
+    };
+    let pose = Pose::from_parts(
+        to_rapier(motion.centre - turn * local_centre(body)),
+        rotation,
+    );
+    body.set_position(pose, false);
+    for &handle in body.colliders() {
+        let Some(collider) = sets.colliders.get_mut(handle) else {
+            continue;
+        };
+        if let Some(own) = collider.position_wrt_parent() {
+            collider.set_position(pose * own);
+            sets.broad_phase
+                .set_aabb(sets.integration_parameters, handle, collider.compute_aabb());
+        }
+    }
+}
+
+/// Roundings by which a landing may miss: of rapier's substeps.
+const LANDED: f64 = 64.0;
 
 /// A landing this exact, relative to the distance from the origin, is rapier's rounding and no clamp.
 const LANDING_TOLERANCE: f64 = 1e-4;

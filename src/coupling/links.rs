@@ -15,6 +15,7 @@ use super::link_gate::Borrowed;
 use super::multibody::{Pace, Tree};
 use super::reading::{GatherError, is_held_motion, prescribed_block};
 use super::sets::RapierSets;
+use super::under_way::Span;
 use crate::kkt::Island;
 use crate::math::{Vec2, to_rapier};
 use crate::rapier::math::{Real, Vector};
@@ -154,7 +155,7 @@ impl Gatherer {
         sets: &RapierSets<'_>,
     ) -> Option<RigidBlock> {
         let Step { dt, weights } = settings.step;
-        let block = prescribed_block(sets.bodies.get(handle)?, dt);
+        let block = prescribed_block(sets.bodies.get(handle)?, dt, settings.span);
         if is_moving_link(sets, handle) {
             let start = link_motion(handle, *block.start(), sets);
             Some(RigidBlock::link(start, weights, dt))
@@ -328,7 +329,7 @@ impl Foreseen {
 fn prescribe(members: &[LinkBlock], dt: f64, sets: &RapierSets<'_>, island: &mut Island) {
     for member in members {
         if let Some(body) = sets.bodies.get(member.handle) {
-            island.blocks[member.block] = Block::Rigid(prescribed_block(body, dt));
+            island.blocks[member.block] = Block::Rigid(prescribed_block(body, dt, Span::WHOLE));
         }
     }
 }

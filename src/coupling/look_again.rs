@@ -43,14 +43,14 @@ impl Claims {
                 excess = excess.max(out);
             }
         }
-        let known = sets.integration_parameters.prediction_distance();
+        let known = sets.integration_parameters.prediction_distance() + self.excess;
         for landing in landings {
             let Some(body) = sets.bodies.get(landing.handle) else {
                 continue;
             };
             let out = beyond(body, landing, sets) as Real;
             if out > known {
-                excess = excess.max(out);
+                excess = excess.max(out - self.excess);
             }
         }
         if excess <= 0.0 || !excess.is_finite() {

@@ -39,6 +39,7 @@ mod sensor_events;
 mod sets;
 mod shapes;
 mod sleep;
+mod under_way;
 mod ways;
 
 pub(crate) use carrier::{is_carried, sync_settings, write_surface};
@@ -58,3 +59,4 @@ pub(crate) use record::CouplingRecord;
 pub use sets::RapierSets;
 pub(crate) use shapes::{ShapeFault, rounding};
 pub(crate) use sleep::{is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving};
+pub(crate) use under_way::Span;

@@ -2,6 +2,7 @@
 
 use super::masters::{local_centre, read_motion};
 use super::shapes::{ShapeFault, pose_of};
+use super::under_way::Span;
 use crate::body::FlexBodyHandle;
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
@@ -63,7 +64,10 @@ pub(super) fn at_rest(pose: &Pose2) -> RigidMotion {
 }
 
 /// A fixed or kinematic body, or one rapier keeps for itself: it moves as rapier says.
-pub(super) fn prescribed_block(body: &RigidBody, dt: f64) -> RigidBlock {
+///
+/// - `dt`: length of the part of the step (s).
+pub(super) fn prescribed_block(body: &RigidBody, dt: f64, span: Span) -> RigidBlock {
+    let dt = dt / span.share();
     let start = read_motion(body);
     if body.is_fixed() {
         let rest = RigidMotion {
@@ -88,6 +92,7 @@ pub(super) fn prescribed_block(body: &RigidBody, dt: f64) -> RigidBlock {
         velocity: (centre - start.centre) / dt,
         spin: turned / dt,
     };
+    let [start, end] = span.of(start, end);
     RigidBlock::prescribed(start, end)
 }
 

@@ -5,7 +5,8 @@
 //! changed along the response to the contact forces, which leaves momentum alone.
 
 use super::delassus::RowDirection;
-use super::island::{Island, IslandSummary, SolveSettings};
+use super::island::{Island, SolveSettings};
+use super::summary::IslandSummary;
 use crate::math::Vec2;
 use crate::system::{Balance, Block, FlexBlock, Response, RigidBlock, RigidMotion};
 
@@ -38,15 +39,27 @@ impl Island {
         sum
     }
 
+    /// Work of applied forces (J).
+    pub(super) fn applied_work(&self) -> f64 {
+        let works = self.blocks.iter().map(|block| match block {
+            Block::Flex(block) => block.applied_work(),
+            Block::Rigid(block) => block.applied_work(),
+        });
+        works.sum()
+    }
+
+    /// Kinetic energy that the loads would give to the blocks at rest if nothing held them (J).
+    pub(super) fn load_energy(&self) -> f64 {
+        let energies = self.blocks.iter().map(|block| match block {
+            Block::Flex(block) => block.load_energy(),
+            Block::Rigid(block) => block.load_energy(),
+        });
+        energies.sum()
+    }
+
     /// Work of applied forces and of the contact forces of driven bodies, prescribed ones and links of multibodies (J).
     pub(super) fn actual_work(&self, settings: &SolveSettings) -> f64 {
-        let mut work = 0.0;
-        for block in &self.blocks {
-            work += match block {
-                Block::Flex(block) => block.applied_work(),
-                Block::Rigid(block) => block.applied_work(),
-            };
-        }
+        let mut work = self.applied_work();
         for contact in &self.contacts {
             let [normal, tangent] = contact.force(settings.dt);
             let kinematics = &contact.kinematics;
@@ -64,13 +77,7 @@ impl Island {
 
     /// Work done on the island by applied forces and, at most, by moving driven bodies (J).
     pub(super) fn external_work(&self) -> f64 {
-        let mut work = 0.0;
-        for block in &self.blocks {
-            work += match block {
-                Block::Flex(block) => block.applied_work(),
-                Block::Rigid(block) => block.applied_work(),
-            };
-        }
+        let mut work = self.applied_work();
         for contact in &self.contacts {
             let driven: Vec2 = contact
                 .kinematics

@@ -1,8 +1,9 @@
 //! What is done when Newton's iterations fail: first overlaps that were put there are left alone, then the step is taken
 //! linearised, and if that throws a body about, the island stays where it is for a step.
 
-use super::island::{Island, IslandSummary, KktError, SolveSettings};
+use super::island::{Island, KktError, SolveSettings};
 use super::position::PARTING_RATE;
+use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::math::exp;
 use crate::system::Block;

@@ -6,14 +6,16 @@
 //! there in truth. Whatever the forces are, the base is free of overlaps: what is not solved within the budget stops at the base.
 
 mod listing;
+mod parted;
 
 use self::listing::Listing;
 use super::delassus::compliance;
 use super::feasible::KeptBase;
-use super::island::{ActiveContact, Island, IslandSummary, SolveSettings};
+use super::island::{ActiveContact, Island, SolveSettings};
 use super::iterate::ANGLE_TOLERANCE;
 use super::joint_rows::ActiveJoint;
 use super::position::{PARTING_RATE, ROUND_OFF};
+use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointGrip;
 use crate::math::{Mat2, exp};
@@ -111,6 +113,7 @@ impl Island {
             kept,
         };
         self.list_near(&listing);
+        self.note_pressing();
         listing.memory = None;
         let mut turned = self.correct();
         let mut n_stopped = 0;

@@ -13,7 +13,8 @@
 //! energy of the leapfrog stays what it is.
 
 use super::delassus::{RowDirection, assemble};
-use super::island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
+use super::island::{ActiveContact, Island, KktError, SolveSettings};
+use super::summary::IslandSummary;
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::RowKind;
 use crate::math::Vec2;

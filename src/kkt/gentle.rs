@@ -3,13 +3,14 @@
 //! Positions stay on the feasible path. Velocities are those of the motion without contact, projected so that nothing that touches
 //! approaches: a projection in the metric of the masses takes energy and never gives any, and its impulses come in pairs.
 
-use super::island::{Island, IslandSummary, KktError, SolveSettings};
+use super::island::{Island, KktError, SolveSettings};
+use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::linalg::complementarity::Status;
 use crate::system::Block;
 
 /// Energy beyond what there was and what loads have done that tells of forces that are none (-): as much as the tests of energy allow.
-const GAINED: f64 = 0.01;
+pub const GAINED: f64 = 0.01;
 
 /// Gap up to which bodies count as touching, relative to the margin (-).
 const TOUCHING: f64 = 1.0;
@@ -45,6 +46,7 @@ impl Island {
             let pressed = if is_near { f64::MIN_POSITIVE } else { 0.0 };
             contact.multiplier = [pressed, 0.0];
             contact.impulse = [0.0; 2];
+            contact.settled = [0.0; 2];
             contact.status = [Status::Open; 2];
             contact.is_massless = false;
         }

@@ -7,6 +7,7 @@ use super::follow::Stage;
 use super::impact::ImpactTreatment;
 use super::joint_rows::ActiveJoint;
 use super::sparse::Sparse;
+use super::summary::IslandSummary;
 use crate::constraint::contact::{
     Candidate, ContactKey, ContactMemory, Kinematics, PlacedPart, Remembered, Scene,
 };
@@ -45,8 +46,10 @@ pub enum KktError {
 /// Settings of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolveSettings {
-    /// Step length (s).
+    /// Step length (s), of the part that is solved.
     pub dt: f64,
+    /// Length of the whole step (s).
+    pub whole: f64,
     /// What a multiplier moves, over `A⁻¹` (s²): the Beta-2 weight `b0`, or `dt²` for the forward increment.
     pub b0: f64,
     /// Beta-2 weight `b1` (s).
@@ -84,6 +87,10 @@ pub struct ActiveContact {
     pub multiplier: [f64; 2],
     /// Impulse of the velocity stage, normal and tangential (N s).
     pub impulse: [f64; 2],
+    /// What the lasting force counts beyond its time (N s).
+    pub(super) late: [f64; 2],
+    /// Force of the acceleration stage (N).
+    pub(super) settled: [f64; 2],
     /// Relative velocity along the normal and the tangent after the velocity stage (m/s).
     pub(super) parting: [f64; 2],
     /// Status of the normal and of the friction row.
@@ -138,11 +145,14 @@ impl ActiveContact {
         if self.is_hard {
             self.impulse.map(|impulse| impulse / dt)
         } else {
-            [
-                self.multiplier[0] + self.impulse[0] / dt,
-                self.multiplier[1] + self.impulse[1] / dt,
-            ]
+            let sum = |axis| self.multiplier[axis] + (self.impulse[axis] + self.late[axis]) / dt;
+            [sum(0), sum(1)]
         }
+    }
+
+    /// The force that is left in the stored accelerations (N).
+    pub fn lasting(&self) -> [f64; 2] {
+        [0, 1].map(|axis| self.multiplier[axis] + self.settled[axis])
     }
 
     /// How far the velocity stage holds the contact's relative velocity, 0 to 1 (-): masses that meet would ring at every
@@ -168,45 +178,6 @@ impl ActiveContact {
     }
 }
 
-/// Work and residuals of one solve.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct IslandSummary {
-    /// Newton iterations.
-    pub n_newton: usize,
-    /// Pivots (active-set iterations) of the complementarity solver.
-    pub n_pivots: usize,
-    /// Natural-map residual of the last complementarity solve.
-    pub residual: f64,
-    /// Whether the iterations of the constraint functions failed.
-    pub has_failed: bool,
-    /// Whether Lagrange multipliers then solved the step.
-    pub is_substituted: bool,
-    /// Whether the iterations ended along extrapolated gaps, or failed: the step may have left the motion that it continues.
-    pub is_doubtful: bool,
-    /// Whether Newton's iterations failed and a linearised step was taken.
-    pub is_linearized: bool,
-    /// Whether the step ended where gaps miss the laws by up to the margin of the path.
-    pub is_cut: bool,
-    /// Whether the step was stopped at a state on its feasible path.
-    pub is_stopped: bool,
-    /// Whether even that threw a body about, so that the island stayed where it was, at rest.
-    pub is_held: bool,
-    /// Largest overlap left at a candidate (m).
-    pub gap_violation: f64,
-    /// Energy at the beginning: kinetic, elastic (J).
-    pub start_energy: [f64; 2],
-    /// Energy at the end: kinetic, elastic (J).
-    pub end_energy: [f64; 2],
-    /// Work of applied forces and of prescribed bodies (J).
-    pub work: f64,
-    /// Energy taken out by the energy stage (J).
-    pub limited: f64,
-    /// `dt²/8 a·M a` at the end of an explicit step (J).
-    pub swing: f64,
-    /// Kinetic energy of the half step of forward contacts that belongs to this instant and is not in the velocities (J).
-    pub pending: f64,
-}
-
 /// A set of blocks and candidates, and the buffers to solve them.
 #[derive(Debug, Default)]
 pub struct Island {
@@ -226,6 +197,8 @@ pub struct Island {
     pub(super) near_candidates: HashMap<ContactKey, usize>,
     pub(super) contacts_before: Vec<ActiveContact>,
     pub(super) slot_of: Vec<u32>,
+    /// Contacts that pressed in the last step.
+    pub(super) parted: Vec<ActiveContact>,
     /// Contacts that are new in the last list of near pairs.
     pub(super) fresh: Vec<usize>,
     /// The first impact of a step, and the best place that the whole of the step has reached.
@@ -312,6 +285,9 @@ impl Island {
         let loads = self.external_work();
         let treatment = settings.treatment();
         summary.start_energy = before;
+        let mut contacts = self.contacts.iter();
+        summary.load_energy = self.load_energy();
+        summary.is_parting = contacts.any(|contact| contact.allowance < 0.0);
         let finished = treatment.finish(self, settings, &mut summary);
         let is_unsolved = summary.is_cut || summary.is_stopped;
         if finished.is_err() && is_unsolved {
@@ -325,8 +301,8 @@ impl Island {
         let allowance = loads + joint_work;
         summary.work = self.actual_work(settings) + joint_work;
         summary.end_energy = self.end_energy();
-        // Forces that no solution gave do no work to count on.
-        let supply = loads + reserve.max(0.0);
+        // Forces that no solution gave do no work to count on: neither of joints nor of driven bodies.
+        let supply = self.applied_work() + reserve.max(0.0);
         if self.has_gained(supply, &summary) {
             self.end_gently(settings, memory, &mut summary)?;
         }
@@ -336,13 +312,33 @@ impl Island {
         }
         if treatment.limits_energy() {
             let stored = reserve.max(0.0);
+            let is_unsolved = summary.is_cut || summary.is_stopped;
+            let allowance = if is_unsolved { summary.work } else { allowance };
             self.limit_energy(settings, allowance, reserve, &mut summary);
+            if is_unsolved {
+                // What such a step has lost is lost.
+                *reserve = reserve.min(stored);
+            }
             if self.path.is_empty() {
                 self.hold_if_flung(settings, allowance + stored, &mut summary);
             }
         }
+        self.count_late_forces(settings);
         self.publish_forces(settings.dt);
         Ok(summary)
+    }
+
+    /// Counts what lasting forces do beyond their time in a part of a step. `1 - β1` of a force acts in the part that follows, as long as that
+    /// is, and is counted where it is found, as if that were as long as the step: sums over any parts balance momentum then, and what rests
+    /// carries its weight in each of them.
+    fn count_late_forces(&mut self, settings: &SolveSettings) {
+        let late = (1.0 - settings.b1 / settings.dt) * (settings.whole - settings.dt);
+        for contact in &mut self.contacts {
+            if !contact.is_hard {
+                let (now, before) = (contact.lasting(), contact.remembered.lasting);
+                contact.late = [0, 1].map(|axis| late * (now[axis] - before[axis]));
+            }
+        }
     }
 
     /// Leaves on every flexible block the contact forces that acted, those of impulses included.

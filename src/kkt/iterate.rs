@@ -3,8 +3,9 @@
 //! A round measures true gaps while it can; where geometry keeps changing it ends along gaps extrapolated on its rows, which
 //! always converges. What it found is then measured in truth, and if that is not it, the next round begins there with new rows.
 
-use super::island::{Island, IslandSummary, SolveSettings};
+use super::island::{Island, SolveSettings};
 use super::position::PARTING_RATE;
+use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::math::exp;
 

@@ -11,11 +11,15 @@ use super::island::{Island, SolveSettings};
 use super::position::PARTING_RATE;
 use crate::constraint::joint::{JointGrip, JointLaw, JointRow, Spring, When, unit_wrench};
 use crate::linalg::complementarity::{RowKind, Status};
-use crate::math::{Vec2, exp};
+use crate::math::{Vec2, exp, perp};
 use crate::system::{Block, Point, Response};
 
 /// Violation at the beginning of a step (m or rad) beyond which a joint closes over several steps: someone has put it there.
 const SLACK: f64 = 1e-3;
+
+/// Mobility of a row, relative to that across it, up to which nothing moves it (-): the square of a lever's rounding. Forces of any size would
+/// answer a row that points at the axis of what can only turn.
+const SINGULAR: f64 = 1e-16;
 
 /// What the velocity stage does about a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,6 +137,7 @@ impl Island {
             let start = row.sign * row.measure.value(&self.blocks, grips, When::Start);
             let view = (&*grips, direction, row.measure.is_turn());
             let mobility = own_mobility(&self.blocks, view);
+            let across = own_mobility(&self.blocks, (grips, perp(direction), view.2));
             let resolved = resolve(&row, is_hard, (start, mobility), settings);
             let status = match resolved.kind {
                 RowKind::Unilateral if row.remembered <= 0.0 => Status::Open,
@@ -156,7 +161,7 @@ impl Island {
                 status,
                 kick: 0.0,
                 impulse: 0.0,
-                is_movable: mobility > 0.0,
+                is_movable: mobility > SINGULAR * across,
             });
         }
         self.applied_grips.clear();

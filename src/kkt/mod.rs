@@ -28,11 +28,14 @@ mod partner;
 mod passage;
 mod position;
 mod sparse;
+mod summary;
 mod together;
 mod velocity;
 
 pub use constraint_function::{ConstraintFunction, ContactMethod, EpsilonError};
 pub(crate) use feasible::Way;
+pub(crate) use gentle::GAINED;
 pub use impact::ImpactTreatment;
-pub use island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
+pub use island::{ActiveContact, Island, KktError, SolveSettings};
 pub use joint_rows::ActiveJoint;
+pub use summary::IslandSummary;

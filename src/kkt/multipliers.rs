@@ -1,10 +1,11 @@
 //! Multipliers of the working set: rows of `G`, the Delassus matrix and one complementarity problem `w = W p + b`.
 
 use super::delassus::{RowDirection, assemble, compliance};
-use super::island::{Island, IslandSummary, KktError, SolveSettings};
+use super::island::{Island, KktError, SolveSettings};
 use super::joint_system::Rows;
 use super::position::slip;
 use super::sparse::Asked;
+use super::summary::IslandSummary;
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind};
 use crate::math::Vec2;

@@ -6,7 +6,8 @@
 
 use super::constraint_function::{ContactMethod, Trial};
 use super::follow::Passed;
-use super::island::{ActiveContact, AtBase, Island, IslandSummary, SolveSettings};
+use super::island::{ActiveContact, AtBase, Island, SolveSettings};
+use super::summary::IslandSummary;
 use crate::constraint::contact::{Candidate, ContactMemory, Kinematics, Remembered, Scene};
 use crate::linalg::complementarity::Status;
 use crate::math::{Vec2, exp};
@@ -60,9 +61,7 @@ impl Island {
             if summary.is_cut || summary.is_stopped {
                 self.path.stop(&mut self.blocks);
             }
-            for contact in &mut self.contacts {
-                contact.is_lost = false;
-            }
+            self.list_parted();
         }
         if !self.ties.is_empty() {
             self.relax_turns();
@@ -429,6 +428,8 @@ impl ActiveContact {
                 },
             ],
             impulse: [0.0; 2],
+            late: [0.0; 2],
+            settled: [0.0; 2],
             parting: [0.0; 2],
             status: [normal, tangential],
             allowance: 0.0,

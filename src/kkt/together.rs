@@ -4,7 +4,8 @@
 //! body with the momentum and the angular momentum that they have together: no motion with these has less energy. Where one of them is
 //! held by the world, they move as that one does.
 
-use super::island::{Island, IslandSummary, SolveSettings};
+use super::island::{Island, SolveSettings};
+use super::summary::IslandSummary;
 use crate::math::{Vec2, cross, perp};
 use crate::system::{Block, RigidMotion};
 

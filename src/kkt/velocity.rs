@@ -393,6 +393,7 @@ impl Island {
             let contact = &mut self.contacts[direction.contact];
             let which = usize::from(direction.direction != contact.kinematics.normal);
             contact.impulse[which] += late * self.multipliers[row];
+            contact.settled[which] = self.multipliers[row];
         }
         self.gather_rows(Response::Acceleration);
         self.add_to_rigid(Response::Acceleration, 1.0);

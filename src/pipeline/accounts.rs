@@ -4,7 +4,7 @@ use super::flex_pipeline::FlexPipeline;
 use super::report::{ContactReport, Participant};
 use crate::body::FlexBodySet;
 use crate::constraint::contact::{Owner, Remembered};
-use crate::coupling::{Landing, PressedPoint, RapierSets, keep_awake, wake_moving};
+use crate::coupling::{Landing, PressedPoint, RapierSets, Span, keep_awake, wake_moving};
 use crate::kkt::{ActiveContact, IslandSummary};
 use crate::linalg::complementarity::Status;
 use crate::math::{Vec2, cross, from_rapier};
@@ -14,7 +14,69 @@ impl FlexPipeline {
     /// Notes what the solved island wants to commit and to report.
     pub(super) fn note(
         &mut self,
-        step: Step,
+        (step, span): (Step, Span),
+        summary: &IslandSummary,
+        reserve: f64,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) {
+        let [first_contact, first_joint, first_impulse] = self.gatherer.under_way.firsts;
+        let owns = [self.report.contacts.len(), self.report.joints.len()];
+        for slot in 0..self.island.contacts.len() {
+            let contact = &self.island.contacts[slot];
+            let key = self.island.candidates[contact.candidate].key;
+            let state = Remembered {
+                normal: contact.multiplier[0],
+                tangent: contact.multiplier[1],
+                lasting: contact.lasting(),
+                feature: contact.kinematics.feature,
+            };
+            let memory = if span.is_last() {
+                &mut self.memory
+            } else {
+                &mut self.gatherer.under_way.contacts
+            };
+            memory.remember(key, state);
+            if contact.is_closed() {
+                let report = self.contact_report(contact, (step, span), sets, flex_bodies);
+                self.report_residuals(slot);
+                self.report.contacts.extend(report);
+            }
+            self.note_pressed(slot, (step, span), sets, flex_bodies);
+        }
+        self.note_joints((step, span), first_impulse, flex_bodies);
+        if !span.is_first() {
+            self.report.join_contacts(first_contact, owns[0]);
+            self.report.join_joints(first_joint, owns[1]);
+        }
+        self.note_quality(summary, sets, flex_bodies);
+        let counts = self.gatherer.under_way.count([
+            summary.has_failed,
+            summary.is_substituted,
+            summary.is_linearized,
+            summary.is_held,
+        ]);
+        let report = &mut self.report;
+        report.gap_violation = report.gap_violation.max(summary.gap_violation);
+        report.solver_residual = report.solver_residual.max(summary.residual);
+        report.n_newton = report.n_newton.max(summary.n_newton);
+        report.n_failed += counts[0];
+        report.n_substituted += counts[1];
+        report.n_linearized += counts[2];
+        report.n_held += counts[3];
+        report.n_pivots += summary.n_pivots;
+        report.energy_limited += summary.limited;
+        let gain: f64 =
+            summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
+        report.energy.dissipated += summary.work - gain;
+        if span.is_last() {
+            self.note_end(summary, reserve, sets, flex_bodies);
+        }
+    }
+
+    /// Notes where and how fast the island's members end the step.
+    fn note_end(
+        &mut self,
         summary: &IslandSummary,
         reserve: f64,
         sets: &RapierSets<'_>,
@@ -30,40 +92,10 @@ impl FlexPipeline {
         for &index in self.island.flex_index.iter().flatten() {
             self.reserves.push((index, reserve / n_flex as f64));
         }
-        for slot in 0..self.island.contacts.len() {
-            let contact = &self.island.contacts[slot];
-            let key = self.island.candidates[contact.candidate].key;
-            let state = Remembered {
-                normal: contact.multiplier[0],
-                tangent: contact.multiplier[1],
-                feature: contact.kinematics.feature,
-            };
-            self.memory.remember(key, state);
-            if contact.is_closed() {
-                let report = self.contact_report(contact, step, sets, flex_bodies);
-                self.report_residuals(slot);
-                self.report.contacts.extend(report);
-            }
-            self.note_pressed(slot, step, sets, flex_bodies);
-        }
-        self.note_joints(step, flex_bodies);
-        self.note_quality(summary, sets, flex_bodies);
-        let report = &mut self.report;
-        report.gap_violation = report.gap_violation.max(summary.gap_violation);
-        report.solver_residual = report.solver_residual.max(summary.residual);
-        report.n_newton = report.n_newton.max(summary.n_newton);
-        report.n_failed += usize::from(summary.has_failed);
-        report.n_substituted += usize::from(summary.is_substituted);
-        report.n_linearized += usize::from(summary.is_linearized);
-        report.n_held += usize::from(summary.is_held);
-        report.n_pivots += summary.n_pivots;
-        report.energy_limited += summary.limited;
-        report.energy.kinetic += summary.end_energy[0] + summary.pending;
-        report.energy.elastic += summary.end_energy[1];
-        report.energy.swing += summary.swing;
-        let gain: f64 =
-            summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
-        report.energy.dissipated += summary.work - gain;
+        let energy = &mut self.report.energy;
+        energy.kinetic += summary.end_energy[0] + summary.pending;
+        energy.elastic += summary.end_energy[1];
+        energy.swing += summary.swing;
         self.report_momentum(from_rapier(sets.gravity), flex_bodies);
     }
 
@@ -118,12 +150,12 @@ impl FlexPipeline {
     fn note_pressed(
         &mut self,
         slot: usize,
-        step: Step,
+        (step, span): (Step, Span),
         sets: &RapierSets<'_>,
         flex_bodies: &FlexBodySet,
     ) {
         let contact = &self.island.contacts[slot];
-        let force = contact.force(step.dt);
+        let force = contact.force(step.dt).map(|force| span.share() * force);
         if !contact.is_closed() && force == [0.0; 2] {
             return;
         }
@@ -172,13 +204,14 @@ impl FlexPipeline {
     fn contact_report(
         &self,
         contact: &ActiveContact,
-        step: Step,
+        (step, span): (Step, Span),
         sets: &RapierSets<'_>,
         flex_bodies: &FlexBodySet,
     ) -> Option<ContactReport> {
         let key = self.island.candidates[contact.candidate].key;
         let participant = |owner| Self::participant(owner, sets, flex_bodies);
-        let [normal_force, tangential_force] = contact.force(step.dt);
+        let [normal_force, tangential_force] =
+            contact.force(step.dt).map(|force| span.share() * force);
         Some(ContactReport {
             position: contact.kinematics.position.into(),
             normal: contact.kinematics.normal.into(),

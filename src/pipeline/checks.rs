@@ -13,7 +13,7 @@ use crate::system::{Block, Step};
 
 /// Shortest step (s), but for what single precision makes of 1e-8. Contact forces change velocities within a step, so accelerations grow as its inverse and the
 /// weights as its square: below this, sums of both keep no digits.
-const SHORTEST: f64 = 1e-8 * (1.0 - 1e-7);
+pub(super) const SHORTEST: f64 = 1e-8 * (1.0 - 1e-7);
 
 /// Longest step (s): nothing a step resolves takes longer, and predictors grow as its square.
 const LONGEST: f64 = 1e4;
@@ -162,14 +162,19 @@ impl FlexPipeline {
         }
     }
 
-    /// Leaves no trace of a step that failed, before which energy of `dissipated` was lost (J).
-    pub(super) fn undo(&mut self, flex_bodies: &mut FlexBodySet, dissipated: f64) {
+    /// Throws away what islands want to commit.
+    pub(super) fn discard_solution(&mut self) {
         self.landings.clear();
         self.links.pushes.clear();
         self.reserves.clear();
         self.joint_impulses.clear();
         self.memory.discard_notes();
         self.events.discard_notes();
+    }
+
+    /// Leaves no trace of a step that failed, before which energy of `dissipated` was lost (J).
+    pub(super) fn undo(&mut self, flex_bodies: &mut FlexBodySet, dissipated: f64) {
+        self.discard_solution();
         self.report.clear();
         self.report.energy.dissipated = dissipated;
         for (_, body) in flex_bodies.iter_mut() {

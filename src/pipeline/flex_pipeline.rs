@@ -65,9 +65,6 @@ impl Default for FlexPipeline {
     }
 }
 
-/// Times that a step is solved again because members have left the boxes they were looked for in: each time with more of what is there.
-const MOST_LOOKS: usize = 3;
-
 impl FlexPipeline {
     /// A pipeline with `Beta2::damped(0.9)` and stabilized impacts.
     pub fn new() -> Self {
@@ -228,7 +225,7 @@ impl FlexPipeline {
         if let Some(joint) = self.claims.joint_to_carrier(sets) {
             return Err(StepError::CarrierJoint(joint));
         }
-        let mut is_detected = step.dt == 0.0
+        let is_detected = step.dt == 0.0
             || is_changed
             || self.claims.needs_detection(sets)
             || self.claims.has_attached_bodies(sets);
@@ -252,30 +249,15 @@ impl FlexPipeline {
         self.gatherer.retain(sets, flex_bodies);
         self.note_newcomers(sets, flex_bodies);
         clock.lap(&mut self.report.times.claim);
-        for look in 0..=MOST_LOOKS {
-            if let Err(error) = self.solve_islands(step, sets, flex_bodies, &mut clock) {
-                self.undo(flex_bodies, dissipated);
-                if is_detected {
-                    // As above.
-                    self.detect(sets);
-                }
-                return Err(error);
-            }
-            if look == MOST_LOOKS || !self.looks_again(sets) {
-                break;
-            }
-            for (_, body) in flex_bodies.iter_mut() {
-                body.forget_start();
-            }
-            self.report.forget_solution(dissipated);
-            if !is_detected {
+        if let Err(error) = self.solve_and_look(step, sets, flex_bodies, &mut clock) {
+            let is_detected = self.report.is_detected;
+            self.undo(flex_bodies, dissipated);
+            if is_detected {
+                // As above.
                 self.detect(sets);
-                is_detected = true;
             }
-            self.claims.sweep(sets);
-            self.claims.walk(sets);
+            return Err(error);
         }
-        self.report.is_detected = is_detected;
         self.keep_awake(sets, flex_bodies);
         hand_back(&mut self.landings, sets);
         self.links.lend(step, &self.claims, sets);
@@ -285,7 +267,7 @@ impl FlexPipeline {
         self.report.note_quarantine(sets);
         clock.lap(&mut self.report.times.rapier);
         self.wake_moving(sets, flex_bodies);
-        land(&self.landings, sets, &mut self.masters);
+        land(&self.landings, self.leads(step), sets, &mut self.masters);
         self.links.take_back(sets);
         write_impulses(&self.joint_impulses, sets);
         self.commit_attachments(flex_bodies);
@@ -331,6 +313,8 @@ impl FlexPipeline {
             if let Some(block) = self.gatherer.block(index) {
                 block.commit(body.state_mut());
                 block.write_contact_force(body.contact_force_mut());
+                let under_way = &self.gatherer.under_way;
+                under_way.average(index, body.contact_force_mut());
                 block.write_reactions(body.reaction_mut());
             }
             let is_still = rests(body, sets);

@@ -4,7 +4,7 @@ use super::flex_pipeline::FlexPipeline;
 use super::report::{Held, JointReport};
 use crate::body::{AttachmentTarget, FlexBodySet};
 use crate::constraint::joint::{JointOwner, Measure};
-use crate::coupling::{JointImpulse, RapierSets};
+use crate::coupling::{JointImpulse, RapierSets, Span};
 use crate::kkt::ActiveJoint;
 use crate::math::{Vec2, cross};
 use crate::rapier::prelude::ImpulseJointHandle;
@@ -12,7 +12,14 @@ use crate::system::Step;
 
 impl FlexPipeline {
     /// Notes what the joints of the solved island did.
-    pub(super) fn note_joints(&mut self, step: Step, flex_bodies: &FlexBodySet) {
+    ///
+    /// - `first_impulse`: from where on the impulses of rapier's joints are the island's.
+    pub(super) fn note_joints(
+        &mut self,
+        (step, span): (Step, Span),
+        first_impulse: usize,
+        flex_bodies: &FlexBodySet,
+    ) {
         let mut first = 0;
         while first < self.island.ties.len() {
             let owner = self.island.ties[first].row.key.owner;
@@ -26,29 +33,50 @@ impl FlexPipeline {
                     Held::Attachment(flex_bodies.attachment_handle((index, generation)))
                 }
             };
-            self.report_joint(held, first..last, step);
+            self.report_joint(held, first..last, (step, span));
             for slot in first..last {
                 let tie = &self.island.ties[slot];
-                let memory = &mut self.gatherer.joint_memory;
+                let memory = if span.is_last() {
+                    &mut self.gatherer.joint_memory
+                } else {
+                    &mut self.gatherer.under_way.joints
+                };
                 memory.remember(tie.row.key, tie.multiplier);
                 if let Held::Joint(handle) = held {
-                    self.joint_impulses.push(JointImpulse {
-                        handle,
-                        row: tie.row.key.row,
-                        is_world: matches!(tie.row.measure, Measure::Along(_)),
-                        impulse: step.dt * tie.force(step.dt),
-                    });
+                    let impulse = step.dt * tie.force(step.dt);
+                    let row = tie.row.key.row;
+                    let mut noted = self.joint_impulses[first_impulse..].iter_mut();
+                    let known = if span.is_first() {
+                        None
+                    } else {
+                        noted.find(|one| one.handle == handle && one.row == row)
+                    };
+                    match known {
+                        Some(known) => known.impulse += impulse,
+                        None => self.joint_impulses.push(JointImpulse {
+                            handle,
+                            row,
+                            is_world: matches!(tie.row.measure, Measure::Along(_)),
+                            impulse,
+                        }),
+                    }
                 }
             }
             first = last;
         }
     }
 
-    fn report_joint(&mut self, held: Held, ties: std::ops::Range<usize>, step: Step) {
+    fn report_joint(
+        &mut self,
+        held: Held,
+        ties: std::ops::Range<usize>,
+        (step, span): (Step, Span),
+    ) {
         let (mut force, mut torque) = (Vec2::zeros(), 0.0);
         let (mut sum, mut count) = (Vec2::zeros(), 0.0);
         for tie in &self.island.ties[ties] {
             let (along, turn) = self.island.joint_force(tie, step.dt);
+            let (along, turn) = (span.share() * along, span.share() * turn);
             force += along;
             torque += turn;
             for (weight, position) in self.pulled(tie) {

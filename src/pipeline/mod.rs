@@ -4,6 +4,7 @@ mod accounts;
 mod checks;
 mod clearing;
 mod clock;
+mod cutback;
 #[cfg(feature = "debug-render")]
 mod debug_render;
 mod error;

@@ -53,6 +53,20 @@ impl IslandSummary {
 }
 
 impl FlexPipeline {
+    /// Notes that members have left the boxes they were looked for in for good: what they meet there is not known.
+    pub(super) fn note_unseen(&mut self, flex_bodies: &FlexBodySet) {
+        let claimed = self.claims.flex.iter();
+        let flexible = claimed.filter_map(|flex| flex_bodies.at_index(flex.index));
+        self.report.quality = Quality::Unfinished;
+        self.report.unsolved.push(Unsolved {
+            quality: Quality::Unfinished,
+            bodies: flexible
+                .map(|(handle, _)| Participant::Flex(handle))
+                .collect(),
+            overlap: self.report.gap_violation,
+        });
+    }
+
     /// Notes an island that was not solved in one piece.
     pub(super) fn note_quality(
         &mut self,
@@ -79,7 +93,20 @@ impl FlexPipeline {
                 bodies.extend(participant.filter(|one| !bodies.contains(one)));
             }
         }
-        self.report.unsolved.push(Unsolved {
+        let unsolved = &mut self.report.unsolved;
+        // An island is told of once, whatever the number of its parts.
+        let is_told = std::mem::replace(&mut self.gatherer.under_way.is_told, true);
+        if let Some(before) = unsolved.last_mut().filter(|_| is_told) {
+            before.quality = before.quality.max(quality);
+            before.overlap = before.overlap.max(summary.gap_violation);
+            let new = bodies
+                .into_iter()
+                .filter(|one| !before.bodies.contains(one));
+            let new: Vec<Participant> = new.collect();
+            before.bodies.extend(new);
+            return;
+        }
+        unsolved.push(Unsolved {
             quality,
             bodies,
             overlap: summary.gap_violation,

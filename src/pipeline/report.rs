@@ -48,6 +48,17 @@ pub struct ContactReport {
     pub target: Participant,
 }
 
+impl ContactReport {
+    /// The force on the contactor (N).
+    pub fn force(&self) -> [f64; 2] {
+        let [nx, ny] = self.normal;
+        [
+            self.normal_force * nx - self.tangential_force * ny,
+            self.normal_force * ny + self.tangential_force * nx,
+        ]
+    }
+}
+
 /// What holds without touching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(
@@ -205,6 +216,7 @@ pub struct StepReport {
     pub(super) n_asleep: usize,
     pub(super) is_detected: bool,
     pub(super) n_newton: usize,
+    pub(super) n_parts: usize,
     pub(super) n_failed: usize,
     pub(super) n_substituted: usize,
     pub(super) n_linearized: usize,
@@ -317,6 +329,12 @@ impl StepReport {
         self.n_newton
     }
 
+    /// Most parts that the step of an island was taken in, zero where there is none: an island that is not solved in one piece is cut in halves, up to
+    /// [`FlexParameters::max_cutbacks`](super::FlexParameters::max_cutbacks) times.
+    pub fn n_parts(&self) -> usize {
+        self.n_parts
+    }
+
     /// Islands in which the iterations of the [constraint functions](crate::kkt::ContactMethod::ConstraintFunction) did not converge:
     /// they were tried again from large `ε` to small.
     pub fn n_failed(&self) -> usize {
@@ -389,9 +407,9 @@ impl StepReport {
             } else {
                 continue;
             };
-            let [nx, ny] = contact.normal;
-            sum[0] += sign * (contact.normal_force * nx - contact.tangential_force * ny);
-            sum[1] += sign * (contact.normal_force * ny + contact.tangential_force * nx);
+            let force = contact.force();
+            sum[0] += sign * force[0];
+            sum[1] += sign * force[1];
         }
         sum
     }

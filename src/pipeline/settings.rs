@@ -6,6 +6,9 @@ use crate::integrator::Beta2;
 use crate::kkt::{ContactMethod, ImpactTreatment};
 use crate::linalg::complementarity::Method;
 
+/// Halvings of a step that may be asked for.
+const MOST_CUTBACKS: usize = 10;
+
 /// How a [`FlexPipeline`] takes its steps, as rapier's `IntegrationParameters` say it of rapier: plain values, read at the beginning of each
 /// step.
 ///
@@ -36,6 +39,9 @@ pub struct FlexParameters {
     /// Most passes (Newton iterations) of an island in a step, at least 1; 20 by default, twice as many along a feasible path. What becomes of an island that needs more is told
     /// by [`StepReport::quality`](super::StepReport::quality).
     pub max_newton: usize,
+    /// How many times the step of an island that is not solved may be cut in halves; 3 by default, so that it is taken in 8 parts at most.
+    /// See [`StepReport::n_parts`](super::StepReport::n_parts). Islands with links of multibodies and explicit steps are not cut.
+    pub max_cutbacks: usize,
     /// Whether implicit steps with Lagrange multipliers lead the surfaces of bodies along a *feasible path*; yes by default.
     ///
     /// A step goes from placement to placement and stops where surfaces would meet, whatever the forces are. What is not solved within the
@@ -57,6 +63,7 @@ impl Default for FlexParameters {
             contact_solver: Method::ActiveSet,
             restitution_threshold: 0.5,
             max_newton: 20,
+            max_cutbacks: 3,
             feasible_path: true,
             insists: false,
             refuses_unsolved: false,
@@ -80,6 +87,13 @@ impl FlexParameters {
                 name: "max_newton",
                 value: 0.0,
                 cure: "set it to one or more",
+            });
+        }
+        if self.max_cutbacks > MOST_CUTBACKS {
+            return Err(StepError::Parameter {
+                name: "max_cutbacks",
+                value: self.max_cutbacks as f64,
+                cure: "set it to ten or less: that is a step in a thousand parts",
             });
         }
         Ok(())

@@ -4,11 +4,56 @@ use super::clock::Clock;
 use super::error::StepError;
 use super::flex_pipeline::FlexPipeline;
 use crate::body::FlexBodySet;
-use crate::coupling::{GatherSettings, RapierSets};
-use crate::kkt::{Island, SolveSettings};
+use crate::coupling::{GatherSettings, RapierSets, Span};
+use crate::kkt::{ContactMethod, Island, IslandSummary, SolveSettings};
 use crate::system::Step;
 
+/// Times that a step is solved again because members have left the boxes they were looked for in: each time with more of what is there.
+const MOST_LOOKS: usize = 3;
+
 impl FlexPipeline {
+    /// Solves every component, again while members leave the boxes they were looked for in; commits nothing.
+    pub(super) fn solve_and_look(
+        &mut self,
+        step: Step,
+        sets: &mut RapierSets<'_>,
+        flex_bodies: &mut FlexBodySet,
+        clock: &mut Clock,
+    ) -> Result<(), StepError> {
+        let dissipated = self.report.energy.dissipated;
+        for look in 0..=MOST_LOOKS {
+            self.solve_islands(step, sets, flex_bodies, clock)?;
+            if !self.looks_again(sets) {
+                break;
+            }
+            if look == MOST_LOOKS {
+                self.note_unseen(flex_bodies);
+                break;
+            }
+            for (_, body) in flex_bodies.iter_mut() {
+                body.forget_start();
+            }
+            self.report.forget_solution(dissipated);
+            if !self.report.is_detected {
+                self.detect(sets);
+                self.report.note_quarantine(sets);
+                self.report.is_detected = true;
+            }
+            self.claims.sweep(sets);
+            self.claims.walk(sets);
+        }
+        if self.parameters.refuses_unsolved
+            && let Some(unsolved) = self.report.unsolved.pop()
+        {
+            return Err(StepError::Unsolved {
+                quality: unsolved.quality,
+                bodies: unsolved.bodies,
+                overlap: unsolved.overlap,
+            });
+        }
+        Ok(())
+    }
+
     /// Whether members have left the boxes they were looked for in; these have grown then.
     pub(super) fn looks_again(&mut self, sets: &RapierSets<'_>) -> bool {
         let gatherer = &self.gatherer;
@@ -24,12 +69,8 @@ impl FlexPipeline {
         flex_bodies: &mut FlexBodySet,
         clock: &mut Clock,
     ) -> Result<(), StepError> {
-        self.landings.clear();
-        self.links.pushes.clear();
-        self.reserves.clear();
-        self.joint_impulses.clear();
-        self.memory.discard_notes();
-        self.events.discard_notes();
+        self.discard_solution();
+        self.gatherer.under_way.begin_step();
         self.gatherer.turn_over(false);
         self.components.clear();
         for flex in 0..self.claims.flex.len() {
@@ -57,22 +98,30 @@ impl FlexPipeline {
         Ok(())
     }
 
-    fn solve_island(
+    /// Whether surfaces are led along a feasible path.
+    pub(super) fn leads(&self, step: Step) -> bool {
+        self.parameters.feasible_path
+            && !step.is_explicit()
+            && self.parameters.contact_method == ContactMethod::Lagrange
+    }
+
+    /// Gathers and solves a part of an island's step, as if it were a step; returns its summary and the energy that contact may
+    /// return before and after it (J).
+    pub(super) fn solve_span(
         &mut self,
-        component: usize,
+        (component, span): (usize, Span),
         step: Step,
         sets: &RapierSets<'_>,
         flex_bodies: &mut FlexBodySet,
         clock: &mut Clock,
-    ) -> Result<(), StepError> {
+    ) -> Result<(IslandSummary, [f64; 2]), StepError> {
         let gather = GatherSettings {
             component,
             step,
+            span,
             prediction: f64::from(sets.integration_parameters.prediction_distance()),
             excess: self.claims.excess(),
-            uses_path: self.parameters.feasible_path
-                && !step.is_explicit()
-                && self.parameters.contact_method == crate::kkt::ContactMethod::Lagrange,
+            uses_path: self.leads(step),
         };
         let (claims, island) = (&mut self.claims, &mut self.island);
         let kept = (&self.masters, &self.links);
@@ -81,6 +130,7 @@ impl FlexPipeline {
         clock.lap(&mut self.report.times.gather);
         let settings = SolveSettings {
             dt: step.dt,
+            whole: f64::from(sets.integration_parameters.dt),
             b0: if step.is_explicit() {
                 step.dt * step.dt
             } else {
@@ -96,24 +146,20 @@ impl FlexPipeline {
             max_newton: self.parameters.max_newton,
             length_unit: f64::from(sets.integration_parameters.length_unit).abs(),
         };
-        let mut reserve = self.reserve(flex_bodies);
+        let before = self.reserve(flex_bodies);
+        let mut reserve = before;
+        let memory = if span.is_first() {
+            &self.memory
+        } else {
+            &self.gatherer.under_way.contacts
+        };
         let summary = self
             .island
-            .solve(&settings, &self.memory, &mut reserve)
+            .solve(&settings, memory, &mut reserve)
             .map_err(|error| self.name_bodies(error, flex_bodies))?;
         self.check_finite(flex_bodies)?;
-        self.note(step, &summary, reserve, sets, flex_bodies);
-        if self.parameters.refuses_unsolved
-            && let Some(unsolved) = self.report.unsolved.pop()
-        {
-            return Err(StepError::Unsolved {
-                quality: unsolved.quality,
-                bodies: unsolved.bodies,
-                overlap: unsolved.overlap,
-            });
-        }
         clock.lap(&mut self.report.times.solve);
-        Ok(())
+        Ok((summary, [before, reserve]))
     }
 
     /// Energy that contact has taken from the island's bodies and may return (J).

@@ -113,6 +113,13 @@ impl FlexBlock {
         !is_held(self.step.dt * most / self.arms.mass)
     }
 
+    /// Kinetic energy that the loads would give in the step to the whole body at rest, if nothing held it (J).
+    pub fn load_energy(&self) -> f64 {
+        let nodes = self.force.chunks_exact(2);
+        let total: Vec2 = nodes.map(|force| Vec2::new(force[0], force[1])).sum();
+        0.5 * (self.step.dt * total).norm_squared() / self.arms.mass
+    }
+
     /// Length of the step (s).
     pub fn step_length(&self) -> f64 {
         self.step.dt

@@ -25,6 +25,15 @@ impl RigidBlock {
             + self.force[2] * (self.current.angle - self.start.angle)
     }
 
+    /// Kinetic energy that the applied forces would give in the step to the body at rest (J).
+    pub fn load_energy(&self) -> f64 {
+        let terms = self.force.iter().zip(&self.mass);
+        let moving = terms.filter(|(_, mass)| **mass > 0.0);
+        moving
+            .map(|(force, mass)| 0.5 * (self.dt * force).powi(2) / mass)
+            .sum()
+    }
+
     /// See [`super::Block::swing`].
     pub(super) fn swing(&self) -> [f64; 2] {
         [&self.smooth_start, &self.smooth_end].map(|acceleration| {

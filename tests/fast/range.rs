@@ -294,7 +294,8 @@ impl Range {
     /// Steps until the shot must have arrived and been turned back.
     ///
     /// What is inside of a body that is crushed to nothing comes out of its surface, as nothing but small strains keeps it there. Then the
-    /// report must say so, and the body is where most of its surface is.
+    /// report must say so, and from then on the body is where most of its surface is, until that has come past an end of the target: there it
+    /// goes round, on ways that are not straight from frame to frame.
     pub fn run(&mut self) -> Outcome {
         let mut outcome = Outcome::default();
         let flight = (self.shot.distance + self.shot.size) / (self.shot.speed * self.shot.dt);
@@ -302,7 +303,7 @@ impl Range {
         let mut net = 0;
         let (mut before, mut surface_before) = (self.frame(), self.surface());
         let mut surface_nets = vec![0; surface_before.len()];
-        let mut is_round = false;
+        let [mut is_round, mut was_crushed, mut is_draped] = [false; 3];
         for step in 0..n_steps {
             let is_overbent = match self.scene.try_step() {
                 Ok(report) => {
@@ -329,13 +330,18 @@ impl Range {
             after.point = middle;
             let now = side(&after);
             is_round |= now == 0;
+            is_draped |= surface.iter().any(|&point| {
+                let line = after.line.clone();
+                side(&Frame { point, line }) == 0
+            });
             let is_crushed = self.bullet.is_some() && !encloses(&surface, middle);
+            was_crushed |= is_crushed;
             let n_passed = surface_nets.iter().filter(|net| **net != 0).count();
             if outcome.tunnelled.is_none() {
-                if is_crushed {
-                    if !is_overbent {
+                if was_crushed {
+                    if is_crushed && !is_overbent {
                         outcome.tunnelled = Some(format!("step {step}: crushed without a word"));
-                    } else if 2 * n_passed > surface.len() {
+                    } else if !is_draped && 2 * n_passed > surface.len() {
                         outcome.tunnelled = Some(format!("step {step}: {n_passed} of the surface"));
                     }
                 } else if net != 0 {

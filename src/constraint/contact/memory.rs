@@ -15,6 +15,8 @@ pub struct Remembered {
     pub normal: f64,
     /// Tangential multiplier (N).
     pub tangent: f64,
+    /// What of both is left in the stored accelerations (N).
+    pub lasting: [f64; 2],
     /// Feature of the target that was touched, for hysteresis.
     pub feature: Option<Feature>,
 }

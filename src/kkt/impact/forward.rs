@@ -1,7 +1,8 @@
 //! Multipliers at the forward increment, for `β0 = 0`; see `kkt/forward.rs`.
 
 use super::Treatment;
-use crate::kkt::island::{Island, IslandSummary, KktError, SolveSettings};
+use crate::kkt::island::{Island, KktError, SolveSettings};
+use crate::kkt::summary::IslandSummary;
 
 /// The treatment of explicit steps.
 #[derive(Debug)]

@@ -12,7 +12,8 @@
 //! impact changes sign with every step, and the force alternates by `2 m v / dt` for as long. Nodes without mass have no `M⁻¹`: contacts there are quasi-static, as (C.5) says.
 
 use super::Treatment;
-use crate::kkt::island::{ActiveContact, Island, IslandSummary, KktError, SolveSettings};
+use crate::kkt::island::{ActiveContact, Island, KktError, SolveSettings};
+use crate::kkt::summary::IslandSummary;
 use crate::system::{Block, Response};
 
 /// See [`ImpactTreatment::ImplicitForces`](super::ImpactTreatment::ImplicitForces).

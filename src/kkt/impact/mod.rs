@@ -29,7 +29,8 @@ mod plain;
 mod projected;
 mod stabilized;
 
-use super::island::{Island, IslandSummary, KktError, SolveSettings};
+use super::island::{Island, KktError, SolveSettings};
+use super::summary::IslandSummary;
 
 /// How impacts are treated. Whether a body's contact boundary carries inertia is chosen per body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

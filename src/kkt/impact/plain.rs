@@ -2,7 +2,8 @@
 //! acceleration, and the energy of a bouncing bar grows without bound.
 
 use super::Treatment;
-use crate::kkt::island::{Island, IslandSummary, KktError, SolveSettings};
+use crate::kkt::island::{Island, KktError, SolveSettings};
+use crate::kkt::summary::IslandSummary;
 
 /// No treatment.
 #[derive(Debug)]

@@ -2,7 +2,8 @@
 //! for accelerations (Hughes, Taylor, Sackman, Curnier, Kanoknukulchai 1976; Laursen, Love 2002), with `A` in the place of `M`.
 
 use super::Treatment;
-use crate::kkt::island::{Island, IslandSummary, KktError, SolveSettings};
+use crate::kkt::island::{Island, KktError, SolveSettings};
+use crate::kkt::summary::IslandSummary;
 
 /// See [`ImpactTreatment::Projected`](super::ImpactTreatment::Projected).
 #[derive(Debug)]

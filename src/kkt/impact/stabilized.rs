@@ -2,7 +2,8 @@
 
 use super::Treatment;
 use super::projected::Projected;
-use crate::kkt::island::{Island, IslandSummary, KktError, SolveSettings};
+use crate::kkt::island::{Island, KktError, SolveSettings};
+use crate::kkt::summary::IslandSummary;
 
 /// See [`ImpactTreatment::Stabilized`](super::ImpactTreatment::Stabilized).
 #[derive(Debug)]

@@ -1,0 +1,226 @@
+//! A step in parts: where its members are between two of them, before anything is handed back.
+//!
+//! Rapier takes the whole step at once. What is given to it by the user or by rapier itself (kinematic bodies, moved pins, bodies that
+//! are not claimed) goes from where it begins to where it ends in a straight line; a part sees its piece of that.
+
+use crate::body::{FlexBodySet, KeptMotion};
+use crate::constraint::contact::ContactMemory;
+use crate::constraint::joint::JointMemory;
+use crate::kkt::Island;
+use crate::rapier::prelude::RigidBodyHandle;
+use crate::system::{Block, RigidMotion};
+use std::collections::HashMap;
+
+/// A part of a step: where it begins and ends, of a whole of one (-).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Span {
+    from: f64,
+    to: f64,
+}
+
+impl Span {
+    /// All of the step.
+    pub const WHOLE: Self = Self { from: 0.0, to: 1.0 };
+
+    /// Its halves, in their order. Fractions are binary: nothing is rounded.
+    pub fn halves(self) -> [Self; 2] {
+        let middle = 0.5 * (self.from + self.to);
+        [
+            Self { to: middle, ..self },
+            Self {
+                from: middle,
+                ..self
+            },
+        ]
+    }
+
+    /// Its length (-).
+    pub fn share(self) -> f64 {
+        self.to - self.from
+    }
+
+    /// Whether the step begins with it.
+    pub fn is_first(self) -> bool {
+        self.from == 0.0
+    }
+
+    /// Whether the step ends with it.
+    pub fn is_last(self) -> bool {
+        self.to == 1.0
+    }
+
+    fn is_whole(self) -> bool {
+        self == Self::WHOLE
+    }
+
+    /// Its piece of a motion from `start` to `end` over the step.
+    pub fn of(self, start: RigidMotion, end: RigidMotion) -> [RigidMotion; 2] {
+        let at = |share: f64| RigidMotion {
+            centre: start.centre + share * (end.centre - start.centre),
+            angle: start.angle + share * (end.angle - start.angle),
+            ..end
+        };
+        let first = if self.is_first() {
+            start
+        } else {
+            at(self.from)
+        };
+        let last = if self.is_last() { end } else { at(self.to) };
+        [first, last]
+    }
+}
+
+/// The members of an island between two parts of a step.
+#[derive(Debug, Default)]
+pub(crate) struct UnderWay {
+    /// Flexible bodies as they were at the beginning of the step.
+    flex: Vec<(u32, KeptMotion)>,
+    /// Motions of claimed rigid bodies, and their smooth accelerations.
+    rigid: HashMap<RigidBodyHandle, (RigidMotion, [f64; 3])>,
+    /// Impulses of contact on the flexible bodies in the parts that are over, per length of the step, interleaved (N), and how long these
+    /// were (-).
+    impulses: Vec<(u32, f64, Vec<f64>)>,
+    /// Multipliers of the last part.
+    pub contacts: ContactMemory,
+    pub joints: JointMemory,
+    /// Parts that are over.
+    pub n_parts: usize,
+    /// Where the island's contacts and joints begin in the report, and the impulses on rapier's joints.
+    pub firsts: [usize; 3],
+    /// Whether the report tells that one of the parts was not solved.
+    pub is_told: bool,
+    /// What the island has been counted for in the report.
+    counted: [bool; 4],
+}
+
+impl UnderWay {
+    /// Begins with a step, of all islands.
+    pub fn begin_step(&mut self) {
+        self.impulses.clear();
+    }
+
+    /// Begins with an island whose whole step is still to come.
+    pub fn begin(&mut self, firsts: [usize; 3]) {
+        self.flex.clear();
+        self.rigid.clear();
+        self.contacts = ContactMemory::default();
+        self.joints = JointMemory::default();
+        self.n_parts = 0;
+        self.firsts = firsts;
+        self.is_told = false;
+        self.counted = [false; 4];
+    }
+
+    /// What of this happens for the first time in the step of the island: it is counted once, whatever the number of its parts.
+    pub fn count(&mut self, happened: [bool; 4]) -> [usize; 4] {
+        let pairs = self.counted.iter_mut().zip(happened);
+        let mut new = [0; 4];
+        for ((counted, happened), new) in pairs.zip(&mut new) {
+            *new = usize::from(happened && !*counted);
+            *counted |= happened;
+        }
+        new
+    }
+
+    /// Keeps the motions that the step of the island begins with.
+    pub fn keep(&mut self, island: &Island, flex_bodies: &FlexBodySet) {
+        if self.flex.is_empty() {
+            let members = island.flex_index.iter().flatten();
+            let kept = members.filter_map(|&index| {
+                let (_, body) = flex_bodies.at_index(index)?;
+                Some((index, body.keep_motion()))
+            });
+            self.flex.extend(kept);
+        }
+    }
+
+    /// Puts the members where the part ends that was solved.
+    ///
+    /// - `bodies`: claimed ones, by their blocks.
+    /// - `reserve`: energy that contact may return (J).
+    pub fn go_on(
+        &mut self,
+        island: &Island,
+        bodies: &[(usize, RigidBodyHandle)],
+        reserve: f64,
+        span: Span,
+        flex_bodies: &mut FlexBodySet,
+    ) {
+        let share = reserve / self.flex.len().max(1) as f64;
+        for (block, index) in island.blocks.iter().zip(&island.flex_index) {
+            if let (Block::Flex(block), Some(index)) = (block, index)
+                && let Some(body) = flex_bodies.at_index_mut(*index)
+            {
+                block.commit(body.state_mut());
+                block.write_contact_force(body.contact_force_mut());
+                block.write_reactions(body.reaction_mut());
+                body.set_energy_reserve(share);
+                self.add_impulse(*index, span.share(), body.contact_force_mut());
+            }
+        }
+        for &(block, handle) in bodies {
+            if let Block::Rigid(block) = &island.blocks[block] {
+                self.rigid
+                    .insert(handle, (*block.current(), block.smooth_end));
+            }
+        }
+        self.contacts.turn_over();
+        self.joints.turn_over();
+    }
+
+    fn add_impulse(&mut self, index: u32, share: f64, force: &[f64]) {
+        let known = self.impulses.iter_mut().find(|(own, ..)| *own == index);
+        match known {
+            Some((_, length, sum)) => {
+                *length += share;
+                let pairs = sum.iter_mut().zip(force);
+                pairs.for_each(|(sum, force)| *sum += share * force);
+            }
+            None => {
+                let first = force.iter().map(|force| share * force).collect();
+                self.impulses.push((index, share, first));
+            }
+        }
+    }
+
+    /// Makes the contact forces of a body's last part those of its step.
+    pub fn average(&self, index: u32, force: &mut [f64]) {
+        if let Some((_, length, sum)) = self.impulses.iter().find(|(own, ..)| *own == index) {
+            for (force, sum) in force.iter_mut().zip(sum) {
+                *force = sum + (1.0 - length) * *force;
+            }
+        }
+    }
+
+    /// Puts the flexible bodies back to where the step begins: it is not committed yet.
+    pub fn end(&mut self, flex_bodies: &mut FlexBodySet) {
+        for (index, kept) in self.flex.drain(..) {
+            if let Some(body) = flex_bodies.at_index_mut(index) {
+                body.put_back(kept);
+            }
+        }
+    }
+
+    /// The motion of a claimed body where the next part begins, with its smooth acceleration.
+    pub fn rigid(&self, handle: RigidBodyHandle) -> Option<(RigidMotion, Option<[f64; 3]>)> {
+        let (motion, acceleration) = self.rigid.get(&handle)?;
+        Some((*motion, Some(*acceleration)))
+    }
+
+    /// Displacements of a body's pins at the end of a part, interleaved (m): `None` where they are those at the end of the step.
+    ///
+    /// - `rest`: positions of its nodes without displacement.
+    /// - `goal`: the displacements at the end of the step.
+    pub fn pins(&self, index: u32, span: Span, rest: &[f64], goal: &[f64]) -> Option<Vec<f64>> {
+        if span.is_whole() {
+            return None;
+        }
+        let (_, kept) = self.flex.iter().find(|(own, _)| *own == index)?;
+        let start = kept.state().position.iter().zip(rest);
+        let between = start.zip(goal).map(|((position, rest), goal)| {
+            let start = position - rest;
+            start + span.to * (goal - start)
+        });
+        Some(between.collect())
+    }
+}

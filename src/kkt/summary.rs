@@ -1,0 +1,51 @@
+//! What a solve tells about itself.
+
+/// Work and residuals of one solve.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct IslandSummary {
+    /// Newton iterations.
+    pub n_newton: usize,
+    /// Pivots (active-set iterations) of the complementarity solver.
+    pub n_pivots: usize,
+    /// Natural-map residual of the last complementarity solve.
+    pub residual: f64,
+    /// Whether the iterations of the constraint functions failed.
+    pub has_failed: bool,
+    /// Whether Lagrange multipliers then solved the step.
+    pub is_substituted: bool,
+    /// Whether the iterations ended along extrapolated gaps, or failed: the step may have left the motion that it continues.
+    pub is_doubtful: bool,
+    /// Whether Newton's iterations failed and a linearised step was taken.
+    pub is_linearized: bool,
+    /// Whether the step ended where gaps miss the laws by up to the margin of the path.
+    pub is_cut: bool,
+    /// Whether the step was stopped at a state on its feasible path.
+    pub is_stopped: bool,
+    /// Whether even that threw a body about, so that the island stayed where it was, at rest.
+    pub is_held: bool,
+    /// Kinetic energy that the loads would give to the members at rest if nothing held them (J).
+    pub load_energy: f64,
+    /// Whether bodies that began in each other were pressed apart.
+    pub is_parting: bool,
+    /// Largest overlap left at a candidate (m).
+    pub gap_violation: f64,
+    /// Energy at the beginning: kinetic, elastic (J).
+    pub start_energy: [f64; 2],
+    /// Energy at the end: kinetic, elastic (J).
+    pub end_energy: [f64; 2],
+    /// Work of applied forces and of prescribed bodies (J).
+    pub work: f64,
+    /// Energy taken out by the energy stage (J).
+    pub limited: f64,
+    /// `dt²/8 a·M a` at the end of an explicit step (J).
+    pub swing: f64,
+    /// Kinetic energy of the half step of forward contacts that belongs to this instant and is not in the velocities (J).
+    pub pending: f64,
+}
+
+impl IslandSummary {
+    /// Kinetic and elastic energy that there was, with what loads and driven bodies have added or taken, or might have (J).
+    pub fn brought(&self) -> f64 {
+        self.start_energy[0] + self.start_energy[1] + self.work.abs() + self.load_energy
+    }
+}
