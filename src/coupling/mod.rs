@@ -9,6 +9,7 @@ mod changes;
 mod claim;
 mod claim_attachments;
 mod claim_joints;
+mod draft;
 mod events;
 mod filter;
 mod force_pair;

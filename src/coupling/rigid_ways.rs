@@ -4,21 +4,17 @@
 //! apart as long as it is not deeper, and what is deeper is left to signed rows.
 
 use super::candidates::{Bounds, Names};
-use super::outlines::{Piece, draw_inwards};
-use super::ways::{REACH_OF_WIDTH, RigidSurface};
+use super::draft::{Draft, Guest, RigidSurface, swept};
+use super::outlines::Piece;
+use super::ways::{REACH_OF_WIDTH, SOFT_SHARE};
 use crate::constraint::contact::ContactLaw;
 use crate::kkt::{Island, Way};
-use crate::math::{Vec2, perp};
 use crate::rapier::prelude::ColliderHandle;
-use crate::system::{Block, RigidBlock};
 use std::collections::HashMap;
 
 /// Rounding of a rigid body's outline, relative to its width: what rapier leaves of boxes at rest in piles of thirty is one to five
 /// hundredths of their size for each pair.
 const ROUNDING: f64 = 2e-2;
-
-/// Share of a ball's radius that the path may use up.
-const SOFT_SHARE: f64 = 0.5;
 
 /// A piece of a collider as a member of the path.
 #[derive(Clone, Copy, Debug)]
@@ -34,11 +30,7 @@ struct Core {
 #[derive(Debug, Default)]
 pub(super) struct RigidCores {
     known: HashMap<(ColliderHandle, usize), Core>,
-    points: Vec<(u32, Vec2, Vec2)>,
-    edges: Vec<[u32; 2]>,
-    sharp: Vec<Vec2>,
-    inset: Vec<Vec2>,
-    place: Vec<u32>,
+    draft: Draft,
 }
 
 /// Two rigid colliders, how far around their swept boxes they may get (m), and by what they may turn (rad).
@@ -86,7 +78,7 @@ impl RigidCores {
             [false, true] => (1, 0),
             [false, false] => return false,
         };
-        let bounds = |side: usize| swept(sides[side].1, &way.surfaces[side], island);
+        let bounds = |side: usize| bounds_of(sides[side].1, &way.surfaces[side], island);
         let loose = |bounds: Bounds| bounds.loosened(way.reach + way.turn * bounds.size());
         let Some(near) = bounds(own).map(loose) else {
             return false;
@@ -149,43 +141,19 @@ impl RigidCores {
             return None;
         };
         let surface = &way.surfaces[side];
-        let n = vertices.len();
-        self.sharp.clear();
-        let arms = vertices
-            .iter()
-            .map(|vertex| surface.offset.transform(*vertex));
-        self.sharp.extend(arms);
-        let (closing, margin, width, round) = if *radius > 0.0 || n < 3 {
-            self.inset.clone_from(&self.sharp);
-            (*radius, SOFT_SHARE * radius, 2.0 * radius, 0.0)
-        } else {
-            let by = draw_inwards(&self.sharp, ROUNDING * width, &mut self.inset);
-            (by, by, *width, by)
-        };
+        let closing = self
+            .draft
+            .draw_core((vertices, *radius), surface, ROUNDING * width);
         if closing <= 0.0 {
             return None;
         }
-        self.points.clear();
-        self.edges.clear();
-        let pairs = self.inset.iter().zip(&self.sharp).enumerate();
-        let named = pairs.map(|(name, (arm, sharp))| (name as u32, *arm, sharp - arm));
-        self.points.extend(named);
-        match n {
-            1 => {}
-            2 => self.edges.push([0, 1]),
-            _ => self
-                .edges
-                .extend((0..n as u32).map(|a| [a, (a + 1) % n as u32])),
-        }
+        let (margin, width) = if *radius > 0.0 || vertices.len() < 3 {
+            (SOFT_SHARE * radius, 2.0 * radius)
+        } else {
+            (closing, *width)
+        };
         let name = (index as u32) << PIECE_BITS;
-        let member = island.path.rigid_member(
-            surface.block,
-            &island.blocks,
-            name,
-            round,
-            &self.points,
-            &self.edges,
-        );
+        let member = self.draft.add_to(island, surface.block, name);
         let core = Core {
             member,
             closing,
@@ -205,60 +173,16 @@ impl RigidCores {
         width: f64,
         island: &mut Island,
     ) -> Option<Core> {
-        self.points.clear();
-        self.edges.clear();
-        let Block::Rigid(motion) = &island.blocks[surface.block] else {
-            return None;
+        let guest = Guest {
+            centre: near.middle(),
+            size: near.size(),
+            near: *near,
         };
-        let none = Vec2::zeros();
-        match piece {
-            Piece::HalfSpace { origin, normal } => {
-                let (origin, normal) = (
-                    surface.offset.transform(*origin),
-                    surface.offset.rotate(*normal),
-                );
-                let along = perp(normal);
-                let seen = motion.start().arm(near.middle());
-                let foot = seen - normal * normal.dot(&(seen - origin));
-                let far = FAR * near.size() * along;
-                // Its material is on the left of the edge.
-                self.points
-                    .extend([(0, foot - far, none), (1, foot + far, none)]);
-                self.edges.push([0, 1]);
-            }
-            Piece::Chain { points, edges } => {
-                self.place.clear();
-                self.place.resize(points.len(), u32::MAX);
-                for edge in edges {
-                    let arms = edge.map(|end| surface.offset.transform(points[end as usize]));
-                    if !swept_arms(&arms, motion).is_some_and(|bounds| bounds.intersects(near)) {
-                        continue;
-                    }
-                    let ends = [0, 1].map(|side| {
-                        let place = &mut self.place[edge[side] as usize];
-                        if *place == u32::MAX {
-                            *place = self.points.len() as u32;
-                            self.points.push((edge[side], arms[side], none));
-                        }
-                        *place
-                    });
-                    self.edges.push(ends);
-                }
-            }
-            Piece::Convex { .. } => return None,
-        }
-        if self.edges.is_empty() {
+        if !self.draft.draw_open(piece, surface, 0.0, &guest, island) {
             return None;
         }
         let name = (index as u32) << PIECE_BITS;
-        let member = island.path.rigid_member(
-            surface.block,
-            &island.blocks,
-            name,
-            0.0,
-            &self.points,
-            &self.edges,
-        );
+        let member = self.draft.add_to(island, surface.block, name);
         Some(Core {
             member,
             closing: 0.0,
@@ -271,31 +195,17 @@ impl RigidCores {
 /// Bits of a point's name that count within its piece.
 const PIECE_BITS: u32 = 20;
 
-/// Half the length of a half-space's boundary, relative to the body that it meets.
-const FAR: f64 = 1e3;
-
-fn swept(piece: &Piece, surface: &RigidSurface<'_>, island: &Island) -> Option<Bounds> {
-    let (
-        Piece::Convex {
-            vertices, radius, ..
-        },
-        Block::Rigid(motion),
-    ) = (piece, &island.blocks[surface.block])
+/// Box of a convex piece over the step.
+fn bounds_of(piece: &Piece, surface: &RigidSurface<'_>, island: &Island) -> Option<Bounds> {
+    let Piece::Convex {
+        vertices, radius, ..
+    } = piece
     else {
         return None;
     };
     let arms = vertices
         .iter()
         .map(|vertex| surface.offset.transform(*vertex));
-    let bounds = arms.filter_map(|arm| swept_arms(&[arm], motion));
-    let bounds = bounds.reduce(Bounds::merged)?;
+    let bounds = swept(arms, surface.motion(island)?)?;
     Some(bounds.loosened(*radius))
-}
-
-fn swept_arms(arms: &[Vec2], motion: &RigidBlock) -> Option<Bounds> {
-    let ends = [*motion.start(), motion.drift()];
-    let places = arms.iter().flat_map(|arm| ends.map(|end| end.point(*arm)));
-    places
-        .map(|place| Bounds::of(&[place]))
-        .reduce(Bounds::merged)
 }

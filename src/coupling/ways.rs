@@ -1,12 +1,13 @@
 //! Ways: which surfaces of an island are kept apart along a feasible path, and at what distance they close.
 
 use super::candidates::{Bounds, Names};
-use super::outlines::{Outline, Piece, draw_inwards};
+use super::draft::Guest;
+pub(super) use super::draft::{Draft, RigidSurface};
+use super::outlines::Piece;
 use crate::body::contact_offset;
 use crate::constraint::contact::ContactLaw;
-use crate::constraint::geometry::Pose2;
 use crate::kkt::{Island, Way};
-use crate::math::{Vec2, perp, rotation};
+use crate::math::rotation;
 use crate::system::{Block, FlexBlock};
 
 /// Reach of rows beyond the distance at which contact closes, relative to the margin: a tenth of an edge, as the offset is a hundredth.
@@ -16,18 +17,11 @@ const REACH: f64 = 10.0;
 /// Reach of rows between rigid bodies, relative to the thinner one's width.
 pub(super) const REACH_OF_WIDTH: f64 = 0.1;
 
-/// Half the length of a half-space's boundary, relative to the body that it meets.
-const FAR: f64 = 1e3;
+/// Share of a round body's radius that the path may use up.
+pub(super) const SOFT_SHARE: f64 = 0.5;
 
-/// A collider of a rigid block.
-pub(super) struct RigidSurface<'a> {
-    /// Its block in the island.
-    pub block: usize,
-    /// Its outline.
-    pub outline: &'a Outline,
-    /// Its pose about the centre of mass of the block.
-    pub offset: Pose2,
-}
+/// Part of a core's width that it may be drawn inwards for a flexible body.
+const MOST_INWARDS: f64 = 0.125;
 
 /// Keeps a flexible block apart from the pieces of a rigid collider near it; `reach` is how far around its swept box it may get (m).
 ///
@@ -47,27 +41,23 @@ pub(super) fn flex_rigid(
     if is_below(surface, body, island) {
         return Err(0.0);
     }
-    let near = bounds_of(body).loosened(reach);
     let offset = offset_of(body);
-    let (centre, size) = (body.centre(), body.size());
+    let guest = Guest {
+        centre: body.centre(),
+        size: body.size(),
+        near: bounds_of(body).loosened(reach),
+    };
     let first = island.path.n_ways();
     let own = island.path.flex_member(flex, &island.blocks);
     let mut name = 0;
     for piece in &surface.outline.pieces {
-        let Some(closing) = draft.fill(piece, surface, offset, (centre, size), island, &near)
-        else {
-            name += piece.n_points();
+        let drawn = draw(draft, piece, surface, offset, &guest, island);
+        let first_name = name;
+        name += piece.n_points();
+        let Some(closing) = drawn else {
             continue;
         };
-        let other = island.path.rigid_member(
-            surface.block,
-            &island.blocks,
-            name,
-            draft.round,
-            &draft.points,
-            &draft.edges,
-        );
-        name += piece.n_points();
+        let other = draft.add_to(island, surface.block, first_name);
         let way = Way {
             members: [own, other],
             owners: [names.one, names.other],
@@ -141,130 +131,37 @@ struct Closing {
     margin: f64,
 }
 
-/// Points and edges of one piece, in the axes of its block.
-#[derive(Debug, Default)]
-pub(super) struct Draft {
-    /// Names, places, and ways to the sharp corners that they stand for.
-    points: Vec<(u32, Vec2, Vec2)>,
-    edges: Vec<[u32; 2]>,
-    /// Radius by which a core with sharp corners is rounded (m).
-    round: f64,
-    sharp: Vec<Vec2>,
-    inset: Vec<Vec2>,
-    place: Vec<u32>,
-}
-
-impl Draft {
-    /// Draws a piece; `None` if it is not near.
-    fn fill(
-        &mut self,
-        piece: &Piece,
-        surface: &RigidSurface<'_>,
-        offset: f64,
-        (centre, size): (Vec2, f64),
-        island: &Island,
-        near: &Bounds,
-    ) -> Option<Closing> {
-        self.points.clear();
-        self.edges.clear();
-        self.round = 0.0;
-        let Block::Rigid(motion) = &island.blocks[surface.block] else {
-            return None;
-        };
-        let ends = [*motion.start(), motion.drift()];
-        let swept = |arms: &[Vec2]| {
-            let places = arms.iter().flat_map(|arm| ends.map(|end| end.point(*arm)));
-            places
-                .map(|place| Bounds::of(&[place]))
-                .reduce(Bounds::merged)
-        };
-        match piece {
-            Piece::HalfSpace { origin, normal } => {
-                let (origin, normal) = (
-                    surface.offset.transform(*origin),
-                    surface.offset.rotate(*normal),
-                );
-                let seen = motion.start().arm(centre);
-                let along = perp(normal);
-                let foot = seen - normal * normal.dot(&(seen - origin)) - offset * normal;
-                // Its material is on the left of the edge.
-                let far = FAR * size * along;
-                let none = Vec2::zeros();
-                self.points
-                    .extend([(0, foot - far, none), (1, foot + far, none)]);
-                self.edges.push([0, 1]);
-                Some(Closing {
-                    distance: offset,
-                    margin: offset,
-                })
-            }
-            Piece::Convex {
-                vertices,
-                radius,
-                width,
-            } => {
-                let n = vertices.len();
-                let arms = vertices
-                    .iter()
-                    .map(|vertex| surface.offset.transform(*vertex));
-                self.sharp.clear();
-                self.sharp.extend(arms);
-                let closing = if *radius > 0.0 || n < 3 {
-                    self.inset.clone_from(&self.sharp);
-                    Closing {
-                        distance: *radius,
-                        margin: offset.min(0.5 * radius),
-                    }
-                } else {
-                    let by = draw_inwards(&self.sharp, offset.min(0.125 * width), &mut self.inset);
-                    self.round = by;
-                    Closing {
-                        distance: by,
-                        margin: by,
-                    }
-                };
-                let bounds = swept(&self.inset)?.loosened(closing.distance);
-                if !bounds.intersects(near) {
-                    return None;
-                }
-                let pairs = self.inset.iter().zip(&self.sharp).enumerate();
-                let named = pairs.map(|(name, (arm, sharp))| (name as u32, *arm, sharp - arm));
-                self.points.extend(named);
-                match n {
-                    1 => {}
-                    2 => self.edges.push([0, 1]),
-                    _ => self
-                        .edges
-                        .extend((0..n as u32).map(|a| [a, (a + 1) % n as u32])),
-                }
-                Some(closing)
-            }
-            Piece::Chain { points, edges } => {
-                self.place.clear();
-                self.place.resize(points.len(), u32::MAX);
-                for edge in edges {
-                    let arms = edge.map(|end| surface.offset.transform(points[end as usize]));
-                    if !swept(&arms).is_some_and(|bounds| bounds.loosened(offset).intersects(near))
-                    {
-                        continue;
-                    }
-                    let ends = [0, 1].map(|side| {
-                        let place = &mut self.place[edge[side] as usize];
-                        if *place == u32::MAX {
-                            *place = self.points.len() as u32;
-                            self.points.push((edge[side], arms[side], Vec2::zeros()));
-                        }
-                        *place
-                    });
-                    self.edges.push(ends);
-                }
-                (!self.edges.is_empty()).then_some(Closing {
-                    distance: offset,
-                    margin: offset,
-                })
-            }
-        }
-    }
+/// Draws a piece that a flexible body meets at an offset (m); `None` if it is not near.
+fn draw(
+    draft: &mut Draft,
+    piece: &Piece,
+    surface: &RigidSurface<'_>,
+    offset: f64,
+    guest: &Guest,
+    island: &Island,
+) -> Option<Closing> {
+    let Piece::Convex {
+        vertices,
+        radius,
+        width,
+    } = piece
+    else {
+        let is_near = draft.draw_open(piece, surface, offset, guest, island);
+        return is_near.then_some(Closing {
+            distance: offset,
+            margin: offset,
+        });
+    };
+    let inwards = offset.min(MOST_INWARDS * width);
+    let distance = draft.draw_core((vertices, *radius), surface, inwards);
+    let bounds = draft.bounds(surface, island)?.loosened(distance);
+    let is_near = bounds.intersects(&guest.near);
+    let margin = if *radius > 0.0 || vertices.len() < 3 {
+        offset.min(SOFT_SHARE * radius)
+    } else {
+        distance
+    };
+    is_near.then_some(Closing { distance, margin })
 }
 
 impl Piece {
