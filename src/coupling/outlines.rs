@@ -39,6 +39,17 @@ pub(super) enum Piece {
     },
 }
 
+impl Piece {
+    /// Number of points that a piece may be drawn with.
+    fn n_points(&self) -> u32 {
+        match self {
+            Self::HalfSpace { .. } => 2,
+            Self::Convex { vertices, .. } => vertices.len() as u32,
+            Self::Chain { points, .. } => points.len() as u32,
+        }
+    }
+}
+
 /// The outline of one collider.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outline {
@@ -47,6 +58,16 @@ pub(super) struct Outline {
 }
 
 impl Outline {
+    /// Its pieces with the names that their points are counted from: those of the collider are counted through, so that as many pieces
+    /// have names of their own as there are points.
+    pub fn named_pieces(&self) -> impl Iterator<Item = (u32, &Piece)> {
+        self.pieces.iter().scan(0, |next, piece| {
+            let first = *next;
+            *next += piece.n_points();
+            Some((first, piece))
+        })
+    }
+
     /// Distance at which flexible surfaces stay from true ones (m): the offset, where something has no thickness.
     pub fn gap(&self, offset: f64) -> f64 {
         let is_thin = |piece: &Piece| matches!(piece, Piece::Chain { .. });

@@ -29,7 +29,8 @@ struct Core {
 /// Members of the rigid colliders of an island, with their buffers.
 #[derive(Debug, Default)]
 pub(super) struct RigidCores {
-    known: HashMap<(ColliderHandle, usize), Core>,
+    /// By collider and name of their first point.
+    known: HashMap<(ColliderHandle, u32), Core>,
     draft: Draft,
 }
 
@@ -53,8 +54,8 @@ impl RigidCores {
     pub fn lead(&mut self, way: &RigidWay<'_>, island: &mut Island) -> bool {
         let first = island.path.n_ways();
         let [one, other] = &way.surfaces;
-        for (a, first_piece) in one.outline.pieces.iter().enumerate() {
-            for (b, second_piece) in other.outline.pieces.iter().enumerate() {
+        for (a, first_piece) in one.outline.named_pieces() {
+            for (b, second_piece) in other.outline.named_pieces() {
                 let sides = [(a, first_piece), (b, second_piece)];
                 if !self.lead_pieces(way, sides, island) {
                     island.path.truncate(first);
@@ -68,7 +69,7 @@ impl RigidCores {
     fn lead_pieces(
         &mut self,
         way: &RigidWay<'_>,
-        sides: [(usize, &Piece); 2],
+        sides: [(u32, &Piece); 2],
         island: &mut Island,
     ) -> bool {
         // What has no size of its own is drawn as far as the other piece needs it.
@@ -125,10 +126,10 @@ impl RigidCores {
         &mut self,
         way: &RigidWay<'_>,
         side: usize,
-        (index, piece): (usize, &Piece),
+        (name, piece): (u32, &Piece),
         island: &mut Island,
     ) -> Option<Core> {
-        let key = (way.handles[side], index);
+        let key = (way.handles[side], name);
         if let Some(core) = self.known.get(&key) {
             return Some(*core);
         }
@@ -152,7 +153,6 @@ impl RigidCores {
         } else {
             (closing, *width)
         };
-        let name = (index as u32) << PIECE_BITS;
         let member = self.draft.add_to(island, surface.block, name);
         let core = Core {
             member,
@@ -168,7 +168,7 @@ impl RigidCores {
     fn draw_open(
         &mut self,
         surface: &RigidSurface<'_>,
-        (index, piece): (usize, &Piece),
+        (name, piece): (u32, &Piece),
         near: &Bounds,
         width: f64,
         island: &mut Island,
@@ -181,7 +181,6 @@ impl RigidCores {
         if !self.draft.draw_open(piece, surface, 0.0, &guest, island) {
             return None;
         }
-        let name = (index as u32) << PIECE_BITS;
         let member = self.draft.add_to(island, surface.block, name);
         Some(Core {
             member,
@@ -191,9 +190,6 @@ impl RigidCores {
         })
     }
 }
-
-/// Bits of a point's name that count within its piece.
-const PIECE_BITS: u32 = 20;
 
 /// Box of a convex piece over the step.
 fn bounds_of(piece: &Piece, surface: &RigidSurface<'_>, island: &Island) -> Option<Bounds> {
@@ -208,4 +204,76 @@ fn bounds_of(piece: &Piece, surface: &RigidSurface<'_>, island: &Island) -> Opti
         .map(|vertex| surface.offset.transform(*vertex));
     let bounds = swept(arms, surface.motion(island)?)?;
     Some(bounds.loosened(*radius))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::outlines::Outline;
+    use super::*;
+    use crate::constraint::contact::Owner;
+    use crate::constraint::geometry::Pose2;
+    use crate::math::Vec2;
+    use crate::system::{Block, RigidBlock, RigidMotion};
+    use std::collections::HashSet;
+
+    fn rectangle([left, right]: [f64; 2], [low, high]: [f64; 2]) -> Piece {
+        let corners = [[left, low], [right, low], [right, high], [left, high]];
+        Piece::Convex {
+            vertices: corners.map(Vec2::from).to_vec(),
+            radius: 0.0,
+            width: (right - left).min(high - low),
+        }
+    }
+
+    /// A strip of 5,000 boxes lies on a long one. Every near pair has a name of its own, and none of them reaches into the bits above,
+    /// which tell the rows of the path and of meetings from each other.
+    #[test]
+    fn every_contact_of_a_body_of_many_parts_has_a_name_of_its_own() {
+        const N: usize = 5_000;
+        let side = 0.1;
+        let mut strip = Outline::default();
+        for part in 0..N {
+            let left = side * part as f64;
+            strip
+                .pieces
+                .push(rectangle([left, left + 0.9 * side], [0.001, side]));
+        }
+        let mut table = Outline::default();
+        let long = side * N as f64;
+        table
+            .pieces
+            .push(rectangle([-1.0, long + 1.0], [-1.0, 0.0]));
+        let mut island = Island::default();
+        let rest = RigidMotion::default();
+        let sunk = RigidMotion {
+            centre: Vec2::new(0.0, -1e-3),
+            ..rest
+        };
+        for end in [sunk, rest] {
+            let block = RigidBlock::prescribed(rest, end);
+            island.blocks.push(Block::Rigid(block));
+        }
+        let surface = |block, outline| RigidSurface {
+            block,
+            outline,
+            offset: Pose2::identity(),
+        };
+        let way = RigidWay {
+            handles: [0, 1].map(|index| ColliderHandle::from_raw_parts(index, 0)),
+            surfaces: [surface(0, &strip), surface(1, &table)],
+            names: Names {
+                one: Owner::Flex(0),
+                other: Owner::Flex(1),
+            },
+            law: ContactLaw::default(),
+            reach: 0.1,
+            turn: 0.0,
+        };
+        assert!(RigidCores::default().lead(&way, &mut island));
+        let keys = island.path.near_keys();
+        assert!(keys.len() >= 2 * N, "{} near pairs", keys.len());
+        let names: HashSet<_> = keys.iter().collect();
+        assert_eq!(names.len(), keys.len(), "two contacts share a name");
+        assert!(keys.iter().all(|key| key.part >> 30 == 0b10));
+    }
 }

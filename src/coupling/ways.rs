@@ -49,15 +49,11 @@ pub(super) fn flex_rigid(
     };
     let first = island.path.n_ways();
     let own = island.path.flex_member(flex, &island.blocks);
-    let mut name = 0;
-    for piece in &surface.outline.pieces {
-        let drawn = draw(draft, piece, surface, offset, &guest, island);
-        let first_name = name;
-        name += piece.n_points();
-        let Some(closing) = drawn else {
+    for (name, piece) in surface.outline.named_pieces() {
+        let Some(closing) = draw(draft, piece, surface, offset, &guest, island) else {
             continue;
         };
-        let other = draft.add_to(island, surface.block, first_name);
+        let other = draft.add_to(island, surface.block, name);
         let way = Way {
             members: [own, other],
             owners: [names.one, names.other],
@@ -162,16 +158,6 @@ fn draw(
         distance
     };
     is_near.then_some(Closing { distance, margin })
-}
-
-impl Piece {
-    fn n_points(&self) -> u32 {
-        match self {
-            Self::HalfSpace { .. } => 2,
-            Self::Convex { vertices, .. } => vertices.len() as u32,
-            Self::Chain { points, .. } => points.len() as u32,
-        }
-    }
 }
 
 /// The offset of a flexible body's surface (m).

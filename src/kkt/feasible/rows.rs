@@ -7,6 +7,9 @@ use crate::path::{NearPair, Target};
 use crate::system::{Block, Grip, Point};
 
 /// Marks the names of near pairs in contact keys.
+///
+/// Names of points are counted through a body or a collider: with the bit that tells edges from vertices they stay below this mark and that of
+/// meetings until one has 2^29 points.
 const PATH_NAMES: u32 = 1 << 31;
 
 impl FeasiblePath {
@@ -67,6 +70,13 @@ impl FeasiblePath {
             target,
             part: PATH_NAMES | part,
         }
+    }
+
+    /// The names of all that is near at the base.
+    #[cfg(test)]
+    pub(crate) fn near_keys(&mut self) -> Vec<ContactKey> {
+        self.list_near();
+        self.near.iter().map(|near| self.key(near)).collect()
     }
 
     /// The row of a near pair at the base.
