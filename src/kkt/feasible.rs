@@ -256,7 +256,6 @@ impl FeasiblePath {
         self.base.clear();
         self.nodes.clear();
         self.meetings.clear();
-        self.last_way.forget();
         for block in blocks {
             self.base.push(match block {
                 Block::Flex(body) => {
@@ -276,6 +275,9 @@ impl FeasiblePath {
                 },
             });
         }
+        let n_points = self.surfaces.points().len();
+        self.last_way
+            .forget([n_points, self.base.len(), self.nodes.len()]);
     }
 
     /// Moves the base towards the blocks' iterate, as far as the surfaces stay apart; returns whether it arrives.

@@ -25,17 +25,29 @@ pub(super) struct LastWay {
     part: f64,
     /// Share after which the way would vanish.
     wanted: f64,
+    /// The base before the last pass, if it is to be gone back to.
     points: Vec<Vec2>,
     base: Vec<BlockBase>,
     nodes: Vec<f64>,
 }
 
 impl LastWay {
-    /// Forgets what the passes of another step told.
-    pub fn forget(&mut self) {
+    /// Forgets what the passes of another step told, with room for a base of so many points, blocks and coordinates of nodes.
+    pub fn forget(&mut self, [n_points, n_blocks, n_coordinates]: [usize; 3]) {
         self.now.clear();
         self.before.clear();
         (self.part, self.wanted) = (1.0, 1.0);
+        self.points.clear();
+        self.base.clear();
+        self.nodes.clear();
+        self.points.reserve(n_points);
+        self.base.reserve(n_blocks);
+        self.nodes.reserve(n_coordinates);
+    }
+
+    /// Whether less of the way is to be gone than was.
+    fn goes_back(&self) -> bool {
+        self.wanted < self.part
     }
 }
 
@@ -44,10 +56,6 @@ impl FeasiblePath {
     pub(super) fn look_back(&mut self, part: f64) {
         let last = &mut self.last_way;
         std::mem::swap(&mut last.now, &mut last.before);
-        last.points.clear();
-        last.points.extend_from_slice(self.surfaces.points());
-        last.base.clone_from(&self.base);
-        last.nodes.clone_from(&self.nodes);
         last.now.clear();
         let ways = self.motion.ends().iter().zip(self.surfaces.points());
         last.now.extend(ways.map(|(end, point)| end - point));
@@ -71,15 +79,22 @@ impl FeasiblePath {
             last.wanted = 1.0;
         }
         last.part = part;
+        // The base is needed only where a part of the way is gone anew: never in the first pass.
+        if last.goes_back() {
+            last.points.clear();
+            last.points.extend_from_slice(self.surfaces.points());
+            last.base.clone_from(&self.base);
+            last.nodes.clone_from(&self.nodes);
+        }
     }
 
     /// Goes back to where the way of the last pass is expected to vanish, if that is before the base; returns whether it was.
     pub(in crate::kkt) fn retreat(&mut self, blocks: &[Block]) -> bool {
-        let share = self.last_way.wanted;
-        if share >= self.last_way.part {
+        let last = &mut self.last_way;
+        if !last.goes_back() {
             return false;
         }
-        let last = &mut self.last_way;
+        let share = last.wanted;
         last.part = share;
         self.base.clone_from(&last.base);
         self.nodes.clone_from(&last.nodes);
