@@ -103,3 +103,109 @@ impl FeasiblePath {
         true
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::Weights;
+    use crate::math::sin_cos;
+    use crate::system::{RigidBlock, RigidLoad, RigidMotion};
+
+    /// Bodies of one point each, far from each other: their centres are the unknowns.
+    const N_BODIES: usize = 3;
+
+    fn scene() -> (FeasiblePath, Vec<Block>) {
+        let load = RigidLoad {
+            inverse_mass: [1.0; 3],
+            force: [0.0; 3],
+            damping: [0.0; 3],
+        };
+        let weights = Weights { b0: 1.0, b1: 1.0 };
+        let rest = RigidMotion::default();
+        let body = || Block::Rigid(RigidBlock::free(rest, None, &load, weights, 1.0));
+        let blocks: Vec<Block> = std::iter::repeat_with(body).take(N_BODIES).collect();
+        let mut path = FeasiblePath::default();
+        let none = Vec2::zeros();
+        for block in 0..N_BODIES {
+            path.rigid_member(block, &blocks, 0, 0.0, &[(0, none, none)], &[]);
+        }
+        path.rest(&blocks);
+        (path, blocks)
+    }
+
+    /// `T(x) = x* + A (x - x*)` with given eigenvalues along axes that are turned against those of the unknowns, and `x*` at (1, ..., 1).
+    fn ends_of(base: &[BlockBase], eigenvalues: &[f64; 2 * N_BODIES]) -> [Vec2; N_BODIES] {
+        let mut off: Vec<f64> = base
+            .iter()
+            .flat_map(|base| [base.centre.x, base.centre.y])
+            .collect();
+        off.iter_mut().for_each(|x| *x -= 1.0);
+        let turns = (0..off.len() - 1).map(|k| (k, sin_cos(0.4 + 0.3 * k as f64)));
+        for (k, (sin, cos)) in turns.clone() {
+            (off[k], off[k + 1]) = (
+                cos * off[k] + sin * off[k + 1],
+                cos * off[k + 1] - sin * off[k],
+            );
+        }
+        off.iter_mut()
+            .zip(eigenvalues)
+            .for_each(|(x, eigenvalue)| *x *= eigenvalue);
+        for (k, (sin, cos)) in turns.rev() {
+            (off[k], off[k + 1]) = (
+                cos * off[k] - sin * off[k + 1],
+                cos * off[k + 1] + sin * off[k],
+            );
+        }
+        std::array::from_fn(|body| Vec2::new(1.0 + off[2 * body], 1.0 + off[2 * body + 1]))
+    }
+
+    fn distance(path: &FeasiblePath) -> f64 {
+        let off = |base: &BlockBase| (base.centre - Vec2::new(1.0, 1.0)).norm_squared();
+        path.base.iter().map(off).sum::<f64>().sqrt()
+    }
+
+    /// Passes until the base is nearer than `goal` to where it leads, and how often one went back.
+    fn passes(eigenvalues: [f64; 2 * N_BODIES], goal: f64, most: usize) -> (usize, usize) {
+        let (mut path, mut blocks) = scene();
+        let mut n_back = 0;
+        for pass in 0..most {
+            if distance(&path) < goal {
+                return (pass, n_back);
+            }
+            let ends = ends_of(&path.base, &eigenvalues);
+            for (block, end) in blocks.iter_mut().zip(ends) {
+                if let Block::Rigid(body) = block {
+                    body.stop_at(end, 0.0);
+                }
+            }
+            assert!(path.advance(&blocks), "nothing stands in the way");
+            n_back += usize::from(path.retreat(&blocks));
+            let places = path.surfaces.points().iter().zip(&path.base);
+            for (point, base) in places {
+                assert_eq!(*point, base.centre, "surface and base part");
+            }
+        }
+        (most, n_back)
+    }
+
+    #[test]
+    fn passes_that_turn_to_and_fro_and_grow_come_to_rest() {
+        // Going all of the way multiplies what is missing by -1.5 in every pass.
+        let (n, n_back) = passes([-1.5, -1.2, -0.9, -0.5, 0.1, 0.3], 1e-9, 60);
+        assert!(n < 60 && n_back > 0, "{n} passes, {n_back} back");
+        // Between two places for ever.
+        let (n, _) = passes([-1.0; 6], 1e-9, 60);
+        assert!(n <= 3, "{n} passes");
+        // More than one look back may tell: from a quarter of the way to a tenth.
+        let (n, _) = passes([-9.0; 6], 1e-9, 60);
+        assert!(n <= 4, "{n} passes");
+    }
+
+    #[test]
+    fn passes_that_come_nearer_by_themselves_go_all_of_the_way() {
+        let (n, n_back) = passes([0.5; 6], 1e-9, 60);
+        assert_eq!(n_back, 0);
+        // sqrt(6) 2^-n < 1e-9
+        assert_eq!(n, 32);
+    }
+}
