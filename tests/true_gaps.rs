@@ -143,3 +143,73 @@ fn heavy_boxes_flush_with_the_edges_of_light_flexible_ones_are_solved_at_any_ste
         );
     }
 }
+
+/// A block of cells of this size (m), a metre wide.
+fn block(cell: f64, height: f64) -> FlexBodyBuilder {
+    let divisions = [1.0, 0.5].map(|side| (side / cell) as usize);
+    FlexBodyBuilder::rectangle([1.0, 0.5], divisions)
+        .material(elastic(1e7, 1000.0, 5e-3))
+        .translation([-0.5, height])
+        .friction(0.5)
+}
+
+/// Heights of the lowest and of the highest node (m).
+fn heights(body: &FlexBody) -> [f64; 2] {
+    let heights = (0..body.n_nodes()).map(|node| body.position(node)[1]);
+    heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
+        [low.min(y), high.max(y)]
+    })
+}
+
+/// What is shown between things that rest on each other: the offset that is documented, of two bodies that of the finer one, and nothing
+/// above what has an inside.
+#[test]
+fn a_block_at_rest_shows_its_contact_offset_and_nothing_else() {
+    let line = ColliderBuilder::polyline(vec![vec2(-5.0, 0.0), vec2(5.0, 0.0)], None);
+    let field = ColliderBuilder::heightfield(vec![0.0; 5], vec2(10.0, 1.0));
+    let solid = ColliderBuilder::cuboid(5.0, 0.5).translation(vec2(0.0, -0.5));
+    let space = ColliderBuilder::new(SharedShape::halfspace(vec2(0.0, 1.0)));
+    let floors = [
+        ("line", line, 1.0),
+        ("field", field, 1.0),
+        ("solid", solid, 0.0),
+        ("space", space, 0.0),
+    ];
+    for (name, floor, share) in floors {
+        for cell in [0.25, 0.0625] {
+            let mut scene = Scene::new(1.0 / 60.0);
+            scene.fixed(floor.clone().friction(0.5));
+            let body = scene.flexible(block(cell, 0.02));
+            scene.steps(120);
+            let offset = scene.body(body).contact_offset();
+            assert!((offset - 0.01 * cell).abs() < 1e-6 * cell, "{offset} m");
+            let [low, _] = heights(scene.body(body));
+            let error = low - share * offset;
+            assert!(
+                error.abs() < 1e-6 * offset,
+                "{low} m above a {name}, offset {offset} m"
+            );
+        }
+    }
+    for cells in [[0.25, 0.0625], [0.0625, 0.25]] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        scene.ground(0.5);
+        let [lower, upper] =
+            [(cells[0], 0.01), (cells[1], 0.53)].map(|(cell, at)| scene.flexible(block(cell, at)));
+        scene.steps(180);
+        let offsets = [lower, upper].map(|body| scene.body(body).contact_offset());
+        let mut gap = f64::INFINITY;
+        for [one, other] in [[lower, upper], [upper, lower]] {
+            let outline = scene.body(one);
+            let nodes = scene.body(other).mesh().boundary().nodes().iter();
+            gap = nodes
+                .map(|&node| from_outline(outline, scene.body(other).position(node)))
+                .fold(gap, f64::min);
+        }
+        let error = gap - offsets[0].min(offsets[1]);
+        assert!(
+            error.abs() < 1e-6 * offsets[0].min(offsets[1]),
+            "{gap} m, offsets {offsets:?}"
+        );
+    }
+}
