@@ -231,3 +231,6 @@ const SAME: f64 = 1e-6;
 
 /// Cosine of the widest angle between two forces whose mean has a direction to speak of.
 const LEAST_COSINE: f64 = -0.9;
+
+#[cfg(test)]
+mod tests;
