@@ -188,3 +188,6 @@ fn leader_of(leaders: &[usize], mut block: usize) -> usize {
     }
     block
 }
+
+#[cfg(test)]
+mod tests;

@@ -26,7 +26,7 @@ mod search;
 mod surfaces;
 
 #[cfg(test)]
-mod samples;
+pub(crate) mod samples;
 #[cfg(test)]
 mod tests;
 
