@@ -72,11 +72,14 @@ impl FeasiblePath {
         }
     }
 
-    /// The names of all that is near at the base.
+    /// Names and rows of all that is near where the step begins.
     #[cfg(test)]
-    pub(crate) fn near_keys(&mut self) -> Vec<ContactKey> {
+    pub(crate) fn start_rows(&mut self, blocks: &[Block]) -> Vec<(ContactKey, Kinematics)> {
+        self.rest(blocks);
         self.list_near();
-        self.near.iter().map(|near| self.key(near)).collect()
+        let rows = self.near.iter();
+        rows.map(|near| (self.key(near), self.kinematics(near)))
+            .collect()
     }
 
     /// The row of a near pair at the base.
