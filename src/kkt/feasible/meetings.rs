@@ -28,7 +28,7 @@ pub(super) struct Meeting {
     /// Passes in which a force has slid off here, and the last of them.
     slides: usize,
     last: usize,
-    /// Normals and directions of force on the first member, the two that are farthest from each other; of length one.
+    /// Normals and directions of force on the first member, of the side that the force slid off last and of the one it came to; of length one.
     normals: [Vec2; 2],
     forces: [Vec2; 2],
     /// Whether the vertices are held together, and how often they were and need not be.
