@@ -1,6 +1,7 @@
 //! Who steps a scene, and what was seen of it.
 
 use crate::clock::median;
+use foil2d::pipeline::Quality;
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
 
@@ -11,7 +12,7 @@ pub type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Told {
     pub n_factorizations: u64,
-    pub is_unsolved: bool,
+    pub quality: Quality,
 }
 
 /// Something that steps a scene.
@@ -50,7 +51,7 @@ impl Side for Flexible {
         let report = self.flex.step(&mut self.world, &mut self.bodies)?;
         Ok(Told {
             n_factorizations: report.n_factorizations(),
-            is_unsolved: (report.n_linearized(), report.n_held()) != (0, 0),
+            quality: report.quality(),
         })
     }
 }
@@ -137,8 +138,11 @@ impl Seen {
         [mean(&self.told), most, mean(&self.told[last..])]
     }
 
-    /// Steps that were cut short, linearised or held.
-    pub fn n_unsolved(&self) -> usize {
-        self.told.iter().filter(|told| told.is_unsolved).count()
+    /// Steps that were cut, and steps that were not finished.
+    pub fn n_unsolved(&self) -> [usize; 2] {
+        [Quality::Cut, Quality::Unfinished].map(|quality| {
+            let of_quality = self.told.iter().filter(|told| told.quality == quality);
+            of_quality.count()
+        })
     }
 }

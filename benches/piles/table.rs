@@ -33,9 +33,9 @@ pub fn print(scene: &Scene, n_steps: usize, seen: &[Seen]) {
         );
     }
     let [mean, most, last] = seen[0].factorizations();
+    let [cut, unfinished] = seen[0].n_unsolved();
     println!(
-        "  factorizations a step: {mean:.1}, at most {most:.0}, in the last second {last:.1}; {} of {} steps not solved",
-        seen[0].n_unsolved(),
+        "  factorizations a step: {mean:.1}, at most {most:.0}, in the last second {last:.1}; of {} steps {cut} cut, {unfinished} unfinished",
         seen[0].n_steps()
     );
 }
