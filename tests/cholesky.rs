@@ -476,6 +476,51 @@ fn a_matrix_that_is_not_positive_definite_is_named_by_its_node_and_leaves_the_fa
 }
 
 #[test]
+fn what_is_made_anew_where_values_have_changed_is_made_anew_to_the_last_bit() {
+    let mut random = Random(12);
+    let body = mesh(20, 6, [1.0, 0.3], 0.2, &mut random);
+    let mut matrix = assemble(&body, &random.permutation(body.points.len()), 0.1);
+    let load = random.vector(matrix.n_dofs());
+    let mut cholesky = BlockCholesky::analyze(&matrix);
+    let mut check = |matrix: &BlockMatrix| {
+        let mut x = load.clone();
+        cholesky.refactorize(matrix).unwrap();
+        cholesky.solve_in_place(&mut x);
+        assert_eq!(x, solved(matrix, &load));
+    };
+    check(&matrix);
+    check(&matrix);
+    // One node, then many, then a coupling without its nodes.
+    for n_changed in [1, 1, 3, 40] {
+        for k in 0..n_changed {
+            let node = (17 * k + 5 * n_changed) % matrix.n_nodes();
+            matrix.add_diagonal(node, [1.0 + k as f64, 0.5]);
+        }
+        check(&matrix);
+    }
+    let node = matrix.n_nodes() / 2;
+    let other = matrix.neighbours(node).iter().map(|&other| other as usize);
+    let other = other.max().unwrap();
+    matrix.add_cell(&[node, other], &[0.01; 16]);
+    check(&matrix);
+    // A failure leaves nothing that a later call would keep, nor does a factor that was made as a whole.
+    let mut bad = matrix.clone();
+    bad.add_diagonal(node, [0.0, -1e6]);
+    assert!(cholesky.refactorize(&bad).is_err());
+    for is_whole in [false, true] {
+        let mut x = load.clone();
+        if is_whole {
+            let mut heavier = matrix.clone();
+            heavier.add_diagonal(node, [3.0, 3.0]);
+            cholesky.factorize(&heavier).unwrap();
+        }
+        cholesky.refactorize(&matrix).unwrap();
+        cholesky.solve_in_place(&mut x);
+        assert_eq!(x, solved(&matrix, &load));
+    }
+}
+
+#[test]
 fn a_body_free_to_move_rigidly_is_refused_and_a_held_one_is_not() {
     let mut random = Random(10);
     for (nx, ny) in [(1, 1), (5, 5), (40, 4), (30, 30)] {

@@ -47,6 +47,15 @@ impl Sources {
         }
         Self { start, blocks }
     }
+
+    /// Notes the positions whose columns hold a block that differs between two sets of values.
+    pub fn list_changed(&self, [one, other]: [&[[f64; 4]]; 2], is_changed: &mut Vec<bool>) {
+        is_changed.clear();
+        is_changed.extend(self.start.windows(2).map(|range| {
+            let mut own = self.blocks[range[0] as usize..range[1] as usize].iter();
+            own.any(|&[place, _]| one[place as usize] != other[place as usize])
+        }));
+    }
 }
 
 /// A pivot that was not positive.
@@ -66,6 +75,8 @@ pub(super) struct Factorize<'a> {
     /// Zero at entry, and again at the end unless it fails. The last row takes what belongs to no
     /// row.
     pub rows: &'a mut [NodeRow],
+    /// The panels to be made anew; all if empty. What others hold must be right already.
+    pub is_wanted: &'a [bool],
 }
 
 impl WithSimd for Factorize<'_> {
@@ -73,7 +84,10 @@ impl WithSimd for Factorize<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, _: S) -> Self::Output {
-        for panel in &self.panels.panels {
+        for (index, panel) in self.panels.panels.iter().enumerate() {
+            if self.is_wanted.get(index) == Some(&false) {
+                continue;
+            }
             match panel.width {
                 1 => self.eliminate::<2, 2>(panel),
                 2 => self.eliminate::<4, 4>(panel),

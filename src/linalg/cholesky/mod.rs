@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | order the nodes | `ordering` | once per pattern |
 //! | lay out the factor in panels | `panels` | once per pattern |
-//! | compute `L` | `factor` | when values change |
+//! | compute `L`, or what of it has changed | `factor` | when values change |
 //! | substitute | `solve` | every step |
 //!
 //! A panel holds up to four node columns with the same rows. Its diagonal block is kept as its
@@ -126,6 +126,11 @@ pub struct BlockCholesky {
     rows_are_zero: bool,
     is_factorized: bool,
     n_factorizations: usize,
+    /// The values that the factor was made of, if [`refactorize`](Self::refactorize) made it.
+    made_of: Vec<[f64; 4]>,
+    /// Positions, then panels, that others are asked of than before.
+    is_changed: Vec<bool>,
+    is_wanted: Vec<bool>,
     arch: Arch,
 }
 
@@ -143,10 +148,13 @@ impl BlockCholesky {
             vector: vec![[0.0; 2]; 2 * (n_nodes + 1)],
             rows: vec![[0.0; 16]; n_nodes + 2],
             node_at: ordering.node_at,
-            panels,
             rows_are_zero: true,
             is_factorized: false,
             n_factorizations: 0,
+            made_of: Vec::new(),
+            is_changed: Vec::with_capacity(n_nodes),
+            is_wanted: Vec::with_capacity(panels.panels.len()),
+            panels,
             arch: Arch::new(),
         }
     }
@@ -159,6 +167,34 @@ impl BlockCholesky {
     /// than the one analysed. After an error there is no factor to solve with until another call
     /// succeeds.
     pub fn factorize(&mut self, matrix: &BlockMatrix) -> Result<(), CholeskyError> {
+        self.made_of.clear();
+        self.is_wanted.clear();
+        self.fill(matrix)
+    }
+
+    /// Computes the same `L` to the last bit, but only those parts of it that depend on values that have changed since the last call.
+    /// Allocates nothing after the first call.
+    ///
+    /// A panel depends on its own columns of the matrix and on the panels below it in the tree of elimination.
+    ///
+    /// # Errors
+    /// As of [`factorize`](Self::factorize).
+    pub fn refactorize(&mut self, matrix: &BlockMatrix) -> Result<(), CholeskyError> {
+        let blocks = matrix.blocks();
+        self.is_wanted.clear();
+        if self.is_factorized && self.made_of.len() == blocks.len() {
+            self.sources
+                .list_changed([&self.made_of, blocks], &mut self.is_changed);
+            self.panels
+                .close_upwards(&mut self.is_changed, &mut self.is_wanted);
+        }
+        self.made_of.clear();
+        self.made_of.extend_from_slice(blocks);
+        self.fill(matrix)
+    }
+
+    /// Computes the wanted panels, all if none are listed.
+    fn fill(&mut self, matrix: &BlockMatrix) -> Result<(), CholeskyError> {
         self.is_factorized = false;
         if !Arc::ptr_eq(&self.pattern, matrix.pattern()) && self.pattern != *matrix.pattern() {
             return Err(CholeskyError::PatternMismatch {
@@ -175,6 +211,7 @@ impl BlockCholesky {
             blocks: matrix.blocks(),
             values: self.values.get_mut(),
             rows: &mut self.rows,
+            is_wanted: &self.is_wanted,
         });
         outcome.map_err(|failure| CholeskyError::NotPositiveDefinite {
             node: self.node_at[failure.position] as usize,
@@ -245,12 +282,14 @@ impl BlockCholesky {
         nodes
             .into_iter()
             .for_each(|node| is_wanted_node[node] = true);
-        let is_wanted_position: Vec<bool> = self
+        let mut is_wanted_position: Vec<bool> = self
             .node_at
             .iter()
             .map(|&node| is_wanted_node[node as usize])
             .collect();
-        let is_wanted = self.panels.close_upwards(&is_wanted_position);
+        let mut is_wanted = Vec::new();
+        self.panels
+            .close_upwards(&mut is_wanted_position, &mut is_wanted);
         Selection { is_wanted }
     }
 
@@ -348,6 +387,7 @@ mod tests {
             blocks: matrix.blocks(),
             values: plain.values.get_mut(),
             rows: &mut plain.rows,
+            is_wanted: &[],
         };
         assert!(factorize.with_simd(Scalar::new()).is_ok());
         assert_eq!(wide.values.get(), plain.values.get());

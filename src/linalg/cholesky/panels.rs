@@ -103,23 +103,23 @@ impl Panels {
 
     /// The panels that hold a wanted position, and all that those depend on: a panel's rows are among the columns of
     /// its ancestors, and its first row is a column of its parent.
-    pub fn close_upwards(&self, is_wanted_position: &[bool]) -> Vec<bool> {
+    ///
+    /// - `is_wanted_position`: one for each position; parents of wanted ones are added.
+    /// - `is_wanted`: overwritten, one for each panel.
+    pub fn close_upwards(&self, is_wanted_position: &mut [bool], is_wanted: &mut Vec<bool>) {
         let n_nodes = is_wanted_position.len();
-        let mut is_wanted = vec![false; self.panels.len()];
-        let mut is_parent = vec![false; n_nodes];
-        for (panel, is_wanted) in self.panels.iter().zip(&mut is_wanted) {
-            let own = panel.first as usize..(panel.first + panel.width) as usize;
-            *is_wanted = own
-                .clone()
-                .any(|position| is_wanted_position[position] || is_parent[position]);
+        is_wanted.clear();
+        for panel in &self.panels {
+            let mut own = panel.first as usize..(panel.first + panel.width) as usize;
+            let wanted = own.any(|position| is_wanted_position[position]);
             let parent = self.rows[panel.rows[0] as usize..panel.rows[1] as usize].first();
-            if let (true, Some(&row)) = (*is_wanted, parent)
+            if let (true, Some(&row)) = (wanted, parent)
                 && (row as usize) < n_nodes
             {
-                is_parent[row as usize] = true;
+                is_wanted_position[row as usize] = true;
             }
+            is_wanted.push(wanted);
         }
-        is_wanted
     }
 
     fn push_supernode(&mut self, supernode: &Supernode, n_nodes: u32) {

@@ -64,7 +64,7 @@ impl System {
                 .matrix
                 .blocks_mut()
                 .copy_from_slice(problem.matrix.blocks());
-            analysis.bodies.factorize(problem.matrix)?;
+            analysis.bodies.refactorize(problem.matrix)?;
             self.has_bodies = true;
         }
         Ok(())
@@ -224,7 +224,7 @@ impl System {
             }
         }
         self.n_factorizations += 1;
-        factor.factorize(hull)?;
+        factor.refactorize(hull)?;
         self.weights.clear();
         self.weights.extend_from_slice(weights);
         self.entries.clear();
