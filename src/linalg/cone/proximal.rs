@@ -5,6 +5,7 @@
 //! stays. It need not be unique: redundant rows keep as much as they can of what they carried.
 
 mod line;
+mod predict;
 
 use super::law::{ConeStatus, project, slope};
 use super::problem::{ConeProblem, ConeRow};
@@ -135,8 +136,12 @@ impl Proximal {
                 Some(_) => (start + 1).min(limit).max(n_before),
                 None => limit,
             };
-            self.predict(problem, reduced, system, state, most);
-            if !self.newton(problem, reduced, system, state, settings.tolerance, most) {
+            let norm = match self.predict(problem, reduced, system, state, most) {
+                Some(norm) => norm,
+                None => self.evaluate(problem, reduced, state),
+            };
+            let goal = (norm, settings.tolerance);
+            if !self.newton(problem, reduced, system, state, goal, most) {
                 if completed.residual.is_finite() {
                     state.slip.copy_from_slice(&self.saved_slip);
                 }
@@ -264,57 +269,10 @@ impl Proximal {
         self.penalty.extend(reduced.resistance.iter().map(inverse));
     }
 
-    /// Solves on the pieces of the law that rows were on last, and keeps that if it is nearer to the answer.
+    /// Newton's method with exact line search on one proximal step, from the present `a`, which has been evaluated; `trial` becomes
+    /// `P(a)`.
     ///
-    /// A stiff penalty magnifies small changes of slip or geometry until rows seem to change sides, though they do not.
-    fn predict(
-        &mut self,
-        problem: &ConeProblem,
-        reduced: &Reduced,
-        system: &mut System,
-        state: &mut State,
-        most: usize,
-    ) {
-        self.weigh(problem);
-        if system.fit(problem, &self.weights) == Fit::None
-            && (system.n_factorizations >= most
-                || system.factorize(problem, &self.weights).is_err())
-        {
-            return;
-        }
-        reduced.total_load(problem, &[], &mut self.step);
-        for (index, row) in problem.rows.iter().enumerate() {
-            let (low, high) = row.bounds();
-            let [nn, nt, tt] = self.weights[index];
-            let b = self.request(problem, reduced, state, index);
-            let force = match self.status[index] {
-                _ if reduced.resistance[index] <= 0.0 => state.forces[index],
-                ConeStatus::SlipPositive if !row.has_tangent() => [high, 0.0],
-                ConeStatus::SlipNegative if !row.has_tangent() => [low, 0.0],
-                _ => [nn * b[0] + nt * b[1], nt * b[0] + tt * b[1]],
-            };
-            problem.push(row, 1.0, force, &mut self.step);
-        }
-        problem.matrix.multiply_add(-1.0, &state.a, &mut self.step);
-        system.solve(&mut self.step);
-        self.evaluate(problem, reduced, state);
-        let before = self.energy;
-        state
-            .a
-            .iter_mut()
-            .zip(&self.step)
-            .for_each(|(a, step)| *a += step);
-        self.evaluate(problem, reduced, state);
-        if self.energy > before {
-            state
-                .a
-                .iter_mut()
-                .zip(&self.step)
-                .for_each(|(a, step)| *a -= step);
-        }
-    }
-
-    /// Newton's method with exact line search on one proximal step, from the present `a`; `trial` becomes `P(a)`.
+    /// - `norm`: the size of the imbalance.
     ///
     /// False if that takes more than `most` factorizations in all, or one that fails.
     fn newton(
@@ -323,10 +281,10 @@ impl Proximal {
         reduced: &Reduced,
         system: &mut System,
         state: &mut State,
-        tolerance: f64,
+        (mut norm, tolerance): (f64, f64),
         most: usize,
     ) -> bool {
-        let (mut norm, mut is_full) = (self.evaluate(problem, reduced, state), false);
+        let mut is_full = false;
         let (mut n_kept, mut least_norm, mut n_idle) = (0, norm, 0);
         for _ in 0..MOST_NEWTON_STEPS {
             if norm <= SMALL * tolerance * reduced.force_scale(&self.trial) {

@@ -37,6 +37,8 @@ pub(super) struct System {
     nodes: Vec<u32>,
     spans: Vec<(u32, u32)>,
     has_factor: bool,
+    /// Whether it was made of the problem at hand.
+    is_own: bool,
     weights: Vec<[f64; 3]>,
     entries: Vec<ConeEntry>,
     values: Vec<[f64; 4]>,
@@ -47,6 +49,7 @@ pub(super) struct System {
 impl System {
     /// Makes the pattern cover the rows and the factor of `A` fit its values.
     pub fn prepare(&mut self, problem: &ConeProblem) -> Result<(), CholeskyError> {
+        self.is_own = false;
         let has_pattern = self
             .analysis
             .as_ref()
@@ -163,10 +166,13 @@ impl System {
         true
     }
 
-    /// Compares the factor at hand with the one asked for.
+    /// Compares the factor at hand with the one asked for; the problem is that of the last [`prepare`](Self::prepare).
     pub fn fit(&self, problem: &ConeProblem, weights: &[[f64; 3]]) -> Fit {
         if !self.has_factor || self.weights != weights {
             return Fit::None;
+        }
+        if self.is_own {
+            return Fit::Exact;
         }
         let is_same = |(row, weight): (&super::problem::ConeRow, &[f64; 3])| {
             let span = row.entries.0 as usize..row.entries.1 as usize;
@@ -227,11 +233,13 @@ impl System {
         factor.refactorize(hull)?;
         self.weights.clear();
         self.weights.extend_from_slice(weights);
-        self.entries.clear();
-        self.entries.extend_from_slice(problem.entries);
-        self.values.clear();
-        self.values.extend_from_slice(problem.matrix.blocks());
-        self.has_factor = true;
+        if !self.is_own {
+            self.entries.clear();
+            self.entries.extend_from_slice(problem.entries);
+            self.values.clear();
+            self.values.extend_from_slice(problem.matrix.blocks());
+        }
+        (self.has_factor, self.is_own) = (true, true);
         Ok(())
     }
 
