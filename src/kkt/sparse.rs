@@ -302,22 +302,30 @@ impl Island {
         else {
             return Ok(ConeOutcome::default());
         };
-        let solver = &mut solvers[match asked.of {
-            Response::Position => 0,
-            Response::Velocity => 1,
-            Response::Acceleration => 2,
-            Response::ByMass => 3,
-        }];
-        // The dilation of what slides may leave a fifth of what a pass accepts.
-        solver.settings.gap_tolerance = 2e-4 * self.path.least_margin().min(1e-3) / asked.unit;
-        solver.settings.slip_tolerance = 1e-4;
-        solver.settings.tolerance = 1e-7;
+        let [first, others @ ..] = solvers;
+        let of_others = match asked.of {
+            Response::Position => None,
+            Response::Velocity => Some(0),
+            Response::Acceleration => Some(1),
+            Response::ByMass => Some(2),
+        };
         let problem = ConeProblem {
             matrix,
             load,
             rows,
             entries,
         };
+        let solver = match of_others {
+            None => first,
+            Some(index) => {
+                others[index].adopt(&problem, first)?;
+                &mut others[index]
+            }
+        };
+        // The dilation of what slides may leave a fifth of what a pass accepts.
+        solver.settings.gap_tolerance = 2e-4 * self.path.least_margin().min(1e-3) / asked.unit;
+        solver.settings.slip_tolerance = 1e-4;
+        solver.settings.tolerance = 1e-7;
         let outcome = solver.solve(&problem, multipliers, slip, answer)?;
         let n = self.kinds.len();
         self.multipliers.fill(0.0);

@@ -196,6 +196,14 @@ impl ConeSolver {
         })
     }
 
+    /// Takes over the pattern of another solver that has solved all the rows of a problem, and more, if this one knows of none that has
+    /// them: what is pressed is among what is near.
+    pub(crate) fn adopt(&mut self, problem: &ConeProblem, other: &Self) -> Result<(), ConeError> {
+        problem.check()?;
+        self.system.adopt(problem, &other.system);
+        Ok(())
+    }
+
     /// Takes over what the caller remembers, as far as the laws admit it.
     fn warm_start(&mut self, problem: &ConeProblem, multipliers: &[[f64; 2]], slip: &[f64]) {
         self.start.clear();

@@ -73,6 +73,27 @@ impl System {
         Ok(())
     }
 
+    /// Takes over what another system knows, if its pattern covers the rows and the one at hand does not: an analysis costs as much as
+    /// ten factorizations.
+    pub fn adopt(&mut self, problem: &ConeProblem, other: &Self) {
+        let Some(theirs) = &other.analysis else {
+            return;
+        };
+        let own = self.analysis.as_ref();
+        let has_pattern =
+            own.is_some_and(|analysis| analysis.matrix.has_pattern_of(problem.matrix));
+        if has_pattern && self.place_rows(problem)
+            || !theirs.matrix.has_pattern_of(problem.matrix)
+            || !covers(&theirs.hull, problem)
+        {
+            return;
+        }
+        self.analysis = Some(theirs.clone());
+        self.has_bodies = other.has_bodies;
+        self.has_factor = false;
+        self.spans.clear();
+    }
+
     /// Couples all nodes of each row, beside those that `A` couples.
     fn analyze(&mut self, problem: &ConeProblem, has_pattern: bool) {
         let matrix = problem.matrix;
@@ -256,6 +277,17 @@ impl System {
             analysis.bodies.solve_in_place(x);
         }
     }
+}
+
+/// Whether the pattern couples all nodes of each row.
+fn covers(matrix: &BlockMatrix, problem: &ConeProblem) -> bool {
+    problem.rows.iter().all(|row| {
+        let entries = problem.entries_of(row);
+        let mut pairs = entries
+            .iter()
+            .flat_map(|one| entries.iter().map(move |other| [one.node, other.node]));
+        pairs.all(|[one, other]| place(matrix, one, other).is_some())
+    })
 }
 
 fn place(matrix: &BlockMatrix, row: u32, column: u32) -> Option<u32> {
