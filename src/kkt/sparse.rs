@@ -326,6 +326,7 @@ impl Island {
         solver.settings.gap_tolerance = 2e-4 * self.path.least_margin().min(1e-3) / asked.unit;
         solver.settings.slip_tolerance = 1e-4;
         solver.settings.tolerance = 1e-7;
+        solver.scales_start = asked.of == Response::Velocity;
         let outcome = solver.solve(&problem, multipliers, slip, answer)?;
         let n = self.kinds.len();
         self.multipliers.fill(0.0);

@@ -179,15 +179,16 @@ impl Island {
         self.list_acted(settings.b1);
     }
 
-    /// Begins with what the forces of the position stage would do in `time` (s) at contacts of rigid bodies, on which they have not acted.
-    fn guess_impulses(&mut self, time: f64) {
+    /// Begins with the forces of the position stage at contacts of rigid bodies, on which they have not acted; how long they would have to
+    /// act for impulses is left to the solver.
+    fn guess_impulses(&mut self) {
         self.multipliers.clear();
         self.multipliers.resize(self.kinds.len(), 0.0);
         for (row, direction) in self.rows.iter().enumerate() {
             let contact = &self.contacts[direction.contact];
             if contact.is_hard {
                 let which = usize::from(direction.direction != contact.kinematics.normal);
-                self.multipliers[row] = time * contact.multiplier[which];
+                self.multipliers[row] = contact.multiplier[which];
             }
         }
     }
@@ -197,7 +198,7 @@ impl Island {
         let n = self.kinds.len();
         self.acted.resize(n, 0.0);
         if of != Response::ByMass && self.is_sparse(n) {
-            self.guess_impulses(if of == Response::Velocity { dt } else { 1.0 });
+            self.guess_impulses();
             let asked = Asked {
                 of,
                 which: Rows::End,

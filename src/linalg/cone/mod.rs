@@ -123,6 +123,8 @@ struct State {
 pub struct ConeSolver {
     /// What is good enough.
     pub settings: ConeSettings,
+    /// Whether only the ratios of the multipliers at the start tell something: they are taken as far as they bring the energy down.
+    pub scales_start: bool,
     is_hard: bool,
     reduced: Reduced,
     system: System,
@@ -130,6 +132,8 @@ pub struct ConeSolver {
     interior: Interior,
     sweep: Sweep,
     state: State,
+    /// What the load and the start move.
+    moves: [Vec<f64>; 2],
     start: Vec<[f64; 2]>,
     start_slip: Vec<f64>,
     completed: Vec<[f64; 2]>,
@@ -184,6 +188,9 @@ impl ConeSolver {
         let (n_factorizations, n_analyses) = (self.system.n_factorizations, self.system.n_analyses);
         self.system.prepare(problem)?;
         self.reduced.restate(problem);
+        if self.scales_start {
+            self.scale_start(problem, multipliers);
+        }
         self.warm_start(problem, multipliers, slip);
         let used_interior_point = self.improve(problem);
         let outcome = self.hand_back(problem, multipliers, slip);
@@ -202,6 +209,32 @@ impl ConeSolver {
         problem.check()?;
         self.system.adopt(problem, &other.system);
         Ok(())
+    }
+
+    /// Takes the multipliers `p` as often as the energy `½ s² pᵀW p + s pᵀw` is least, `s = -pᵀw / pᵀW p`, with `w` where they are zero.
+    fn scale_start(&mut self, problem: &ConeProblem, multipliers: &mut [[f64; 2]]) {
+        let [free, moved] = &mut self.moves;
+        free.clear();
+        free.extend_from_slice(problem.load);
+        moved.clear();
+        moved.resize(free.len(), 0.0);
+        self.system.solve_bodies(free);
+        for (row, force) in problem.rows.iter().zip(&*multipliers) {
+            problem.push(row, 1.0, *force, moved);
+        }
+        self.system.solve_bodies(moved);
+        let (mut along, mut square) = (0.0, 0.0);
+        for (row, force) in problem.rows.iter().zip(&*multipliers) {
+            let (at, by) = (problem.motion(row, free), problem.motion(row, moved));
+            for k in 0..2 {
+                along -= force[k] * (row.free[k] + at[k]);
+                square += force[k] * (by[k] + row.give[k] * force[k]);
+            }
+        }
+        let share = along / square;
+        if share.is_finite() && share > 0.0 {
+            multipliers.iter_mut().flatten().for_each(|p| *p *= share);
+        }
     }
 
     /// Takes over what the caller remembers, as far as the laws admit it.

@@ -230,3 +230,44 @@ impl Random {
         low + (high - low) * self.next()
     }
 }
+
+#[test]
+fn a_start_that_is_right_but_for_its_size_needs_no_factorization() {
+    // A point of 4 kg that falls at 3 m/s and drifts at 1 m/s sticks to the ground.
+    let mut mass = BlockMatrix::from_cells(1, [[0]].iter().map(|cell| &cell[..]));
+    mass.add_diagonal(0, [4.0, 4.0]);
+    let row = ConeRow {
+        entries: (0, 1),
+        law: ConeLaw::Contact { friction: 0.5 },
+        free: [-3.0, 1.0],
+        give: [0.0; 2],
+        acted: [0.0; 2],
+        scale: [0.25; 2],
+    };
+    let entry = ConeEntry {
+        node: 0,
+        normal: [0.0, 1.0],
+        tangent: [1.0, 0.0],
+    };
+    let problem = ConeProblem {
+        matrix: &mass,
+        load: &[0.0; 2],
+        rows: &[row],
+        entries: &[entry],
+    };
+    let mut solver = ConeSolver {
+        scales_start: true,
+        ..ConeSolver::default()
+    };
+    for size in [1e-3, 1.0, 1e4] {
+        let mut impulses = [[3.0 * size, -size]];
+        let outcome = solver
+            .solve(&problem, &mut impulses, &mut [0.0], &mut Vec::new())
+            .unwrap();
+        assert!(
+            outcome.is_solved && outcome.n_factorizations == 0,
+            "{outcome:?}"
+        );
+        assert!((impulses[0][0] - 12.0).abs() < 1e-12 && (impulses[0][1] + 4.0).abs() < 1e-12);
+    }
+}
