@@ -76,7 +76,7 @@ fn soft_squares_stay_above_the_ground() {
 }
 
 #[test]
-#[ignore = "open: at 3e6 Pa 3.9 to 5.8 % of the energy brought are gained, not under 1 %; at 1e5 Pa on flat ground up to 6 of 180 steps are not solved"]
+#[ignore = "open: at 3e6 Pa 2.2 to 15 % of the energy brought are gained, not under 1 %"]
 fn soft_squares_stay_above_the_ground_where_it_is_open() {
     land_where(Form::Square, [1e5, 3e6], is_open_for_squares);
 }
@@ -87,7 +87,7 @@ fn is_open_for_discs(young: f64, made: Made, _: Relief) -> bool {
 }
 
 #[test]
-#[ignore = "open: at 3e6 Pa 1.7 to 17 % of the energy brought are gained, not under 1 %"]
+#[ignore = "open: at 3e6 Pa 1.1 % of the energy brought are gained, not under 1 %"]
 fn soft_discs_stay_above_the_ground() {
     land_where(Form::Disc, [1e5, 3e6], |young, made, relief| {
         !is_open_for_discs(young, made, relief)
@@ -95,7 +95,6 @@ fn soft_discs_stay_above_the_ground() {
 }
 
 #[test]
-#[ignore = "open: of 180 steps 2 are not solved on segments of 0.05 m, 1 on a height field of 0.1 m, both at 1e5 Pa"]
 fn soft_discs_stay_above_the_ground_where_it_is_open() {
     land_where(Form::Disc, [1e5, 3e6], is_open_for_discs);
 }
@@ -113,7 +112,6 @@ fn is_open_for_stars(young: f64, made: Made, _: Relief) -> bool {
 }
 
 #[test]
-#[ignore = "open: in a valley of segments of 0.1 m 1 or 2 of 180 steps are not solved"]
 fn soft_stars_stay_above_the_ground() {
     land_where(Form::Star, [3e5, 3e6], |young, made, relief| {
         !is_open_for_stars(young, made, relief)
@@ -121,13 +119,11 @@ fn soft_stars_stay_above_the_ground() {
 }
 
 #[test]
-#[ignore = "open: 1 or 2 of 180 steps are not solved, at 3e5 Pa on flat ground of short pieces, at 3e6 Pa in a valley of segments of 0.25 m"]
 fn soft_stars_stay_above_the_ground_where_it_is_open() {
     land_where(Form::Star, [3e5, 3e6], is_open_for_stars);
 }
 
 #[test]
-#[ignore = "open: 2 and 9 of 180 steps are not solved; on a height field a box is 0.11 m under the ground"]
 fn boxes_and_soft_bodies_gather_in_a_valley() {
     let mut findings = Findings::default();
     for (made, young) in [(Made::Polyline(0.1), 1e6), (Made::Heights(0.2), 1e7)] {
@@ -216,13 +212,11 @@ fn a_car_with_soft_tyres_drives_over_flats() {
 }
 
 #[test]
-#[ignore = "open: 2 of 300 steps are not solved on segments of 0.05 m; the car gets 10.26 m far"]
 fn a_car_with_soft_tyres_drives_over_a_flat_of_short_segments() {
     drive_over(&[(Made::Polyline(0.05), Relief::Flat)]);
 }
 
 #[test]
-#[ignore = "open: 1 of 300 steps is not solved on segments of 0.1 m; the car drives 9.7 m"]
 fn a_car_with_soft_tyres_drives_over_waves() {
     drive_over(&[
         (Made::Polyline(0.1), Relief::Waves),

@@ -5,7 +5,7 @@
 //! that it need not be asked.
 
 use super::claim::Claims;
-use super::places::{loosened, placed_on, swept_box};
+use super::places::{loosened, placed_on, swept_box, travel_of};
 use super::sets::RapierSets;
 use super::sleep::{is_asleep, reaches};
 use crate::body::FlexBodySet;
@@ -174,7 +174,7 @@ impl Claims {
         awake
             .filter_map(|handle| sets.bodies.get(handle))
             .filter(|body| !body.is_fixed() && !body.is_sleeping())
-            .map(|body| body.linvel().length() * dt)
+            .map(|body| travel_of(body, dt))
             .chain(self.flex.iter().map(|flex| flex.travel))
             .fold(0.0, Real::max)
     }

@@ -5,7 +5,7 @@
 //! bodies meet each other and fixed colliders only, all that a claim needs is known without it.
 
 use super::claim::{ClaimedFlex, Claims};
-use super::places::{loosened, placed_on, swept_box};
+use super::places::{loosened, placed_on, swept_box, travel_of};
 use super::sets::RapierSets;
 use crate::rapier::parry::bounding_volume::BoundingVolume;
 use crate::rapier::prelude::*;
@@ -113,7 +113,7 @@ impl Claims {
             return;
         };
         let dt = sets.integration_parameters.dt;
-        let travel = body.linvel().length() * dt;
+        let travel = travel_of(body, dt);
         let swept = loosened(swept_box(sets.bodies, collider, dt), self.excess);
         if travel + self.farthest + self.excess <= sets.integration_parameters.prediction_distance()
         {

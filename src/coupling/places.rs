@@ -3,7 +3,7 @@
 use super::sets::RapierSets;
 use crate::body::FlexBody;
 use crate::math::{node_vec, rotation, to_rapier};
-use crate::rapier::math::{Real, Vector};
+use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
 use std::cmp::Ordering;
@@ -68,7 +68,22 @@ pub(super) fn placed_on(body: &RigidBody, collider: &Collider) -> Pose {
     *body.position() * offset
 }
 
-/// Box of a collider from where it is to where its velocity takes it.
+/// Where a body will be at the end of the step, as it is set: where its velocity takes it without turning, or where its user sends it.
+fn foreseen(body: &RigidBody, dt: Real) -> Pose {
+    if body.body_type() == RigidBodyType::KinematicPositionBased {
+        return *body.next_position();
+    }
+    let mut pose = *body.position();
+    pose.translation += body.linvel() * dt;
+    pose
+}
+
+/// How far a body goes in the step (m).
+pub(super) fn travel_of(body: &RigidBody, dt: Real) -> Real {
+    (foreseen(body, dt).translation - body.position().translation).length()
+}
+
+/// Box of a collider from where it is to where its body will be.
 pub(super) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) -> Aabb {
     let skin = collider.contact_skin();
     let Some(body) = collider.parent().and_then(|parent| bodies.get(parent)) else {
@@ -80,10 +95,18 @@ pub(super) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) ->
         return aabb;
     }
     let extents = aabb.half_extents();
-    let turn = (body.angvel().abs() * dt).min(1.0) * extents.length();
-    let shift: Vector = body.linvel() * dt;
-    let moved = Aabb::new(aabb.mins + shift, aabb.maxs + shift);
-    loosened(aabb.merged(&moved), turn + 0.01 * extents.length())
+    let (from, to) = (body.position(), foreseen(body, dt));
+    let turn = if body.body_type() == RigidBodyType::KinematicPositionBased {
+        (to.rotation * from.rotation.inverse()).angle().abs()
+    } else {
+        body.angvel().abs() * dt
+    };
+    let offset = collider.position_wrt_parent().copied().unwrap_or_default();
+    let moved = loosened(collider.shape().compute_aabb(&(to * offset)), skin);
+    loosened(
+        aabb.merged(&moved),
+        turn.min(1.0) * extents.length() + 0.01 * extents.length(),
+    )
 }
 
 /// Box of a flexible body's surface from where it is to where its velocities and accelerations take it, and how far its

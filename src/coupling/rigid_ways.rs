@@ -1,7 +1,7 @@
 //! Ways between rigid bodies: their outlines drawn inwards and rounded, kept apart from each other.
 //!
 //! Rapier hands over bodies that overlap a little, and they go back to it. The rounding is where that overlap has its place: cores are
-//! apart as long as it is not deeper, and what is deeper is left to signed rows.
+//! apart as long as it is not deeper, and are drawn further inwards where it is.
 
 use super::candidates::{Bounds, Names};
 use super::draft::{Draft, Guest, RigidSurface, swept};
@@ -13,9 +13,12 @@ use crate::rapier::prelude::ColliderHandle;
 use std::collections::HashMap;
 
 /// Rounding of a rigid body's outline, relative to its width: what rapier leaves of boxes at rest in piles of thirty is one to five
-/// hundredths of their size for each pair. A pair is left to signed rows where it overlaps by more than the roundings of both, four
-/// hundredths of the width of bodies that are as wide as each other.
+/// hundredths of their size for each pair.
 const ROUNDING: f64 = 2e-2;
+
+/// How often the rounding is doubled for a pair that overlaps by more than both have: up to a third of the width of bodies that are as wide
+/// as each other. What is deeper is left to signed rows.
+const DOUBLINGS: u8 = 3;
 
 /// A piece of a collider as a member of the path.
 #[derive(Clone, Copy, Debug)]
@@ -30,8 +33,8 @@ struct Core {
 /// Members of the rigid colliders of an island, with their buffers.
 #[derive(Debug, Default)]
 pub(super) struct RigidCores {
-    /// By collider and name of their first point.
-    known: HashMap<(ColliderHandle, u32), Core>,
+    /// By collider, name of their first point, and doublings of their rounding.
+    known: HashMap<(ColliderHandle, u32, u8), Core>,
     draft: Draft,
 }
 
@@ -53,12 +56,16 @@ impl RigidCores {
 
     /// Keeps two rigid colliders apart; returns whether they are to begin with, as far as their rounding goes. If not, nothing is added.
     pub fn lead(&mut self, way: &RigidWay<'_>, island: &mut Island) -> bool {
+        (0..=DOUBLINGS).any(|doublings| self.lead_rounded(way, doublings, island))
+    }
+
+    fn lead_rounded(&mut self, way: &RigidWay<'_>, doublings: u8, island: &mut Island) -> bool {
         let first = island.path.n_ways();
         let [one, other] = &way.surfaces;
         for (a, first_piece) in one.outline.named_pieces() {
             for (b, second_piece) in other.outline.named_pieces() {
                 let sides = [(a, first_piece), (b, second_piece)];
-                if !self.lead_pieces(way, sides, island) {
+                if !self.lead_pieces(way, sides, doublings, island) {
                     island.path.truncate(first);
                     return false;
                 }
@@ -71,6 +78,7 @@ impl RigidCores {
         &mut self,
         way: &RigidWay<'_>,
         sides: [(u32, &Piece); 2],
+        doublings: u8,
         island: &mut Island,
     ) -> bool {
         // What has no size of its own is drawn as far as the other piece needs it.
@@ -88,11 +96,11 @@ impl RigidCores {
         if is_round(other) && !bounds(other).is_some_and(|bounds| bounds.intersects(&near)) {
             return true;
         }
-        let Some(core) = self.core(way, own, sides[own], island) else {
+        let Some(core) = self.core(way, own, (sides[own], doublings), island) else {
             return false;
         };
         let met = if is_round(other) {
-            self.core(way, other, sides[other], island)
+            self.core(way, other, (sides[other], doublings), island)
         } else {
             match self.draw_open(
                 &way.surfaces[other],
@@ -127,10 +135,10 @@ impl RigidCores {
         &mut self,
         way: &RigidWay<'_>,
         side: usize,
-        (name, piece): (u32, &Piece),
+        ((name, piece), doublings): ((u32, &Piece), u8),
         island: &mut Island,
     ) -> Option<Core> {
-        let key = (way.handles[side], name);
+        let key = (way.handles[side], name, doublings);
         if let Some(core) = self.known.get(&key) {
             return Some(*core);
         }
@@ -143,16 +151,16 @@ impl RigidCores {
             return None;
         };
         let surface = &way.surfaces[side];
-        let closing = self
-            .draft
-            .draw_core((vertices, *radius), surface, ROUNDING * width);
+        let least = ROUNDING * width;
+        let rounding = f64::from(1u32 << doublings) * least;
+        let closing = self.draft.draw_core((vertices, *radius), surface, rounding);
         if closing <= 0.0 {
             return None;
         }
         let (margin, width) = if *radius > 0.0 || vertices.len() < 3 {
             (SOFT_SHARE * radius, 2.0 * radius)
         } else {
-            (closing, *width)
+            (closing.min(least), *width)
         };
         let member = self.draft.add_to(island, surface.block, name);
         let core = Core {

@@ -224,3 +224,40 @@ impl UnderWay {
         Some(between.collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Span;
+    use crate::math::Vec2;
+    use crate::system::RigidMotion;
+
+    /// Halves of halves tile the step, and the pieces of a course join without a gap, to the last bit.
+    #[test]
+    fn parts_tile_the_step_and_pieces_of_a_course_join() {
+        let mut spans = vec![Span::WHOLE];
+        for _ in 0..4 {
+            spans = spans.into_iter().flat_map(Span::halves).collect();
+        }
+        assert_eq!(spans.len(), 16);
+        assert!(spans[0].is_first() && spans[15].is_last());
+        assert_eq!(spans.iter().map(|span| span.share()).sum::<f64>(), 1.0);
+        let start = RigidMotion {
+            centre: Vec2::new(0.1, -0.7),
+            angle: 0.3,
+            ..RigidMotion::default()
+        };
+        let end = RigidMotion {
+            centre: Vec2::new(1.3, 0.4),
+            angle: -0.9,
+            velocity: Vec2::new(72.0, 66.0),
+            spin: -72.0,
+        };
+        let pieces: Vec<_> = spans.iter().map(|span| span.of(start, end)).collect();
+        assert_eq!(pieces[0][0], start);
+        assert_eq!(pieces[15][1], end);
+        for pair in pieces.windows(2) {
+            assert_eq!(pair[0][1], pair[1][0]);
+        }
+        assert_eq!(Span::WHOLE.of(start, end), [start, end]);
+    }
+}

@@ -56,7 +56,8 @@ impl FlexPipeline {
             n_cuts > 0 && dt >= SHORTEST && !step.is_explicit() && self.gatherer.links.is_empty();
         // What contact adds and cannot take back is the error of a step that is longer than the impact; what is parted costs energy at any pace.
         let owes_more = -reserve > GAINED * summary.brought() + (-before).max(0.0);
-        let is_coarse = owes_more && !summary.is_parting;
+        // Not with joints: what they leave in stored accelerations swings, and a change of the step's length makes it swing more.
+        let is_coarse = owes_more && !summary.is_parting && self.island.ties.is_empty();
         if may_be_cut && (is_coarse || summary.quality() != Quality::Solved) {
             let half = Step {
                 dt,

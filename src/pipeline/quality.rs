@@ -19,8 +19,8 @@ pub enum Quality {
     /// The whole of the step was taken along a feasible path, with forces under which gaps miss the laws by up to the offset of the surfaces,
     /// a hundredth of an edge.
     Cut,
-    /// Its budget ran out. Surfaces on a feasible path are apart where it was stopped, velocities come from the last forces; what lies on
-    /// no path (pairs of rigid bodies, pairs shown to hooks, what was put into each other) may overlap.
+    /// Its budget ran out, in the smallest parts that it may be cut into. Surfaces on a feasible path are apart where it was stopped, velocities
+    /// come from the last forces; what lies on no path (pairs shown to hooks, what was put into each other) may overlap.
     Unfinished,
 }
 

@@ -346,14 +346,13 @@ impl StepReport {
         self.n_substituted
     }
 
-    /// Islands whose Newton iterations did not converge, so that a linearised step was taken: a sign of strains far from
-    /// small.
+    /// Islands on no path whose Newton iterations did not converge, so that a linearised step was taken.
     pub fn n_linearized(&self) -> usize {
         self.n_linearized
     }
 
-    /// Islands that stayed where they were for this step, at rest: no step could be found, as when bodies are jammed into each
-    /// other.
+    /// Islands on no path that stayed where they were for this step, or a part of it: no step could be found, as when bodies are jammed into each
+    /// other. What touches moves on together.
     pub fn n_held(&self) -> usize {
         self.n_held
     }

@@ -67,7 +67,7 @@ fn springboard(rate: f64, n_through: usize, rayleigh: f64) -> Throw {
 }
 
 #[test]
-#[ignore = "open: with 2 and 3 cells the ball is thrown back to -0.34 to 0.18 m, not 0.29 to 0.32 m; 1.4 to 19 % of the energy brought are gained"]
+#[ignore = "open: with 2 and 3 cells the ball is thrown back higher than with one at 1/480 s, 0.414 m, not 0.315 m; up to 17 % of the energy brought are gained"]
 fn a_springboard_throws_back_whatever_its_cells_its_damping_and_the_step() {
     let mut findings = Findings::default();
     for rayleigh in [2e-3, 5e-3] {
@@ -127,7 +127,7 @@ fn a_ball_rebounds_from_a_steel_beam_whatever_the_cells_through_its_thickness() 
 }
 
 #[test]
-#[ignore = "open: 2.1 to 2.4 % of the energy brought are gained, not under 1 %"]
+#[ignore = "open: 2.3 to 2.6 % of the energy brought are gained, not under 1 %"]
 fn a_ball_rebounds_from_a_steel_beam_of_little_damping() {
     rebound(&[0.0, 1e-4]);
 }
@@ -178,7 +178,6 @@ fn rebound(dampings: &[f64]) {
 }
 
 #[test]
-#[ignore = "open: held still, 2.0e5 J (1/60 s) and 1.7e5 J (1/120 s) are gained of 2,900 and 160 J stored; 42 of 180 steps are not solved"]
 fn a_ball_in_a_cup_on_a_bent_arm_brings_no_energy() {
     let mut findings = Findings::default();
     for rate in [60.0, 120.0] {

@@ -12,7 +12,6 @@ fn soft_bodies_stay_above_polylines_and_height_fields() {
 }
 
 #[test]
-#[ignore = "open: of 240 steps 1 is not solved with a square, 2 with a star"]
 fn soft_bodies_stay_above_flat_polylines() {
     stay_above(&[
         (Form::Square, 1e5, Made::Polyline(0.2), Relief::Flat),
@@ -45,7 +44,7 @@ fn stay_above(cases: &[(Form, f64, Made, Relief)]) {
 }
 
 #[test]
-#[ignore = "open: awake after 10 s; at 1e6 Pa the ground carries 0.9971 of its weight, not 0.999"]
+#[ignore = "open: awake after 10 s; at 1e6 Pa the ground carries 1.0118 of its weight, not within 0.001 of it"]
 fn a_soft_disc_dropped_on_a_polyline_bounces_and_comes_to_rest_in_equilibrium() {
     let mut findings = Findings::default();
     for young in [1e5, 1e6] {
@@ -87,7 +86,7 @@ fn a_soft_disc_dropped_on_a_polyline_bounces_and_comes_to_rest_in_equilibrium() 
 }
 
 #[test]
-#[ignore = "open: it rolls by 0.99 m in 25 s and stays awake; 8.8 % of the energy brought are gained in the fall"]
+#[ignore = "open: it rolls by 0.20 m in 25 s and stays awake; 9.1 % of the energy brought are gained in the fall"]
 fn a_soft_disc_at_rest_stays_and_falls_asleep() {
     let mut scene = Scene::new(1.0 / 60.0);
     scene.fixed(ground_of(Made::Cuboid, Relief::Flat, 200.0).friction(0.5));

@@ -13,7 +13,6 @@ fn drive(young: Option<f64>) -> (f64, Onlooker) {
 }
 
 #[test]
-#[ignore = "open: 1 of 300 steps is not solved; the car drives"]
 fn a_car_with_soft_tyres_drives_on_a_polyline() {
     let (rigid, _) = drive(None);
     let (soft, onlooker) = drive(Some(1e6));

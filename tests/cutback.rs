@@ -1,0 +1,179 @@
+//! Steps that are not solved in one piece are solved in parts, and tell of the step as a whole.
+
+mod common;
+
+use common::*;
+
+/// What collisions of two bodies show.
+#[derive(Default)]
+struct Collisions {
+    findings: Findings,
+    /// Steps that were taken in parts, and unsolved ones.
+    n_cut: usize,
+    n_unsolved: usize,
+}
+
+/// A soft square and a rigid bar that spin into each other in free space, off centre, by up to their size in a step.
+fn collide(seed: u64, shown: &mut Collisions) {
+    let mut dice = Dice(seed);
+    let dt = dice.pick(&[1.0 / 30.0, 1.0 / 60.0]);
+    let mut scene = Scene::in_free_space(dt);
+    let material = elastic(10f64.powf(dice.between(6.5, 8.0)), 1000.0, 1e-3);
+    let square = scene.flexible(
+        FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4])
+            .material(material)
+            .friction(0.5)
+            .translation([-1.8, -0.5])
+            .linvel([dice.between(0.2, 0.5) / dt, 0.0])
+            .angvel(dice.between(-5.0, 5.0)),
+    );
+    let bar = RigidBodyBuilder::dynamic()
+        .translation(vec2(0.6, dice.between(-0.7, 0.7)))
+        .rotation(real(dice.between(0.0, 3.0)))
+        .linvel(vec2(-dice.between(0.2, 0.5) / dt, 0.0))
+        .angvel(real(dice.between(-15.0, 15.0)));
+    let collider = ColliderBuilder::cuboid(0.6, 0.15)
+        .density(1000.0)
+        .friction(0.5);
+    scene.rigid(bar, collider);
+    let (brought, whole) = (energy_of(&scene), momentum_of(&scene));
+    let name = |step: usize| format!("seed {seed}, step {step}");
+    for step in 0..30 {
+        let report = scene.try_step().expect("nothing is wrong with it");
+        let (is_solved, n_parts) = (is_solved(report), report.n_parts());
+        shown.n_cut += usize::from(n_parts > 1);
+        shown.n_unsolved += usize::from(!is_solved);
+        let energy = energy_of(&scene);
+        shown.findings.check(energy <= 1.01 * brought, || {
+            format!("{}: {energy} J of {brought}", name(step))
+        });
+    }
+    let size = scene.body(square).mass() * 20.0;
+    let sum = momentum_of(&scene);
+    for axis in [0, 1] {
+        let lost = (sum[axis] - whole[axis]).abs() / size;
+        shown.findings.check(lost < by_precision(1e-5, 1e-10), || {
+            format!("seed {seed}: momentum off by {lost:e}")
+        });
+    }
+}
+
+#[test]
+fn collisions_in_parts_keep_momentum_and_energy() {
+    let mut shown = Collisions::default();
+    for seed in 0..200 {
+        collide(seed, &mut shown);
+    }
+    println!(
+        "{} of 6000 steps cut, {} not solved",
+        shown.n_cut, shown.n_unsolved
+    );
+    // Else nothing was tested.
+    assert!(shown.n_cut > 10, "{} steps cut", shown.n_cut);
+    assert!(
+        shown.n_unsolved <= 6,
+        "{} steps not solved",
+        shown.n_unsolved
+    );
+    shown.findings.report();
+}
+
+#[test]
+fn what_drives_a_body_goes_its_piece_of_the_way_in_every_part() {
+    // A hammer on a fixed course strikes the free end of a soft strip whose other end a moved pin holds: whatever the step was cut into, both
+    // are where they were sent, and the strip outside of the hammer.
+    let mut findings = Findings::default();
+    let (mut n_cut, mut n_unsolved) = (0, 0);
+    for seed in 0..60 {
+        let mut dice = Dice(seed);
+        let dt = 1.0 / 60.0;
+        let mut scene = Scene::in_free_space(dt);
+        let strip = scene.flexible(
+            FlexBodyBuilder::rectangle([1.0, 0.2], [10, 2])
+                .material(elastic(3e6, 1000.0, 1e-3))
+                .friction(0.3)
+                .pin_where(|[x, _]| x < 1e-9, Pin::both()),
+        );
+        let offset = scene.body(strip).contact_offset();
+        let speed = dice.between(5.0, 40.0);
+        let side = dice.between(-0.1, 0.1);
+        let hammer = RigidBodyBuilder::kinematic_position_based()
+            .translation(vec2(1.0 + side, 0.45))
+            .rotation(real(dice.between(-0.5, 0.5)));
+        let (hammer, collider) = scene.rigid(hammer, ColliderBuilder::cuboid(0.1, 0.1));
+        let mut place = 0.45;
+        let nodes: Vec<usize> = (0..scene.body(strip).n_nodes())
+            .filter(|&node| scene.body(strip).fixed_dofs()[2 * node])
+            .collect();
+        for step in 1..=4 {
+            place -= dt * speed;
+            let turn = scene.world.bodies[hammer].rotation().angle();
+            let goal = Pose::new(vec2(1.0 + side, place), turn);
+            scene.world.bodies[hammer].set_next_kinematic_position(goal);
+            let lift = -0.01 * f64::from(step);
+            for &node in &nodes {
+                scene
+                    .bodies
+                    .get_mut(strip)
+                    .expect("it is there")
+                    .set_pin_displacement(node, [0.0, lift])
+                    .expect("the node is pinned");
+            }
+            let report = scene.try_step().expect("nothing is wrong with it");
+            n_cut += usize::from(report.n_parts() > 1);
+            let (is_solved, overlap) = (is_solved(report), report.gap_violation());
+            n_unsolved += usize::from(!is_solved);
+            findings.check(!is_solved || overlap < offset, || {
+                format!("seed {seed}, step {step}: {overlap} m")
+            });
+            let at = place_of(&scene.world.bodies[hammer])[1];
+            findings.check((at - place).abs() < 1e-6, || {
+                format!("seed {seed}: the hammer is at {at} m, not {place} m")
+            });
+            for &node in &nodes {
+                let [x, y] = scene.body(strip).displacement(node);
+                findings.check(x.hypot(y - lift) < 1e-12, || {
+                    format!("seed {seed}: a pin is at {x}, {y} m, not {lift} m")
+                });
+            }
+            assert!(scene.world.colliders.contains(collider));
+        }
+    }
+    println!("{n_cut} of 240 steps cut, {n_unsolved} not solved");
+    assert!(
+        n_cut > 5 && n_unsolved == 0,
+        "{n_cut} steps cut, {n_unsolved} not solved"
+    );
+    findings.report();
+}
+
+/// A body that is thrown at something within one step, by a force that no velocity foretells, was not looked for there.
+#[test]
+fn what_a_sudden_force_throws_beyond_where_it_was_looked_for_is_seen() {
+    for thrown in [0.5, 2.0] {
+        let dt = 1.0 / 60.0;
+        let mut scene = Scene::in_free_space(dt);
+        scene.ground(0.5);
+        let block = scene.flexible(
+            FlexBodyBuilder::rectangle([0.4, 0.4], [4, 4])
+                .material(elastic(1e8, 1000.0, 1e-3))
+                .translation([0.0, 0.45 * thrown]),
+        );
+        scene.step();
+        let body = scene.bodies.get_mut(block).expect("it is there");
+        // Free, it would move by `thrown` in the step.
+        let force = -thrown / (0.25 * dt * dt) * body.mass() / body.n_nodes() as f64;
+        for node in 0..body.n_nodes() {
+            body.set_nodal_force(node, [0.0, force])
+                .expect("the node is there");
+        }
+        let report = scene.try_step().expect("nothing is wrong with it");
+        let quality = report.quality();
+        let lowest = scene.body(block).positions().chunks_exact(2);
+        let lowest = lowest.map(|at| at[1]).fold(f64::INFINITY, f64::min);
+        assert!(
+            lowest > -1e-12,
+            "thrown by {thrown} m: at {lowest} m, {quality:?}"
+        );
+    }
+}
