@@ -73,7 +73,6 @@ worlds! {
     a_thousand_operations_leave_a_sound_world_7: 0xf135_7aea_2e62_a9c5,
     a_thousand_operations_leave_a_sound_world_8: 0x5851_f42d_4c95_7f2d,
     a_thousand_operations_leave_a_sound_world_9: 0x1405_7b7e_f767_814f,
-    #[cfg_attr(feature = "f64", ignore = "open: a flexible body at 7.4e3 m/s at step 282")]
     a_thousand_operations_leave_a_sound_world_10: 0x80,
     a_thousand_operations_leave_a_sound_world_11: 0x98,
 }

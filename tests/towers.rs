@@ -97,10 +97,6 @@ fn begin(findings: &mut Findings, foot: Foot, n: usize, gap: f64) {
 }
 
 #[test]
-#[cfg_attr(
-    feature = "f64",
-    ignore = "open: in double precision the step of 48 boxes is not solved"
-)]
 fn the_first_step_of_a_touching_tower_is_solved_and_nobody_falls_freely() {
     let mut findings = Findings::default();
     for foot in [Foot::Block(1e9), Foot::Block(1e7), Foot::Plank] {
@@ -142,10 +138,6 @@ fn the_first_step_of_a_tower_of_small_gaps_closes_none_of_them() {
 }
 
 #[test]
-#[cfg_attr(
-    feature = "f64",
-    ignore = "open: in double precision the step of 200 boxes is not solved"
-)]
 fn the_first_step_of_two_hundred_touching_boxes_is_solved() {
     let mut findings = Findings::default();
     begin(&mut findings, Foot::Block(1e9), 200, 0.0);
@@ -153,10 +145,6 @@ fn the_first_step_of_two_hundred_touching_boxes_is_solved() {
 }
 
 #[test]
-#[cfg_attr(
-    feature = "f64",
-    ignore = "open: in double precision the first of 120 steps is not solved with 48 boxes"
-)]
 fn towers_stand_and_press_with_their_weight() {
     let mut findings = Findings::default();
     for (foot, n) in [

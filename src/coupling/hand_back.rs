@@ -110,7 +110,8 @@ fn put_where_led(landing: &Landing, sets: &mut RapierSets<'_>) {
     let rounding = LANDED * REAL_EPSILON;
     let is_there = missed.norm() <= rounding * (1.0 + motion.centre.norm())
         && wrap(motion.angle - angle).abs() <= rounding;
-    if is_there || !body.is_enabled() {
+    // What rapier has just put to sleep stays where it is.
+    if is_there || !body.is_enabled() || body.is_sleeping() {
         return;
     }
     let turn = math::rotation(motion.angle);

@@ -228,10 +228,6 @@ impl Play {
 }
 
 #[test]
-#[cfg_attr(
-    feature = "f64",
-    ignore = "open: seed 7, operation 940: a force event of a pair that has not begun to touch"
-)]
 fn ten_thousand_random_operations_leave_no_stale_event_no_handle_and_finite_numbers() {
     let (mut n_operations, mut n_events) = (0, 0);
     for seed in 0..10 {

@@ -52,10 +52,6 @@ fn slabs(findings: &mut Findings, numbers: &[usize]) -> f64 {
 }
 
 #[test]
-#[cfg_attr(
-    feature = "f64",
-    ignore = "open: in double precision 1 of 120 steps is not solved with 40 boxes"
-)]
 fn boxes_at_rest_on_a_slab_are_solved_in_the_time_of_a_step() {
     let mut findings = Findings::default();
     slabs(&mut findings, &[20, 40]);
