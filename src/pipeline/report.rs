@@ -20,7 +20,7 @@ pub enum Participant {
     Rigid(ColliderHandle),
 }
 
-/// One closed contact at the end of a step.
+/// One contact at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde-serialize",
@@ -234,7 +234,7 @@ pub struct StepReport {
 }
 
 impl StepReport {
-    /// Closed contacts.
+    /// Closed contacts; of a step that was taken in parts also those that have opened in it, with what they gave.
     pub fn contacts(&self) -> &[ContactReport] {
         &self.contacts
     }
