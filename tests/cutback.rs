@@ -177,3 +177,42 @@ fn what_a_sudden_force_throws_beyond_where_it_was_looked_for_is_seen() {
         );
     }
 }
+
+/// Rapier sweeps every fast body along the chord of its step, and would stop this ball at the hub that it goes round on its arc.
+#[test]
+fn a_ball_that_is_led_around_a_hub_is_not_stopped_on_the_chord() {
+    let (dt, turn) = (1.0 / 60.0, 0.6);
+    let mut scene = Scene::in_free_space(dt);
+    // Arc and hub are 2 cm apart; the chord is 4.5 cm inside of the arc.
+    scene.fixed(ColliderBuilder::ball(real(0.88)));
+    let ball = RigidBodyBuilder::dynamic()
+        .translation(vec2(1.0, 0.0))
+        .linvel(vec2(0.0, turn / dt))
+        .angvel(real(turn / dt));
+    let (ball, _) = scene.rigid(ball, ColliderBuilder::ball(real(0.1)).density(1000.0));
+    let (pivot, _) = scene.rigid(
+        RigidBodyBuilder::fixed(),
+        ColliderBuilder::ball(real(0.01)).sensor(true),
+    );
+    let joint = hinge([0.0, 0.0], [-1.0, 0.0]);
+    scene.world.insert_impulse_joint(pivot, ball, joint);
+    // What is attached to a flexible body is solved with it.
+    let rider = scene.flexible(
+        FlexBodyBuilder::rectangle([0.04, 0.04], [2, 2])
+            .material(elastic(1e9, 1000.0, 1e-3))
+            .translation([1.15, -0.02])
+            .linvel([0.0, turn / dt]),
+    );
+    let weld = AttachmentBuilder::weld(rider).where_(|[x, _]| x < 1e-9);
+    scene
+        .bodies
+        .attach(weld.to_rigid_body(ball), &scene.world.bodies)
+        .expect("the description is right");
+    for step in 0..60 {
+        scene.try_step().expect("nothing is wrong with it");
+        let [x, y] = place_of(&scene.world.bodies[ball]);
+        let off = (x.hypot(y) - 1.0).abs();
+        assert!(off < 1e-4, "step {step}: {off} m off the arc");
+        assert!(scene.report().n_claimed() > 0, "it is not ours");
+    }
+}
