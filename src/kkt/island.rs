@@ -112,6 +112,8 @@ pub struct ActiveContact {
     pub(super) losses: u8,
     /// Tangential motion since the beginning of the step (m).
     pub slip: f64,
+    /// The part of it that was gone on rows that this one has taken the force over from, less what its own row tells of that (m).
+    pub(super) slip_before: f64,
     /// Share of the contact that is shorter than the step, 0 to 1 (-).
     pub unresolved: f64,
     /// Approach velocity at the beginning of the step, `n·v` (m/s).

@@ -302,7 +302,7 @@ impl ActiveContact {
         let Kinematics { normal, .. } = self.kinematics;
         let gap = base.gap + normal.dot(&onward) - self.allowance;
         self.kinematics.gap = gap;
-        self.slip = self.kinematics.tangent().dot(&(base.moved + onward));
+        self.slip = self.kinematics.tangent().dot(&(base.moved + onward)) + self.slip_before;
         if self.is_lost {
             // Its force is still in the iterate: far from holding, but a number.
             return f64::MAX;
@@ -438,6 +438,7 @@ impl ActiveContact {
             losses: 0,
             is_lost: false,
             slip: 0.0,
+            slip_before: 0.0,
             unresolved: 0.0,
             approach,
             remembered,

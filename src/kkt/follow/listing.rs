@@ -144,6 +144,7 @@ impl Island {
             kinematics: met.kinematics,
             base: met.base,
             applied,
+            slip_before: self.slip_before(contact, &met),
             is_lost: false,
             ..*contact
         };
@@ -159,6 +160,15 @@ impl Island {
                 listing.pass,
             );
         }
+    }
+
+    /// What makes the slip at the base go on from that of a contact whose force the next one takes over.
+    ///
+    /// Rows of one corner touch at places as far apart as the offset: where the bodies turn, each has slid another way since the step began,
+    /// and what sticks on the one would be dragged along by the other, to and fro.
+    fn slip_before(&self, contact: &ActiveContact, next: &ActiveContact) -> f64 {
+        let slid = |row: &Kinematics| row.tangent().dot(&self.path.moved(row, &self.blocks));
+        contact.slip_before + slid(&contact.kinematics) - slid(&next.kinematics)
     }
 
     /// The contact, new in this list or without a force, of the vertices where another one has slid off.
@@ -253,3 +263,6 @@ impl Island {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
