@@ -303,14 +303,17 @@ impl ActiveContact {
         let gap = base.gap + normal.dot(&onward) - self.allowance;
         self.kinematics.gap = gap;
         self.slip = self.kinematics.tangent().dot(&(base.moved + onward));
-        if self.is_lost {
-            // Its force is still in the iterate: far from holding, but a number.
+        self.shortfall(friction)
+    }
+
+    /// How far the laws were from holding at the last measurement (m).
+    pub(super) fn shortfall(&self, friction: f64) -> f64 {
+        let slides_off = |base: AtBase| base.is_meeting && self.status[1] != Status::Stick;
+        // The force of what is lost is still in the iterate: far from holding, but a number.
+        if self.is_lost || self.base.is_some_and(slides_off) {
             return f64::MAX;
         }
-        if base.is_meeting && self.status[1] != Status::Stick {
-            return f64::MAX;
-        }
-        self.law_error(gap, friction)
+        self.law_error(self.kinematics.gap, friction)
     }
 
     /// How far Signorini's and Coulomb's laws are from holding (m).
