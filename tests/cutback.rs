@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use foil2d::pipeline::Quality;
 
 /// What collisions of two bodies show.
 #[derive(Default)]
@@ -245,4 +246,95 @@ fn a_box_that_is_deep_in_a_line_is_not_pushed_through_it() {
         }
     }
     findings.report();
+}
+
+/// A triangle falls on a clamped strip and slides off its end. With its force to the end of the step the contact is over before that, without
+/// it the triangle ends on the other side of the corner that it went around: halving the step changes nothing of it.
+#[test]
+fn what_slides_off_an_end_within_a_step_takes_the_whole_of_it() {
+    let mut findings = Findings::default();
+    for shift in [0.0, -0.01, -0.02, 0.01] {
+        let mut scene = Scene::new(1.0 / 30.0);
+        let size = [1.039_029_412_645_577_8, 0.106_114_192_858_538_63];
+        let material = LinearElastic::plane_strain(1e7, 0.103_525_017_080_929_33)
+            .density(481.428_752_190_320_8)
+            .rayleigh(1.188_095_497_266_858_8e-4);
+        scene.flexible(
+            FlexBodyBuilder::rectangle(size, [20, 1])
+                .material(material)
+                .friction(0.346)
+                .translation([-0.5 * size[0], 2.0 - 0.5 * size[1]])
+                .pin_where(|[x, _]| x == 0.0, Pin::both()),
+        );
+        let corners = [
+            [-0.066_612_740_033_208_07, 0.167_107_981_752_903],
+            [0.034_515_665_548_462_66, -0.176_553_118_163_876_2],
+            [0.154_399_903_808_542_7, 0.092_320_119_173_304_21],
+        ];
+        let [a, b, c] = corners.map(|[x, y]| vec2(x, y));
+        let triangle = RigidBodyBuilder::dynamic()
+            .translation(vec2(0.342_465_640_240_878 + shift, 4.868_312_071_447_601))
+            .rotation(real(0.409_798_849_296_218_1));
+        scene.rigid(
+            triangle,
+            ColliderBuilder::triangle(a, b, c)
+                .mass(real(344.804_753))
+                .friction(real(0.910_816_6)),
+        );
+        for step in 0..74 {
+            let quality = scene
+                .try_step()
+                .expect("nothing is wrong with it")
+                .quality();
+            findings.check(quality != Quality::Unfinished, || {
+                format!("{shift} m aside, step {step}: unfinished")
+            });
+        }
+    }
+    findings.report();
+}
+
+/// The tip of a triangle, with friction, in a fold that a soft strip makes on the ground: two contacts at the same node may hold it by any forces
+/// against each other.
+#[test]
+fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.fixed(ColliderBuilder::new(SharedShape::halfspace(vec2(0.0, 1.0))).friction(real(0.015)));
+    let size = [3.667_563_545_812_243, 0.193_634_638_281_032_05_f64];
+    let angle = -1.943_030_635_639_707_1_f64;
+    let (sin, cos) = angle.sin_cos();
+    let half = [-0.5 * size[0], -0.5 * size[1]];
+    let at = [
+        0.209_510_902_708_788_03 + cos * half[0] - sin * half[1],
+        4.932_537_732_753_614 + sin * half[0] + cos * half[1],
+    ];
+    scene.flexible(
+        FlexBodyBuilder::rectangle_of(size, [17, 3], CellKind::Tri6)
+            .material(
+                LinearElastic::plane_stress(424_616.582_375_624_2, 0.3)
+                    .density(1_707.992_355_726_982_9),
+            )
+            .friction(0.877_978_747_474_005_6)
+            .translation(at)
+            .rotation(angle),
+    );
+    let corners = [
+        [-0.267_285_306_318_723_2, -0.115_719_013_733_303],
+        [0.097_081_170_811_434_98, -0.274_604_390_691_742_25],
+        [0.035_113_675_808_227_17, 0.289_135_530_304_625_1],
+    ];
+    let [a, b, c] = corners.map(|[x, y]| vec2(x, y));
+    scene.rigid(
+        RigidBodyBuilder::dynamic().translation(vec2(0.714_399_4, 1.577_159_8)),
+        ColliderBuilder::triangle(a, b, c)
+            .mass(real(1_450.285_7))
+            .friction(real(0.765_115_4)),
+    );
+    for step in 0..140 {
+        let quality = scene
+            .try_step()
+            .expect("nothing is wrong with it")
+            .quality();
+        assert!(quality != Quality::Unfinished, "step {step}: unfinished");
+    }
 }

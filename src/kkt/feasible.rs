@@ -91,6 +91,8 @@ pub struct FeasiblePath {
     nodes: Vec<f64>,
     scratch: Vec<Vec2>,
     edges: Vec<[u32; 2]>,
+    /// How far the sharpest corner stands out of its rounding (m).
+    farthest_tip: f64,
     /// Vertices at which forces have slid off within the step.
     meetings: Vec<Meeting>,
     last_way: LastWay,
@@ -105,6 +107,7 @@ impl FeasiblePath {
         self.points.clear();
         self.flex_members.clear();
         self.near.clear();
+        self.farthest_tip = 0.0;
     }
 
     /// Whether no surfaces are kept apart.
@@ -196,6 +199,7 @@ impl FeasiblePath {
             }
             for &(own, arm, corner) in points {
                 self.scratch.push(start.point(arm));
+                self.farthest_tip = self.farthest_tip.max(corner.norm() - round);
                 self.points.push(SurfacePoint {
                     point: Point::Arm(arm),
                     name: name + own,
@@ -246,6 +250,11 @@ impl FeasiblePath {
     pub(super) fn least_margin(&self) -> f64 {
         let margins = self.ways.iter().map(|way| way.margin);
         margins.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Margin of the way of a near pair (m).
+    pub(super) fn margin(&self, near: &NearPair) -> f64 {
+        self.ways[near.pair].margin
     }
 
     /// Puts the base where the step begins.

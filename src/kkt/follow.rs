@@ -5,21 +5,22 @@
 //! them, and moves the base that way until the time of impact. It is over when the base is where the forces lead and the laws hold
 //! there in truth. Whatever the forces are, the base is free of overlaps: what is not solved within the budget stops at the base.
 
+mod arrival;
+mod consistent;
 mod listing;
 mod parted;
 
 use self::listing::Listing;
-use super::delassus::compliance;
 use super::feasible::KeptBase;
 use super::island::{ActiveContact, Island, SolveSettings};
 use super::iterate::ANGLE_TOLERANCE;
 use super::joint_rows::ActiveJoint;
-use super::position::{PARTING_RATE, ROUND_OFF};
+use super::position::PARTING_RATE;
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointGrip;
-use crate::math::{Mat2, exp};
-use crate::system::{Block, Response};
+use crate::math::exp;
+use crate::system::Block;
 
 /// Passes of a step that stop short of where the forces lead. Every one of them goes on with forces that do not know what comes after: bodies
 /// that are stopped that often meet in ways that the step does not resolve.
@@ -31,7 +32,7 @@ const LARGE_TOLERANCE: f64 = 1e-3;
 /// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
 const PASSES_PER_ITERATION: usize = 2;
 
-/// Share of the margin by which true gaps may miss what the law asks for (-).
+/// Share of its way's margin by which a true gap or slip may miss what the law asks for (-).
 const CLOSE_ENOUGH: f64 = 0.05;
 
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
@@ -56,13 +57,9 @@ pub(super) struct Stage {
     ties: Vec<ActiveJoint>,
     grips: Vec<JointGrip>,
     base: KeptBase,
-    /// How far the laws are from holding (m).
+    /// How far the laws are from holding, relative to the margins (-).
     error: f64,
 }
-
-/// How far a multiplier may move its contact by itself, relative to the extent of the scene: a light body under one a thousand times
-/// heavier that falls across the scene within the step.
-const FARTHEST: f64 = 1e3;
 
 impl Island {
     /// Solves the positions along the path. Where the laws cannot be made to hold, the best place that was reached by the whole of the step
@@ -78,17 +75,14 @@ impl Island {
         self.path.list_pressed(memory, &mut self.pressed_before);
         self.impact.is_known = false;
         self.arrival.is_known = false;
+        self.departure.is_known = false;
+        self.softness = 0.0;
         self.left.clear();
         if self.try_passes(settings, memory, tolerance, summary) {
             return Passed::Solved;
         }
-        if self.arrival.is_known {
-            let stage = std::mem::take(&mut self.arrival);
-            self.return_to(&stage);
-            self.keep_applied_rows();
-            self.arrival = stage;
-            self.correct();
-            return Passed::Arrived;
+        if let Some(passed) = self.end_at_arrival() {
+            return passed;
         }
         if self.return_to_first_stop() {
             self.correct();
@@ -149,13 +143,17 @@ impl Island {
             } else {
                 self.enough(is_eased, tolerance)
             };
-            let is_close = error <= enough && turned <= ANGLE_TOLERANCE.max(enough);
+            let is_close = if is_eased {
+                arrives && turned <= enough && self.shortfall(true) <= CLOSE_ENOUGH
+            } else {
+                error <= enough && turned <= ANGLE_TOLERANCE.max(enough)
+            };
             if arrives && is_close && !has_more {
                 self.keep_applied_rows();
                 return !self.leads_around();
             }
-            if arrives && !has_more && turned <= CLOSE_ENOUGH && !self.leads_around() {
-                self.keep_arrival(error);
+            if arrives && !has_more && turned <= CLOSE_ENOUGH {
+                self.keep_arrival();
             }
             if !misleads && !listing.keeps_rows && self.path.retreat(&self.blocks) {
                 self.list_near(&Listing {
@@ -172,8 +170,7 @@ impl Island {
             }
             has_left = self.note_left();
             self.turn_signed_rows(!misleads && !listing.keeps_rows);
-            let solved = self.solve_multipliers(settings, true, tolerance, summary);
-            if solved.is_err() || self.contradicts(settings) {
+            if !self.solve_consistently(settings, tolerance, summary) {
                 return false;
             }
             if n_stopped > 0 && !self.impact.is_known {
@@ -247,38 +244,6 @@ impl Island {
             slop: 0.0,
             kept: 0.0,
         });
-    }
-
-    /// Whether some multiplier would move its contact by far more than any motion of the island: then rows contradict each other, and forces
-    /// of any size would answer.
-    fn contradicts(&self, settings: &SolveSettings) -> bool {
-        let farthest = FARTHEST * self.gap_tolerance(settings) / ROUND_OFF;
-        let mut moves = self.contacts.iter().map(|contact| {
-            let own = compliance(
-                &self.blocks,
-                &contact.kinematics,
-                &contact.kinematics,
-                Response::Position,
-            );
-            let along = |own: Mat2| {
-                contact
-                    .kinematics
-                    .normal
-                    .dot(&(own * contact.kinematics.normal))
-            };
-            settings.b0 * contact.multiplier[0] * own.map_or(0.0, along)
-        });
-        moves.any(|moved| moved.is_nan() || moved > farthest)
-    }
-
-    /// Keeps a place that the whole of the step has reached, if it is the best so far.
-    fn keep_arrival(&mut self, error: f64) {
-        let is_better = !self.arrival.is_known || error < self.arrival.error;
-        if error < self.path.least_margin() && is_better {
-            let mut stage = std::mem::take(&mut self.arrival);
-            self.keep(&mut stage, error);
-            self.arrival = stage;
-        }
     }
 
     fn keep(&self, stage: &mut Stage, error: f64) {

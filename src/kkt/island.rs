@@ -203,9 +203,14 @@ pub struct Island {
     pub(super) parted: Vec<ActiveContact>,
     /// Contacts that are new in the last list of near pairs.
     pub(super) fresh: Vec<usize>,
-    /// The first impact of a step, and the best place that the whole of the step has reached.
+    /// The first impact of a step, the best place that the whole of the step has reached, and the best with contacts that slid off.
     pub(super) impact: Stage,
     pub(super) arrival: Stage,
+    pub(super) departure: Stage,
+    /// Forces before the solve at hand.
+    pub(super) before_solve: Stage,
+    /// Share of its own mobility that every contact gives way by to the change of its force (-).
+    pub(super) softness: f64,
     /// Ways that a contact has slid off from.
     pub(super) left: Vec<usize>,
     /// The working set after a solve.

@@ -57,6 +57,7 @@ impl Island {
             &mut self.delassus,
         );
         self.take_out_multipliers(has_new_rows);
+        self.yield_to_changes();
         self.add_joint_positions(settings, has_new_rows);
         self.let_go();
         let redundancy = self.redundancy_tolerance(tolerance / settings.b0);
@@ -128,6 +129,19 @@ impl Island {
                 self.multipliers.push(contact.multiplier[1]);
                 self.statuses.push(contact.status[1]);
             }
+        }
+    }
+
+    /// Lets every contact give way to the change of its own multipliers, by the island's softness.
+    fn yield_to_changes(&mut self) {
+        if self.softness == 0.0 {
+            return;
+        }
+        let n = self.rows.len();
+        for row in 0..n {
+            let give = self.softness * self.delassus[row * (n + 1)];
+            self.delassus[row * (n + 1)] += give;
+            self.free[row] -= give * self.multipliers[row];
         }
     }
 

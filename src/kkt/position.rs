@@ -4,9 +4,11 @@
 //! under the multipliers it has, beginning with those of the last step; measures gaps and slips there; and, unless they
 //! hold, finds new multipliers from `b = g / b0 - W p`. A contact at rest so costs one solve.
 
+mod measure;
+
 use super::constraint_function::{ContactMethod, Trial};
 use super::follow::Passed;
-use super::island::{ActiveContact, AtBase, Island, SolveSettings};
+use super::island::{ActiveContact, Island, SolveSettings};
 use super::summary::IslandSummary;
 use crate::constraint::contact::{Candidate, ContactMemory, Kinematics, Remembered, Scene};
 use crate::linalg::complementarity::Status;
@@ -295,94 +297,6 @@ impl ActiveContact {
             [moved(&self.kinematics, blocks), travelled].map(|path| normal.dot(&path));
         let is_clear = (linear - travelled).abs() <= slop;
         (gap - linear.min(travelled), is_clear)
-    }
-
-    /// Follows gap and slip from the base, from where the points have moved `onward`; returns how far the laws are from holding (m).
-    fn measure_from(&mut self, base: AtBase, onward: Vec2, friction: f64) -> f64 {
-        let Kinematics { normal, .. } = self.kinematics;
-        let gap = base.gap + normal.dot(&onward) - self.allowance;
-        self.kinematics.gap = gap;
-        self.slip = self.kinematics.tangent().dot(&(base.moved + onward)) + self.slip_before;
-        if self.is_lost {
-            // Its force is still in the iterate: far from holding, but a number.
-            return f64::MAX;
-        }
-        if base.is_meeting && self.status[1] != Status::Stick {
-            return f64::MAX;
-        }
-        self.law_error(gap, friction)
-    }
-
-    /// How far Signorini's and Coulomb's laws are from holding (m).
-    fn law_error(&self, gap: f64, friction: f64) -> f64 {
-        if self.multiplier[0] <= 0.0 {
-            return -gap;
-        }
-        let slip = if friction > 0.0 {
-            match self.status[1] {
-                Status::SlipPositive => self.slip,
-                Status::SlipNegative => -self.slip,
-                Status::Stick | Status::Open => self.slip.abs(),
-            }
-        } else {
-            0.0
-        };
-        gap.abs().max(slip)
-    }
-
-    /// Measures gap and slip; returns how far the laws are from holding (m).
-    fn measure(&mut self, candidate: &Candidate, scene: &Scene<'_>, extrapolates: bool) -> f64 {
-        let at = moved(&self.kinematics, scene.blocks);
-        let is_asked = !(extrapolates && self.known.is_some());
-        let gap = if is_asked {
-            self.true_gap(candidate, scene, at)
-        } else {
-            self.extrapolated(at)
-        };
-        self.kinematics.gap = gap;
-        self.known = Some((gap, at));
-        let mut error = if self.is_lost { 0.0 } else { -gap };
-        if self.multiplier[0] <= 0.0 {
-            return error;
-        }
-        if is_asked {
-            error = error.max(self.apart);
-        }
-        self.slip = slip(&self.kinematics, scene.blocks);
-        error.max(self.law_error(gap, candidate.law.friction))
-    }
-
-    /// The gap beyond the allowance where the blocks are, with the points moved to `at` (m).
-    fn true_gap(&mut self, candidate: &Candidate, scene: &Scene<'_>, at: Vec2) -> f64 {
-        let Some(found) = candidate.evaluate(scene, &self.remembered) else {
-            self.note_loss(candidate.distance(scene));
-            return if self.is_lost {
-                self.extrapolated(at)
-            } else {
-                self.apart
-            };
-        };
-        self.measured = found;
-        (self.is_lost, self.apart) = (false, 0.0);
-        found.gap - self.allowance
-    }
-
-    /// The gap that follows the row from where it was measured last, to where the points have moved `at` (m).
-    fn extrapolated(&self, at: Vec2) -> f64 {
-        match self.known {
-            Some((gap, from)) => gap + self.kinematics.normal.dot(&(at - from)),
-            None => self.kinematics.gap,
-        }
-    }
-
-    /// Notes that geometry has no gap, with bodies this far `apart` (m). The contact is let go, as the neighbour that it slid to
-    /// takes over; one that comes and goes presses on the edge between both, as far as bodies touch.
-    fn note_loss(&mut self, apart: f64) {
-        if self.apart == 0.0 {
-            self.losses = self.losses.saturating_add(1);
-        }
-        self.is_lost = self.losses <= LET_GO;
-        self.apart = apart;
     }
 
     pub(super) fn new(

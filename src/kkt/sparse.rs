@@ -169,6 +169,11 @@ impl Island {
                 }
                 None => scale.map(|own| softness * own),
             };
+            let give = match asked.of {
+                // Where rows contradict each other.
+                Response::Position => [0, 1].map(|k| give[k] + self.softness * scale[k]),
+                _ => give,
+            };
             // Gaps are measured where the forces that act already have made it yield.
             let given = match asked.of {
                 Response::Position => [0, 1].map(|k| give[k] * contact.multiplier[k]),

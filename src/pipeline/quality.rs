@@ -17,7 +17,7 @@ pub enum Quality {
     #[default]
     Solved,
     /// The whole of the step was taken along a feasible path, with forces under which gaps miss the laws by up to the offset of the surfaces,
-    /// a hundredth of an edge.
+    /// a hundredth of an edge; or a contact has slid off what it pressed on within the step, and its force has acted to the end.
     Cut,
     /// Its budget ran out, in the smallest parts that it may be cut into. Surfaces on a feasible path are apart where it was stopped, velocities
     /// come from the last forces; what lies on no path (pairs shown to hooks, what was put into each other) may overlap.

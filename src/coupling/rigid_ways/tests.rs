@@ -242,3 +242,31 @@ fn gaps_of_drawn_in_bodies_are_those_of_their_sharp_corners() {
     }
     assert!(n_faces > 1000 && n_corners > 50 && n_deep < 400);
 }
+
+/// The tip of a triangle stands out of its rounding by more than rows reach on a thin plate: it is listed where it touches all the same.
+#[test]
+fn the_tip_of_a_wide_triangle_is_near_a_thin_plate_where_it_touches_it() {
+    let gap = 1e-4;
+    let triangle = Outline {
+        pieces: vec![Piece::Convex {
+            vertices: [[0.0, 0.0], [0.6, 1.0], [-0.6, 1.0]]
+                .map(Vec2::from)
+                .to_vec(),
+            radius: 0.0,
+            width: 1.0,
+        }],
+    };
+    let plate = Outline {
+        pieces: vec![rectangle([-1.0, 1.0], [-0.05, 0.0])],
+    };
+    let above = RigidMotion {
+        centre: Vec2::new(0.0, gap),
+        ..RigidMotion::default()
+    };
+    let rows = rows_of([&triangle, &plate], [above, RigidMotion::default()]);
+    let gaps: Vec<f64> = rows.into_iter().flatten().map(|row| row.1.gap).collect();
+    assert!(
+        gaps.iter().any(|found| (found - gap).abs() < 1e-12),
+        "gaps of {gaps:?} m"
+    );
+}

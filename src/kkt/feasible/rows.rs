@@ -13,16 +13,18 @@ use crate::system::{Block, Grip, Point};
 const PATH_NAMES: u32 = 1 << 31;
 
 impl FeasiblePath {
-    /// Lists what is near at the base.
+    /// Lists what is near at the base, a sharp corner from its tip on.
     pub(in crate::kkt) fn list_near(&mut self) {
-        let farthest = self.ways.iter().map(|way| way.reach).fold(0.0, f64::max);
+        let reaches = self.ways.iter().map(|way| way.reach);
+        let farthest = reaches.fold(0.0, f64::max) + 2.0 * self.farthest_tip;
+        let mut near = std::mem::take(&mut self.near);
         self.search
-            .near(&self.surfaces, &self.pairs, farthest, &mut self.near);
-        let ways = &self.ways;
-        self.near.retain(|near| {
-            let way = &ways[near.pair];
-            near.distance <= way.closing + way.reach
+            .near(&self.surfaces, &self.pairs, farthest, &mut near);
+        near.retain(|near| {
+            let way = &self.ways[near.pair];
+            near.distance - self.corner(near).max(0.0) <= way.closing + way.reach
         });
+        self.near = near;
     }
 
     /// What is near at the base.

@@ -1,0 +1,78 @@
+//! Forces of rows that contradict each other.
+//!
+//! Where a body is wedged, friction may hold it with forces of any size between two contacts, and rows that ask for places a little
+//! apart are answered by forces without bound. Then every contact gives way to the change of its own force,
+//!
+//! ```text
+//! w = W p + b + s D (p - p₀),     D the diagonal of W
+//! ```
+//!
+//! (a proximal step, Rockafellar 1976): passes that go on so lead to the same forces where there are any, and forces that push against
+//! each other grow no faster than what they cannot close.
+
+use super::Island;
+use crate::kkt::delassus::compliance;
+use crate::kkt::island::SolveSettings;
+use crate::kkt::position::ROUND_OFF;
+use crate::kkt::summary::IslandSummary;
+use crate::math::Mat2;
+use crate::system::Response;
+
+/// How far a multiplier may move its contact by itself, relative to the extent of the scene: a light body under one a thousand times
+/// heavier that falls across the scene within the step.
+const FARTHEST: f64 = 1e3;
+
+/// Shares of its own mobility that a contact gives way by, one after the other (-): the first costs a pass three digits.
+const SOFTNESS: [f64; 3] = [1e-3, 1e-2, 1e-1];
+
+impl Island {
+    /// Finds new forces, with as little compliance of the contacts as does; returns whether there are any.
+    pub(super) fn solve_consistently(
+        &mut self,
+        settings: &SolveSettings,
+        tolerance: f64,
+        summary: &mut IslandSummary,
+    ) -> bool {
+        let mut before = std::mem::take(&mut self.before_solve);
+        before.contacts.clone_from(&self.contacts);
+        before.ties.clone_from(&self.ties);
+        let given = self.softness;
+        let mut softer = SOFTNESS.into_iter().filter(|next| *next > given);
+        let is_consistent = loop {
+            let solved = self.solve_multipliers(settings, true, tolerance, summary);
+            if solved.is_ok() && !self.contradicts(settings) {
+                break true;
+            }
+            let Some(softness) = softer.next() else {
+                break false;
+            };
+            self.softness = softness;
+            self.contacts.clone_from(&before.contacts);
+            self.ties.clone_from(&before.ties);
+        };
+        self.before_solve = before;
+        is_consistent
+    }
+
+    /// Whether some multiplier would move its contact by far more than any motion of the island: then rows contradict each other, and forces
+    /// of any size would answer.
+    fn contradicts(&self, settings: &SolveSettings) -> bool {
+        let farthest = FARTHEST * self.gap_tolerance(settings) / ROUND_OFF;
+        let mut moves = self.contacts.iter().map(|contact| {
+            let own = compliance(
+                &self.blocks,
+                &contact.kinematics,
+                &contact.kinematics,
+                Response::Position,
+            );
+            let along = |own: Mat2| {
+                contact
+                    .kinematics
+                    .normal
+                    .dot(&(own * contact.kinematics.normal))
+            };
+            settings.b0 * contact.multiplier[0] * own.map_or(0.0, along)
+        });
+        moves.any(|moved| moved.is_nan() || moved > farthest)
+    }
+}
