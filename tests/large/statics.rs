@@ -1,0 +1,230 @@
+//! Equilibria with known answers.
+
+use super::support::{KINDS, describe, laws, nodes_where, plate};
+use foil2d::fe::finite_strain::FiniteStrainModel;
+use foil2d::fe::mesh::CellKind;
+use foil2d::large::{LargeError, LargeSettings, LoadCase, LoadStepper};
+use std::sync::Arc;
+
+fn flags(model: &FiniteStrainModel, dofs: impl IntoIterator<Item = usize>) -> Vec<bool> {
+    let mut is_held = vec![false; model.n_dofs()];
+    dofs.into_iter().for_each(|dof| is_held[dof] = true);
+    is_held
+}
+
+/// A strip of h/L = 1/100, ν = 0, clamped at x = 0: the deflection, the shortening and the positions under a load.
+struct Strip {
+    model: Arc<FiniteStrainModel>,
+    is_held: Vec<bool>,
+    tip: usize,
+}
+
+const YOUNG: f64 = 1.2e7;
+const HEIGHT: f64 = 0.01;
+/// `E h³/12` of a strip 1 m thick (N m²).
+const BENDING: f64 = YOUNG * HEIGHT * HEIGHT * HEIGHT / 12.0;
+
+impl Strip {
+    /// T6, 50 x 1, of one of the four laws.
+    fn new(law: usize) -> Self {
+        let law = Arc::clone(&laws(YOUNG, 0.0)[law]);
+        let model = plate([1.0, HEIGHT], [50, 1], CellKind::Tri6, law);
+        let clamped = nodes_where(&model, |[x, _]| x == 0.0);
+        let is_held = flags(&model, clamped.into_iter().flat_map(|n| [2 * n, 2 * n + 1]));
+        let middle = |[x, y]: [f64; 2]| x == 1.0 && (y - 0.5 * HEIGHT).abs() < 1e-12;
+        let tip = nodes_where(&model, middle)[0];
+        Self {
+            model: Arc::new(model),
+            is_held,
+            tip,
+        }
+    }
+
+    /// `[w/L, u/L]` of the tip under a load, and the load steps that failed.
+    fn bend(&self, load: &[f64], n_increments: usize) -> ([f64; 2], usize) {
+        self.bend_within(40, load, n_increments)
+    }
+
+    /// The same with so many iterations to an increment.
+    fn bend_within(
+        &self,
+        max_iterations: usize,
+        load: &[f64],
+        n_increments: usize,
+    ) -> ([f64; 2], usize) {
+        let settings = LargeSettings {
+            max_iterations,
+            ..LargeSettings::conserving().with_tolerance(1e-9)
+        };
+        let mut solver = LoadStepper::new(Arc::clone(&self.model), settings).expect("settings");
+        let mut x = self.model.rest_positions().to_vec();
+        let case = LoadCase {
+            from: &vec![0.0; load.len()],
+            to: load,
+            is_held: &self.is_held,
+            places: &x.clone(),
+            n_increments,
+        };
+        let report = solver
+            .solve(case, &mut x)
+            .expect("the strip finds its equilibrium");
+        assert!(report.residual <= 1e-9);
+        let rest = self.model.rest_positions();
+        let (tip_x, tip_y) = (2 * self.tip, 2 * self.tip + 1);
+        let moved = [rest[tip_y] - x[tip_y], rest[tip_x] - x[tip_x]];
+        (moved, report.n_cutbacks)
+    }
+}
+
+/// Benchmark B40: the elastica under a tip load α = P L²/EI.
+///
+/// ```text
+///  |=========  P        w/L, u/L by elliptic integrals; a strip's shear and stretch differ from the rod's
+///  |         \ v        by some (h/L)²
+/// ```
+#[test]
+fn a_clamped_strip_bends_like_the_elastica() {
+    let known = [
+        (1.0, [0.301720774, 0.056433236]),
+        (2.0, [0.493457480, 0.160641721]),
+        (5.0, [0.713791524, 0.387628361]),
+        (10.0, [0.810609025, 0.554995598]),
+    ];
+    for law in [0, 3] {
+        let strip = Strip::new(law);
+        for (alpha, expected) in known {
+            let mut load = vec![0.0; strip.model.n_dofs()];
+            load[2 * strip.tip + 1] = -alpha * BENDING;
+            let (found, _) = strip.bend(&load, 8);
+            for (found, expected) in found.into_iter().zip(expected) {
+                let error = found / expected - 1.0;
+                println!("law {law} alpha {alpha}: {:+.4} %", 100.0 * error);
+                assert!(error.abs() < 5e-4, "law {law}, alpha {alpha}: {error:e}");
+            }
+        }
+    }
+}
+
+/// Benchmark B41: the same strip under its own weight, q L³/EI = 10.
+#[test]
+fn a_clamped_strip_hangs_down_like_the_elastica_under_its_own_weight() {
+    let strip = Strip::new(0);
+    let mass: f64 = strip.model.masses().iter().sum();
+    let per_mass = 10.0 * BENDING / mass;
+    let masses = strip.model.masses().iter();
+    let load: Vec<f64> = masses.flat_map(|mass| [0.0, -per_mass * mass]).collect();
+    let (found, _) = strip.bend(&load, 8);
+    for (found, expected) in found.into_iter().zip([0.700199716, 0.343646239]) {
+        let error = found / expected - 1.0;
+        println!("{:+.4} %", 100.0 * error);
+        // The mass of a cell sits at its nodes: some (1/50)² of the load acts elsewhere.
+        assert!(error.abs() < 5e-4, "{error:e}");
+    }
+}
+
+/// A load that is too large for one increment is halved until it is not, and ends at the same place.
+#[test]
+fn load_increments_that_are_not_found_are_halved() {
+    let strip = Strip::new(0);
+    let mut load = vec![0.0; strip.model.n_dofs()];
+    load[2 * strip.tip + 1] = -10.0 * BENDING;
+    let (found, n_cutbacks) = strip.bend_within(11, &load, 1);
+    let (expected, _) = strip.bend(&load, 16);
+    assert!(n_cutbacks > 0);
+    for (found, expected) in found.into_iter().zip(expected) {
+        // A residual of 1e-9 of the load, times a compliance that falls with the deflection.
+        assert!((found - expected).abs() < 1e-8, "{found} for {expected}");
+    }
+}
+
+/// Benchmark B45: a neo-Hookean block in plane strain, pulled or pressed by rollers along x, its sides free.
+///
+/// `W = μ/2 (I1 - 3) - μ ln J + λ/2 ln² J`, E = 1, ν = .3: nominal stress P/E at the stretch λ1.
+#[test]
+fn a_neo_hookean_block_has_the_digits_of_homogeneous_strain() {
+    let known = [
+        (0.5, -1.084407463),
+        (0.7, -0.4584239232),
+        (1.3, 0.2672962551),
+        (2.0, 0.6745973555),
+    ];
+    for kind in KINDS {
+        for (stretch, expected) in known {
+            let law = Arc::clone(&laws(1.0, 0.3)[2]);
+            let model = plate([1.0, 1.0], [3, 3], kind, law);
+            let (stress, side) = pull(model, stretch);
+            println!("{kind:?} {stretch}: {:e}", stress / expected - 1.0);
+            assert!(
+                (stress / expected - 1.0).abs() < 1e-8,
+                "{kind:?} {stretch}: {stress}"
+            );
+            if stretch == 0.5 {
+                assert!((side - 1.288304972).abs() < 1e-8, "{side}");
+            }
+        }
+    }
+}
+
+/// The nominal stress of a unit block of this stretch along x, and its stretch along y.
+fn pull(model: FiniteStrainModel, stretch: f64) -> (f64, f64) {
+    let left = nodes_where(&model, |[x, _]| x == 0.0);
+    let right = nodes_where(&model, |[x, _]| x == 1.0);
+    let lower = nodes_where(&model, |[_, y]| y == 0.0);
+    let upper = nodes_where(&model, |[_, y]| y == 1.0);
+    let sides = left.iter().chain(&right).map(|node| 2 * node);
+    let is_held = flags(&model, sides.chain(lower.iter().map(|node| 2 * node + 1)));
+    let mut places = model.rest_positions().to_vec();
+    right.iter().for_each(|node| places[2 * node] = stretch);
+    let zeros = vec![0.0; model.n_dofs()];
+    let settings = LargeSettings::conserving().with_tolerance(1e-11);
+    let mut positions = model.rest_positions().to_vec();
+    let mut solver = LoadStepper::new(model, settings).expect("settings");
+    let case = LoadCase {
+        from: &zeros,
+        to: &zeros,
+        is_held: &is_held,
+        places: &places,
+        n_increments: 4,
+    };
+    solver
+        .solve(case, &mut positions)
+        .expect("homogeneous strain is found");
+    let force = right.iter().map(|node| solver.reaction()[2 * node]).sum();
+    (force, positions[2 * upper[0] + 1])
+}
+
+/// A block that is pushed up and held by nothing has no equilibrium: that is an error, and nothing has moved.
+#[test]
+fn an_equilibrium_that_does_not_exist_is_an_error_that_leaves_the_body() {
+    let description = describe(
+        [1.0, 1.0],
+        [2, 2],
+        CellKind::Tri3,
+        Arc::clone(&laws(1e5, 0.3)[2]),
+    );
+    let model = FiniteStrainModel::assemble(description).expect("a good body");
+    let zeros = vec![0.0; model.n_dofs()];
+    let mut load = zeros.clone();
+    load[1] = 10.0;
+    let mut positions = model.rest_positions().to_vec();
+    let case = LoadCase {
+        from: &zeros,
+        to: &load,
+        is_held: &vec![false; model.n_dofs()],
+        places: &zeros,
+        n_increments: 1,
+    };
+    let rest = positions.clone();
+    let mut solver = LoadStepper::new(model, LargeSettings::conserving()).expect("settings");
+    let error = solver
+        .solve(case, &mut positions)
+        .expect_err("nothing holds the body");
+    assert!(
+        matches!(
+            error,
+            LargeError::Factor(_) | LargeError::NotConverged { .. } | LargeError::Diverged { .. }
+        ),
+        "{error}"
+    );
+    assert_eq!(positions, rest);
+}
