@@ -36,7 +36,7 @@ pub(super) struct Evaluation {
     pub(super) norm: f64,
     /// Where it is.
     pub(super) node: usize,
-    /// The largest load, inertia force or reaction (N).
+    /// The largest load or inertia force, of equilibria also of reactions (N).
     pub(super) scale: f64,
 }
 
@@ -57,12 +57,17 @@ impl Equation<'_> {
             *reaction = 0.0;
             if self.is_held[dof] {
                 *reaction = -*residual;
-                scale = scale.max(residual.abs());
+                // Where held dofs alone deform a body there is no other force to compare with. In a step there is inertia, beside which
+                // the couple of a clamp would be a poor measure.
+                if self.form == Form::Equilibrium {
+                    scale = scale.max(residual.abs());
+                }
                 *residual = 0.0;
             }
-            // Written so that what is not a number stays the largest.
-            if !(residual.abs() <= norm) {
-                (norm, at) = (residual.abs(), dof);
+            let size = residual.abs();
+            // What is not a number stays the largest.
+            if size > norm || size.is_nan() {
+                (norm, at) = (size, dof);
             }
         }
         Ok(Evaluation {

@@ -5,7 +5,7 @@ use super::LargeError;
 /// Settings of [`LargeStepper`](super::LargeStepper) and [`LoadStepper`](super::LoadStepper).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LargeSettings {
-    /// Residual over the largest load, inertia force or reaction of the step that ends the iterations (-).
+    /// Residual over the largest load or inertia force of a step, or load or reaction of an equilibrium, that ends the iterations (-).
     ///
     /// 1e-4 leaves an error of some 1e-6 in the path of a swing; 1e-6 is for verification, 1e-9 shows conservation.
     pub tolerance: f64,

@@ -27,6 +27,13 @@ pub(super) struct CellGroup {
 /// Gradients of deformation at the beginning and at the end of a step, one each per quadrature point.
 pub(super) type Pair<'a> = (&'a [[f64; 4]], &'a [[f64; 4]]);
 
+/// One cell: its nodes, and the gradients of its shape functions and the volume at each of its points.
+struct Kinematics<'a, const N: usize> {
+    nodes: &'a [u32; N],
+    gradients: &'a [[[f64; 2]; N]],
+    volumes: &'a [f64],
+}
+
 /// Runs a kernel with the node count of a group as a constant, which lets the compiler unroll its loops.
 macro_rules! with_node_count {
     ($group:expr, $kernel:ident($($argument:expr),*)) => {
@@ -47,17 +54,18 @@ impl CellGroup {
         self.first_point..self.first_point + self.volumes.len()
     }
 
-    /// Cell by cell: its nodes, and gradients of the shape functions at each of its points.
-    fn kinematics<const N: usize>(
-        &self,
-    ) -> impl Iterator<Item = (&[u32; N], &[[[f64; 2]; N]], &[f64])> {
+    fn kinematics<const N: usize>(&self) -> impl Iterator<Item = Kinematics<'_, N>> {
         let nodes = self.nodes.as_chunks::<N>().0;
         let gradients = self.gradients.as_chunks::<N>().0;
         nodes
             .iter()
             .zip(gradients.chunks_exact(self.n_points))
             .zip(self.volumes.chunks_exact(self.n_points))
-            .map(|((nodes, gradients), volumes)| (nodes, gradients, volumes))
+            .map(|((nodes, gradients), volumes)| Kinematics {
+                nodes,
+                gradients,
+                volumes,
+            })
     }
 
     /// Writes `F` at every point of the group.
@@ -65,9 +73,9 @@ impl CellGroup {
         let cells = self
             .kinematics::<N>()
             .zip(out.chunks_exact_mut(self.n_points));
-        for ((nodes, gradients, _), out) in cells {
-            let differences = gather(nodes, positions);
-            for (gradient, out) in gradients.iter().zip(out) {
+        for (cell, out) in cells {
+            let differences = gather(cell.nodes, positions);
+            for (gradient, out) in cell.gradients.iter().zip(out) {
                 *out = deformation_gradient(&differences, gradient);
             }
         }
@@ -76,9 +84,9 @@ impl CellGroup {
     /// Stored energy (J) of the group at these positions (m).
     pub(super) fn energy<const N: usize>(&self, law: &dyn Hyperelastic, positions: &[f64]) -> f64 {
         let mut energy = 0.0;
-        for (nodes, gradients, volumes) in self.kinematics::<N>() {
-            let differences = gather(nodes, positions);
-            for (gradient, volume) in gradients.iter().zip(volumes) {
+        for cell in self.kinematics::<N>() {
+            let differences = gather(cell.nodes, positions);
+            for (gradient, volume) in cell.gradients.iter().zip(cell.volumes) {
                 let at = Invariants::of(deformation_gradient(&differences, gradient));
                 energy += volume * law.energy_density(at);
             }
@@ -100,16 +108,16 @@ impl CellGroup {
             .zip(start.chunks_exact(self.n_points))
             .zip(end.chunks_exact_mut(self.n_points))
             .zip(&self.cells);
-        for ((((nodes, gradients, volumes), start), end), &cell) in cells {
-            let differences = gather(nodes, positions);
+        for (((cell, start), end), &index) in cells {
+            let differences = gather(cell.nodes, positions);
             let mut force = [[0.0; 2]; N];
-            let points = gradients.iter().zip(volumes).zip(start).zip(end);
+            let points = cell.gradients.iter().zip(cell.volumes).zip(start).zip(end);
             for (((gradient, volume), start), end) in points {
                 *end = deformation_gradient(&differences, gradient);
                 let at = Invariants::of(*end);
                 if !law.admits(at) {
                     return Err(Inadmissible {
-                        cell,
+                        cell: index,
                         jacobian: at.j,
                         law: law.name(),
                     });
@@ -120,7 +128,7 @@ impl CellGroup {
                     force[1] += stress[2] * x + stress[3] * y;
                 }
             }
-            for (&node, force) in nodes.iter().zip(force) {
+            for (&node, force) in cell.nodes.iter().zip(force) {
                 let residual = &mut residual[2 * node as usize..][..2];
                 residual[0] -= force[0];
                 residual[1] -= force[1];
@@ -143,9 +151,9 @@ impl CellGroup {
             .zip(start.chunks_exact(self.n_points))
             .zip(end.chunks_exact(self.n_points))
             .zip(self.places.as_chunks::<N>().0.chunks_exact(N));
-        for ((((_, gradients, volumes), start), end), places) in cells {
+        for (((cell, start), end), places) in cells {
             let mut blocks = [[[0.0; 4]; N]; N];
-            let points = gradients.iter().zip(volumes).zip(start).zip(end);
+            let points = cell.gradients.iter().zip(cell.volumes).zip(start).zip(end);
             for (((gradient, &volume), start), end) in points {
                 let moduli = point::moduli(law, form, kind, *start, *end);
                 add_point(gradient, &moduli, volume, &mut blocks);
