@@ -33,7 +33,9 @@ pub struct LoadReport {
     pub n_iterations: usize,
     /// Factorizations.
     pub n_factorizations: usize,
-    /// The largest residual left, over the largest load or reaction of its increment (-).
+    /// Increments that ended above the tolerance, where residuals are rounding of the positions.
+    pub n_at_rounding: usize,
+    /// The largest residual left by the others, over the largest load or reaction of its increment (-).
     pub residual: f64,
 }
 
@@ -147,6 +149,7 @@ impl LoadStepper {
         let work = self.newton.work;
         report.n_iterations = work.n_iterations;
         report.n_factorizations = work.n_factorizations;
+        report.n_at_rounding = work.n_at_rounding;
         report.residual = work.residual;
         Ok(report)
     }

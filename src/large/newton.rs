@@ -9,8 +9,8 @@ use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Form, Inadmissibl
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::BlockCholesky;
 
-/// A residual that falls by less than this a iteration asks for a new factor: with it, the next digits cost fewer solves than
-/// the factor, at any number of dofs from a hundred to ten thousand.
+/// A residual of which an iteration leaves more than this asks for a new factor: within a tenth of the cheapest of the rules tried
+/// in swings of 126 to 8,442 dofs.
 const SLOWEST: f64 = 0.25;
 
 /// An increment is cut to 1/64 before the attempt is given up: a direction that does not do for that is wrong.
@@ -26,7 +26,8 @@ pub(super) struct Work {
     pub(super) n_factorizations: usize,
     pub(super) n_definite: usize,
     pub(super) n_cut_increments: usize,
-    /// The largest residual left over the scale of its attempt (-).
+    pub(super) n_at_rounding: usize,
+    /// The largest residual left over the scale of its attempt, where that is within the tolerance (-).
     pub(super) residual: f64,
 }
 
@@ -120,20 +121,15 @@ impl Newton {
             let outcome = self.evaluate(equation, end);
             let now = match attempt.accept(outcome, equation.most_growth) {
                 Ok(now) => now,
-                Err(error) => {
-                    self.go_back(equation, &mut attempt, error, angle, end)?;
+                Err(reason) => {
+                    self.go_back(equation, &mut attempt, reason, end)?;
                     continue;
                 }
             };
             let is_slow = attempt
                 .last
                 .is_some_and(|last| now.norm > SLOWEST * last.norm);
-            // Positions are known to half their rounding ε |x|, so a residual to that times the matrix. Where iterations no longer help
-            // and leave no more, they have ended.
-            let rounding = f64::EPSILON * self.row_sum * largest(equation.start);
-            if now.norm <= limits.tolerance * now.scale || is_slow && now.norm <= rounding {
-                let left = now.norm / now.scale.max(rounding).max(f64::MIN_POSITIVE);
-                self.work.residual = self.work.residual.max(left);
+            if self.has_ended(equation, limits, now, is_slow) {
                 return Ok(());
             }
             if attempt.n_iterations == limits.max_iterations
@@ -147,7 +143,6 @@ impl Newton {
                 });
             }
             attempt.last = Some(now);
-            attempt.is_fresh = false;
             if is_slow || !self.has_factor_for(equation) {
                 self.renew(equation, &mut attempt, angle)?;
             }
@@ -171,35 +166,60 @@ impl Newton {
         )
     }
 
+    /// Whether a residual is within the tolerance, or as small as rounding lets it be.
+    fn has_ended(
+        &mut self,
+        equation: &Equation<'_>,
+        limits: Limits,
+        now: Evaluation,
+        is_slow: bool,
+    ) -> bool {
+        if now.norm <= limits.tolerance * now.scale {
+            let left = now.norm / now.scale.max(f64::MIN_POSITIVE);
+            self.work.residual = self.work.residual.max(left);
+            return true;
+        }
+        // Positions are known to half their rounding ε |x|, so a residual to that times the matrix. Where iterations no longer help and
+        // leave no more, they have ended.
+        let rounding = f64::EPSILON * self.row_sum * largest(equation.start);
+        let is_rounding = is_slow && now.norm <= rounding;
+        self.work.n_at_rounding += usize::from(is_rounding);
+        is_rounding
+    }
+
     fn has_factor_for(&self, equation: &Equation<'_>) -> bool {
         self.factor_of
             .is_some_and(|(purpose, _)| purpose == Purpose::of(equation))
     }
 
-    /// After an increment that cannot be taken: suspects first an old factor, which is renewed where the increment began, then its length.
+    /// Takes half of an increment back that cannot be taken, or half of the guess where there was none.
+    ///
+    /// # Errors
+    /// The reason, if that was done often enough.
     fn go_back(
         &mut self,
         equation: &Equation<'_>,
         attempt: &mut Attempt,
-        error: LargeError,
-        angle: f64,
+        reason: LargeError,
         end: &mut [f64],
     ) -> Result<(), LargeError> {
-        if attempt.last.is_some() && !attempt.is_fresh {
-            for (end, increment) in end.iter_mut().zip(&self.increment) {
-                *end -= increment;
-            }
-            self.evaluate(equation, end)?;
-            self.renew(equation, attempt, angle)?;
-            self.advance(angle, end);
-            return Ok(());
-        }
         attempt.n_cuts += 1;
         if attempt.n_cuts > MOST_CUTS {
-            return Err(error);
+            return Err(reason);
         }
         self.work.n_cut_increments += 1;
-        self.cut(equation, attempt.last.is_some(), end);
+        if attempt.last.is_some() {
+            for (end, increment) in end.iter_mut().zip(&mut self.increment) {
+                *increment *= 0.5;
+                *end -= *increment;
+            }
+            return Ok(());
+        }
+        for (dof, end) in end.iter_mut().enumerate() {
+            if !equation.is_held[dof] {
+                *end = 0.5 * (*end + equation.start[dof]);
+            }
+        }
         Ok(())
     }
 
@@ -216,24 +236,7 @@ impl Newton {
         {
             return Err(diverged(last));
         }
-        attempt.is_fresh = true;
         self.factorize(equation, angle)
-    }
-
-    /// Takes half of the last increment back, or half of the guess where there was none.
-    fn cut(&mut self, equation: &Equation<'_>, has_moved: bool, end: &mut [f64]) {
-        if has_moved {
-            for (end, increment) in end.iter_mut().zip(&mut self.increment) {
-                *increment *= 0.5;
-                *end -= *increment;
-            }
-            return;
-        }
-        for (dof, end) in end.iter_mut().enumerate() {
-            if !equation.is_held[dof] {
-                *end = 0.5 * (*end + equation.start[dof]);
-            }
-        }
     }
 
     fn factorize(&mut self, equation: &Equation<'_>, angle: f64) -> Result<(), LargeError> {
@@ -277,8 +280,6 @@ impl Newton {
 struct Attempt {
     /// The iterate that the last increment began at.
     last: Option<Evaluation>,
-    /// Whether the factor was made there.
-    is_fresh: bool,
     n_iterations: usize,
     /// Cuts of the last increment.
     n_cuts: usize,

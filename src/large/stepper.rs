@@ -2,7 +2,7 @@
 
 use super::equation::{Equation, Inertia};
 use super::newton::{Limits, Newton, Work};
-use super::turn::{MeanRotation, centripetal, turn};
+use super::turn::{MeanRotation, turn};
 use super::{LargeError, LargeSettings, WorldMotion};
 use crate::body::Pin;
 use crate::fe::finite_strain::{FiniteStrainModel, Form};
@@ -22,7 +22,9 @@ pub struct StepWork {
     pub n_cut_increments: usize,
     /// Steps that were halved.
     pub n_cutbacks: usize,
-    /// The largest residual left, over the largest force of its part (-).
+    /// Parts that ended above the tolerance, where residuals are rounding of the positions: at rest, or in stiff bodies far from the origin.
+    pub n_at_rounding: usize,
+    /// The largest residual left by the other parts, over the largest force of its part (-).
     pub residual: f64,
 }
 
@@ -63,8 +65,6 @@ pub struct LargeStepper {
     /// Mean acceleration of the last step (m/s²), and how fast the body turned in it (rad/s): they begin the next.
     acceleration: Vec<f64>,
     spin: f64,
-    /// Whether there was a last step.
-    is_warm: bool,
     end: Vec<f64>,
     coast: Vec<f64>,
     /// The motion at the beginning of the step, for the case that it is not found.
@@ -93,7 +93,6 @@ impl LargeStepper {
             rotation: MeanRotation::new(&model),
             acceleration: zeros.clone(),
             spin: 0.0,
-            is_warm: false,
             end: zeros.clone(),
             coast: zeros.clone(),
             before: WorldMotion::at_rest(&model),
@@ -173,6 +172,7 @@ impl LargeStepper {
             n_definite: work.n_definite,
             n_cut_increments: work.n_cut_increments,
             n_cutbacks: self.n_cutbacks,
+            n_at_rounding: work.n_at_rounding,
             residual: work.residual,
         })
     }
@@ -190,7 +190,7 @@ impl LargeStepper {
     /// Forgets what the last step tells about the next.
     fn forget(&mut self) {
         self.acceleration.fill(0.0);
-        self.is_warm = false;
+        self.spin = 0.0;
     }
 
     /// One step, or its two halves, or theirs.
@@ -260,15 +260,9 @@ impl LargeStepper {
 
     /// Writes `coast = x + dt v` and the guess `end = coast + dt²/2 Q a` of the end; returns the angle of the body there (rad).
     fn predict(&mut self, dt: f64, motion: &WorldMotion) -> f64 {
-        if self.is_free && !self.is_warm {
-            let masses = self.model.masses();
-            self.spin = centripetal(masses, motion, &mut self.acceleration);
-            // From the beginning of the step to its middle.
-            turn(&mut self.acceleration, 0.5 * dt * self.spin);
-        } else if self.is_free {
+        if self.is_free {
             turn(&mut self.acceleration, dt * self.spin);
         }
-        self.is_warm = true;
         let states = motion.position.iter().zip(&motion.velocity);
         for (dof, (x, v)) in states.enumerate() {
             self.coast[dof] = x + dt * v;

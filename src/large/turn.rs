@@ -1,6 +1,5 @@
 //! The mean rotation of a body: the one nearest to `x - c` over its masses, `tan θ = Σ m A × x / Σ m A · x`.
 
-use super::WorldMotion;
 use crate::fe::finite_strain::FiniteStrainModel;
 use crate::math::{Vec2, atan2, cross, node_vec, set_node_vec, sin_cos};
 
@@ -37,32 +36,6 @@ impl MeanRotation {
         }
         atan2(across, along)
     }
-}
-
-/// Writes the accelerations `-ω² (x - c)` of a rigid body with the angular momentum of the motion; returns its spin ω (rad/s).
-pub(super) fn centripetal(masses: &[f64], motion: &WorldMotion, acceleration: &mut [f64]) -> f64 {
-    let origin = node_vec(&motion.position, 0);
-    let (mut mass, mut moment, mut momentum) = (0.0, Vec2::zeros(), Vec2::zeros());
-    let (mut inertia, mut angular) = (0.0, 0.0);
-    for (node, &m) in masses.iter().enumerate() {
-        let x = node_vec(&motion.position, node) - origin;
-        let v = node_vec(&motion.velocity, node);
-        mass += m;
-        moment += m * x;
-        momentum += m * v;
-        inertia += m * x.norm_squared();
-        angular += m * cross(x, v);
-    }
-    // From the origin to the centre of mass (Huygens and Steiner).
-    inertia -= moment.norm_squared() / mass;
-    angular -= cross(moment, momentum) / mass;
-    let spin = angular / inertia;
-    let centre = origin + moment / mass;
-    for node in 0..masses.len() {
-        let arm = node_vec(&motion.position, node) - centre;
-        set_node_vec(acceleration, node, -spin * spin * arm);
-    }
-    spin
 }
 
 /// Turns all nodes of a vector by an angle (rad).

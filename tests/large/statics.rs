@@ -122,6 +122,70 @@ fn a_clamped_strip_hangs_down_like_the_elastica_under_its_own_weight() {
     }
 }
 
+/// Benchmark B43: a column between two pins, pressed together until its ends have turned by 20° to 80°.
+///
+/// ```text
+///  P -> o-----------o <- P        ends move in by 1 - chord/L; P/Pcr by elliptic integrals
+/// ```
+#[test]
+fn a_buckled_column_bears_the_load_of_the_elastica() {
+    let known = [
+        (0.969730907, 1.01539687, 0.109706521),
+        (0.881203512, 1.06366327, 0.211120170),
+        (0.741019606, 1.15171962, 0.296603823),
+        (0.559395919, 1.29388932, 0.359748552),
+    ];
+    let law = Arc::clone(&laws(YOUNG, 0.0)[0]);
+    let model = Arc::new(plate([1.0, HEIGHT], [50, 1], CellKind::Tri6, law));
+    let at = |x: f64| {
+        let is_there = |[a, b]: [f64; 2]| (a - x).abs() < 1e-9 && (b - 0.5 * HEIGHT).abs() < 1e-9;
+        nodes_where(&model, is_there)[0]
+    };
+    let (left, middle, right) = (at(0.0), at(0.5), at(1.0));
+    let is_held = flags(&model, [2 * left, 2 * left + 1, 2 * right, 2 * right + 1]);
+    let zeros = vec![0.0; model.n_dofs()];
+    // A thousandth of the critical load pushes the column to its side and is taken off as it buckles.
+    let critical = std::f64::consts::PI.powi(2) * BENDING;
+    let mut push = zeros.clone();
+    push[2 * middle + 1] = 1e-3 * critical;
+    let settings = LargeSettings::conserving().with_tolerance(1e-9);
+    let mut solver = LoadStepper::new(Arc::clone(&model), settings).expect("settings");
+    let mut x = model.rest_positions().to_vec();
+    let mut places = x.clone();
+    let mut press = |chord: f64, from: &[f64], to: &[f64], x: &mut [f64]| {
+        places[2 * right] = chord;
+        let case = LoadCase {
+            from,
+            to,
+            is_held: &is_held,
+            places: &places,
+            n_increments: 10,
+        };
+        solver
+            .solve(case, x)
+            .expect("the column is pressed together");
+        -solver.reaction()[2 * right] / critical
+    };
+    press(1.0, &zeros, &push, &mut x);
+    let mut from = &push;
+    for (chord, load, deflection) in known {
+        let found = press(chord, from, &zeros, &mut x);
+        from = &zeros;
+        let bent = x[2 * middle + 1] - 0.5 * HEIGHT;
+        println!(
+            "P/Pcr {:+.4} %, deflection {:+.4} %",
+            100.0 * (found / load - 1.0),
+            100.0 * (bent / deflection - 1.0)
+        );
+        // The strip's compression P/EA = 8e-5 and its shear of twice that.
+        assert!((found / load - 1.0).abs() < 5e-4, "{found} for {load}");
+        assert!(
+            (bent / deflection - 1.0).abs() < 2e-3,
+            "{bent} for {deflection}"
+        );
+    }
+}
+
 /// A load that is too large for one increment is halved until it is not, and ends at the same place.
 #[test]
 fn load_increments_that_are_not_found_are_halved() {
