@@ -1,8 +1,9 @@
 //! Equilibria with known answers.
 
 use super::support::{KINDS, describe, laws, nodes_where, plate};
-use foil2d::fe::finite_strain::FiniteStrainModel;
-use foil2d::fe::mesh::CellKind;
+use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+use foil2d::fe::material::hyperelastic::Corotated;
+use foil2d::fe::mesh::{CellKind, Mesh};
 use foil2d::large::{LargeError, LargeSettings, LoadCase, LoadStepper};
 use std::sync::Arc;
 
@@ -184,6 +185,124 @@ fn a_buckled_column_bears_the_load_of_the_elastica() {
             "{bent} for {deflection}"
         );
     }
+}
+
+/// A frame of two legs 120 long and `thick` thick, their centre lines meeting at (0, 120): Tri6, one cell across.
+fn frame(thick: f64) -> Mesh {
+    let half = 0.5 * thick;
+    // Sections along a leg, from its hinge to the edge of the corner.
+    let along: Vec<f64> = (0..60)
+        .map(|k| 2.0 * f64::from(k))
+        .chain([120.0 - half])
+        .collect();
+    let upright = along.iter().map(|&y| [[half, y], [-half, y]]);
+    let level = along
+        .iter()
+        .rev()
+        .map(|&s| [[120.0 - s, 120.0 - half], [120.0 - s, 120.0 + half]]);
+    let nodes: Vec<[f64; 2]> = upright
+        .chain(level)
+        .flatten()
+        .chain([[-half, 120.0 + half]])
+        .collect();
+    let n = along.len();
+    let mut cells = Vec::new();
+    let mut add = |[a, b, c, d]: [usize; 4]| cells.extend([[a, b, c], [a, c, d]]);
+    for k in 0..n - 1 {
+        // Upright: right and left below, left and right above; level: lower and upper, to the right of both.
+        add([2 * k + 1, 2 * k, 2 * k + 2, 2 * k + 3]);
+        let at = 2 * (n + k);
+        add([at, at + 2, at + 3, at + 1]);
+    }
+    // The corner's lower right node is that of both legs.
+    let (right, left, upper) = (2 * n - 2, 2 * n - 1, 2 * n + 1);
+    add([left, right, upper, 4 * n]);
+    let merged = |node: usize| {
+        if node == 2 * n {
+            right
+        } else {
+            node - usize::from(node > 2 * n)
+        }
+    };
+    let cells: Vec<[usize; 3]> = cells.into_iter().map(|cell| cell.map(merged)).collect();
+    let mut nodes = nodes;
+    nodes.remove(2 * n);
+    let mesh = Mesh::from_cells(nodes, CellKind::Tri3, &cells).expect("the frame is a mesh");
+    mesh.to_tri6().expect("all cells are Tri3")
+}
+
+/// Benchmark B44, Lee's frame: pushed down at 24 from its corner until it snaps.
+///
+/// ```text
+///        24  | P                EI = 1440, both ends hinged; load under the displacement v, limit load 1.855875
+///   .--------v-----------o      of rods that do not stretch, at v = 48.735
+///   |
+///   |          120
+///   o
+/// ```
+#[test]
+fn lees_frame_bears_its_limit_load() {
+    let thick: f64 = 0.2;
+    let law = Corotated::plane_strain(12.0 * 1440.0 / thick.powi(3), 0.0);
+    let description = FiniteStrainDescription::new(frame(thick), law, 1.0);
+    let model = Arc::new(FiniteStrainModel::assemble(description).expect("the frame is a body"));
+    let at = |x: f64, y: f64| {
+        let is_there = |[a, b]: [f64; 2]| (a - x).abs() < 1e-9 && (b - y).abs() < 1e-9;
+        nodes_where(&model, is_there)[0]
+    };
+    let (foot, end, loaded) = (at(0.0, 0.0), at(120.0, 120.0), at(24.0, 120.0));
+    let held = [2 * foot, 2 * foot + 1, 2 * end, 2 * end + 1, 2 * loaded + 1];
+    let is_held = flags(&model, held);
+    let zeros = vec![0.0; model.n_dofs()];
+    let settings = LargeSettings::conserving().with_tolerance(1e-9);
+    let mut solver = LoadStepper::new(Arc::clone(&model), settings).expect("settings");
+    let mut x = model.rest_positions().to_vec();
+    let mut places = x.clone();
+    let mut push = |v: f64| {
+        places[2 * loaded + 1] = 120.0 - v;
+        let case = LoadCase {
+            from: &zeros,
+            to: &zeros,
+            is_held: &is_held,
+            places: &places,
+            n_increments: 5,
+        };
+        solver
+            .solve(case, &mut x)
+            .expect("the frame is pushed down");
+        (-solver.reaction()[2 * loaded + 1], x[2 * loaded] - 24.0)
+    };
+    // The corner, 1/1200 of a leg on either side of its centre, bends less than a rod would where the moment is large.
+    for (v, expected) in [
+        (10.0, 0.96355),
+        (20.0, 1.34579),
+        (30.0, 1.59530),
+        (40.0, 1.78078),
+    ] {
+        let (found, _) = push(v);
+        println!("v = {v}: {:+.3} %", 100.0 * (found / expected - 1.0));
+        assert!(
+            (found / expected - 1.0).abs() < 4e-3,
+            "{v}: {found} for {expected}"
+        );
+    }
+    let mut limit = (0.0, 0.0, 0.0);
+    for k in 0..20 {
+        let v = 47.0 + 0.2 * f64::from(k);
+        let (found, u) = push(v);
+        if found > limit.0 {
+            limit = (found, v, u);
+        }
+    }
+    println!(
+        "limit {limit:?}: {:+.3} %",
+        100.0 * (limit.0 / 1.855875 - 1.0)
+    );
+    assert!((limit.0 / 1.855875 - 1.0).abs() < 4e-3, "{}", limit.0);
+    assert!(
+        (limit.1 - 48.735).abs() < 0.3 && (limit.2 - 26.881).abs() < 0.3,
+        "{limit:?}"
+    );
 }
 
 /// A load that is too large for one increment is halved until it is not, and ends at the same place.
