@@ -103,6 +103,7 @@ impl LoadStepper {
         require_finite("the places", case.places, n_dofs)?;
         self.before.copy_from_slice(positions);
         self.newton.work = Work::default();
+        self.newton.forget_factor();
         let outcome = self.follow(case, positions);
         if outcome.is_err() {
             positions.copy_from_slice(&self.before);

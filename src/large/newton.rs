@@ -90,6 +90,11 @@ impl Newton {
         }
     }
 
+    /// Forgets the factor, as other dofs are held from now on.
+    pub(super) fn forget_factor(&mut self) {
+        self.factor_of = None;
+    }
+
     /// Moves `end` from a guess to a solution of the equation, whose body has turned by `angle` (rad).
     ///
     /// # Errors
@@ -104,7 +109,7 @@ impl Newton {
         let outcome = self.iterate(equation, limits, angle, end);
         if outcome.is_err() {
             // The last factor is of a state that led nowhere.
-            self.factor_of = None;
+            self.forget_factor();
         }
         outcome
     }

@@ -111,6 +111,8 @@ impl LargeStepper {
         self.is_held[2 * node] = pin.x;
         self.is_held[2 * node + 1] = pin.y;
         self.is_free = !self.is_held.contains(&true);
+        self.forget();
+        self.newton.forget_factor();
     }
 
     /// Holds directions of all nodes whose undeformed position (m) is chosen.

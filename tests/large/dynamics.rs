@@ -409,3 +409,25 @@ fn mass_proportional_damping_brakes_a_flying_body() {
         assert!((v[0] - 3.0 * left).abs() < 1e-9 && (v[1] + left).abs() < 1e-9);
     }
 }
+
+/// A node that is held in flight stays where it is to the last bit, and flies on when it is let go.
+#[test]
+fn nodes_are_held_and_let_go_between_steps() {
+    let (model, mut motion) = spinning(1e6, 3, CellKind::Tri6);
+    let load = vec![0.0; model.n_dofs()];
+    let mut stepper = LargeStepper::new(model, LargeSettings::default()).expect("settings");
+    let mut fly = |stepper: &mut LargeStepper, motion: &mut WorldMotion| {
+        for _ in 0..10 {
+            stepper.step(DT, &load, motion).expect("the plate flies");
+        }
+        [motion.position[0], motion.position[1]]
+    };
+    let caught = fly(&mut stepper, &mut motion);
+    stepper.pin(0, Pin::both());
+    motion.velocity[..2].fill(0.0);
+    assert_eq!(fly(&mut stepper, &mut motion), caught);
+    assert!(stepper.reaction()[0] != 0.0);
+    stepper.pin(0, Pin { x: false, y: false });
+    assert!(fly(&mut stepper, &mut motion) != caught);
+    assert!(stepper.reaction()[0] == 0.0);
+}

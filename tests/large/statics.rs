@@ -411,3 +411,38 @@ fn an_equilibrium_that_does_not_exist_is_an_error_that_leaves_the_body() {
     );
     assert_eq!(positions, rest);
 }
+
+/// One solver serves cases that hold other dofs: what is held in the second one does not move by what the first has left behind.
+#[test]
+fn a_solver_takes_cases_that_hold_other_dofs() {
+    let law = Arc::clone(&laws(1e5, 0.3)[3]);
+    let model = plate([1.0, 1.0], [2, 2], CellKind::Tri6, law);
+    let lower = nodes_where(&model, |[_, y]| y == 0.0);
+    let left = nodes_where(&model, |[x, _]| x == 0.0);
+    let zeros = vec![0.0; model.n_dofs()];
+    let rest = model.rest_positions().to_vec();
+    let mut load = zeros.clone();
+    let corner = nodes_where(&model, |[x, y]| x == 1.0 && y == 1.0)[0];
+    load[2 * corner] = 1e3;
+    let settings = LargeSettings::conserving().with_tolerance(1e-10);
+    let shared = Arc::new(model);
+    let solve = |solver: &mut LoadStepper, held: &[usize]| {
+        let mut x = rest.clone();
+        let case = LoadCase {
+            from: &zeros,
+            to: &load,
+            is_held: &flags(
+                &shared,
+                held.iter().flat_map(|node| [2 * node, 2 * node + 1]),
+            ),
+            places: &rest,
+            n_increments: 2,
+        };
+        solver.solve(case, &mut x).expect("the block leans over");
+        x
+    };
+    let mut used = LoadStepper::new(Arc::clone(&shared), settings).expect("settings");
+    solve(&mut used, &lower);
+    let mut new = LoadStepper::new(Arc::clone(&shared), settings).expect("settings");
+    assert_eq!(solve(&mut used, &left), solve(&mut new, &left));
+}
