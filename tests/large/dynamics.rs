@@ -416,7 +416,7 @@ fn nodes_are_held_and_let_go_between_steps() {
     let (model, mut motion) = spinning(1e6, 3, CellKind::Tri6);
     let load = vec![0.0; model.n_dofs()];
     let mut stepper = LargeStepper::new(model, LargeSettings::default()).expect("settings");
-    let mut fly = |stepper: &mut LargeStepper, motion: &mut WorldMotion| {
+    let fly = |stepper: &mut LargeStepper, motion: &mut WorldMotion| {
         for _ in 0..10 {
             stepper.step(DT, &load, motion).expect("the plate flies");
         }
