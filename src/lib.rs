@@ -20,6 +20,7 @@ pub mod coupling;
 pub mod fe;
 pub mod integrator;
 pub mod kkt;
+pub mod large;
 pub mod linalg;
 pub mod math;
 pub mod nonlinear;

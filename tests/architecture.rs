@@ -6,12 +6,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layers from the top; members of one layer do not import each other.
-const LAYERS: [&[&str]; 9] = [
+const LAYERS: [&[&str]; 10] = [
     &["pipeline"],
     &["coupling"],
     &["kkt"],
     &["constraint"],
     &["system", "nonlinear"],
+    &["large"],
     &["body"],
     &["fe", "integrator"],
     &["linalg", "path"],

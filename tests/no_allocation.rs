@@ -374,3 +374,39 @@ fn a_non_linear_step_allocates_nothing_once_warm() {
         assert_eq!(count, 0, "{stacks:?}");
     }
 }
+
+/// A large body is stepped without an allocation from its first step on: factors are renewed and steps halved in place.
+#[test]
+fn a_large_body_allocates_nothing() {
+    use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+    use foil2d::fe::material::hyperelastic::StableNeoHookean;
+    use foil2d::large::{LargeSettings, LargeStepper, WorldMotion};
+
+    let mesh = foil2d::fe::mesh::generate::rectangle([1.0, 1.0], [4, 4], CellKind::Tri6).unwrap();
+    let law = StableNeoHookean::plane_strain(1e5, 0.3);
+    let description = FiniteStrainDescription::new(mesh, law, 1000.0);
+    let model = FiniteStrainModel::assemble(description).unwrap();
+    let mut motion = WorldMotion::at_rest(&model);
+    let rest = motion.position.clone();
+    let load = vec![0.0; model.n_dofs()];
+    let mut stepper = LargeStepper::new(model, LargeSettings::default()).unwrap();
+    stepper.pin_where(|[_, y]| y == 0.0 || y == 1.0, Pin::both());
+    let (mut n_cutbacks, mut n_factorizations) = (0, 0);
+    let (count, stacks) = allocations(|| {
+        for step in 0..30 {
+            for node in 0..rest.len() / 2 {
+                let is_upper = rest[2 * node + 1] == 1.0;
+                motion.velocity[2 * node + 1] = match is_upper {
+                    true if step < 2 => -20.0,
+                    true => 0.0,
+                    false => motion.velocity[2 * node + 1],
+                };
+            }
+            let work = stepper.step(1.0 / 60.0, &load, &mut motion).unwrap();
+            n_cutbacks += work.n_cutbacks;
+            n_factorizations += work.n_factorizations;
+        }
+    });
+    assert!(n_cutbacks > 0 && n_factorizations > 10);
+    assert_eq!(count, 0, "{}", stacks.first().map_or("", String::as_str));
+}

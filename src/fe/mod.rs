@@ -7,6 +7,7 @@
 //! | [`element`] | `k = int B^T D B t dA`, `m = int rho N^T N t dA` |
 //! | [`mass_matrix`] | `M` and its moments |
 //! | [`model`] | `K`, `M` and stresses of one body |
+//! | [`finite_strain`] | internal force and tangent of one body at large strain, in world coordinates |
 //! | [`mass`] | nodal masses with an inertia-free contact boundary |
 //! | [`frequency`] | the largest natural frequency, which bounds the step of explicit integration |
 //! | [`record`] | names of elements and materials in snapshots |
@@ -15,6 +16,7 @@
 //! SI units throughout; the strain order is `[e_xx, e_yy, g_xy]` with engineering shear.
 
 pub mod element;
+pub mod finite_strain;
 pub mod frequency;
 pub mod mass;
 pub mod mass_matrix;

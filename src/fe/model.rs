@@ -351,7 +351,7 @@ fn for_each_cell(
 }
 
 /// The element of a cell: the last matching one the user gave, else the default of its node count.
-fn element_of(
+pub(super) fn element_of(
     elements: &[Arc<dyn Element>],
     index: usize,
     cell: &Cell<'_>,
@@ -370,7 +370,7 @@ fn element_of(
 }
 
 /// Nodes of a cell in the world's axes; only the first `cell.nodes.len()` entries are meaningful.
-fn placed_nodes(rest: &[f64], cell: &Cell<'_>) -> [[f64; 2]; MAX_NODES] {
+pub(super) fn placed_nodes(rest: &[f64], cell: &Cell<'_>) -> [[f64; 2]; MAX_NODES] {
     let mut corners = [[0.0; 2]; MAX_NODES];
     for (corner, &node) in corners.iter_mut().zip(cell.nodes) {
         *corner = [rest[2 * node], rest[2 * node + 1]];

@@ -31,6 +31,8 @@ functions! {
     atan2(y, x) = atan2;
     /// `e` to a power.
     exp(power) = exp;
+    /// Natural logarithm.
+    ln(value) = log;
     /// `√(x² + y²)`.
     hypot(x, y) = hypot;
 }

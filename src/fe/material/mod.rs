@@ -3,8 +3,11 @@
 //! Strains are `[e_xx, e_yy, g_xy]` with engineering shear `g_xy = 2 e_xy` (-); stresses are
 //! `[s_xx, s_yy, s_xy]` (Pa). With this pairing `W` is a plain function of three variables, its
 //! gradient is the stress and its Hessian the tangent, which is what [`conformance`] checks.
+//!
+//! That is for small strains. Laws for large ones are in [`hyperelastic`].
 
 pub mod conformance;
+pub mod hyperelastic;
 mod linear_elastic;
 mod rayleigh;
 

@@ -1,0 +1,48 @@
+//! A body at large strain in world coordinates: `f = Σ ∫ P : ∇N dV`, `K = ∂f/∂x'`, in the undeformed geometry.
+//!
+//! The gradient of deformation at a quadrature point is `F = Σ_a x_a ⊗ dN_a/dX`, taken from *differences* of coordinates within
+//! a cell, so that it does not lose digits far from the origin. Stresses are those of a [`Hyperelastic`] law,
+//!
+//! ```text
+//! equilibrium       P = 2 W_t F + W_J cof F
+//! energy-momentum   P = 2 a F½ + b cof F½ + F½ S,    S = χ/2 D0 : (E' - E),    E = (FᵀF - I)/2
+//! ```
+//!
+//! where the first two terms conserve energy and angular momentum of a step from `F` to `F'` exactly (see
+//! [`hyperelastic`](crate::fe::material::hyperelastic)), and the third, with the constant moduli `D0` at rest, makes
+//! vibrations decay: it takes `F½ S : (F' - F) = χ/2 (E' - E) : D0 : (E' - E) ≥ 0` from them, and nothing from rotations.
+//! For small strains that is the stiffness part `χ dt/2` of Rayleigh damping.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `point` | stress and moduli at one quadrature point |
+//! | `cells` | cells of one node count, and their kernels |
+//! | `model` | the assembled body |
+//!
+//! Tri3 and Tri6 take their usual fields. Cells of four nodes take the plain bilinear one, without the inner modes that
+//! [`Quad4`](crate::fe::element::Quad4) has at small strain, and lock in bending: prefer Tri6.
+
+mod cells;
+mod model;
+mod point;
+
+pub use model::{Deformation, FiniteStrainDescription, FiniteStrainError, FiniteStrainModel};
+pub use point::{Form, Linearization};
+
+#[cfg(doc)]
+use crate::fe::material::hyperelastic::Hyperelastic;
+
+/// A cell where the law has no energy.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "cell {cell} has det F = {jacobian:e}, where the {law} law has no energy: shorten the step, or take a law that admits it, \
+     such as the stable neo-Hookean one"
+)]
+pub struct Inadmissible {
+    /// The cell.
+    pub cell: usize,
+    /// Its `det F` at a quadrature point (-).
+    pub jacobian: f64,
+    /// Name of the law.
+    pub law: &'static str,
+}

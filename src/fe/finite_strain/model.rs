@@ -1,0 +1,375 @@
+//! The assembled body: cells in groups, nodal masses, the pattern of the matrix.
+
+use super::Inadmissible;
+use super::cells::{CellGroup, with_node_count};
+use super::point::{Form, Linearization};
+use crate::fe::element::{Element, ElementError, MAX_NODES, kinematics::physical_gradient};
+use crate::fe::material::hyperelastic::Hyperelastic;
+use crate::fe::material::{MaterialError, Rayleigh};
+use crate::fe::mesh::{Cell, Mesh};
+use crate::fe::model::{ModelError, element_of, placed_nodes};
+use crate::linalg::block_matrix::BlockMatrix;
+use std::sync::Arc;
+use thiserror::Error;
+
+/// Why a body of large strain cannot be assembled.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum FiniteStrainError {
+    /// A cell has no element, an element refuses it, or the thickness is not positive.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A parameter of the law, the density or the damping is out of its range.
+    #[error(transparent)]
+    Material(#[from] MaterialError),
+    /// There is not one rest position per dof.
+    #[error("{found} rest positions were given for {expected} dofs: give x and y of every node")]
+    RestPositions {
+        /// Numbers given.
+        found: usize,
+        /// Numbers needed.
+        expected: usize,
+    },
+}
+
+/// What a body of large strain is assembled from.
+#[derive(Clone, Debug)]
+pub struct FiniteStrainDescription {
+    /// Nodes and cells.
+    pub mesh: Arc<Mesh>,
+    /// Undeformed positions in the world's axes, interleaved (m).
+    pub rest_positions: Vec<f64>,
+    /// Elements that replace the default ones of their node count; their quadrature and shape functions are used.
+    pub elements: Vec<Arc<dyn Element>>,
+    /// The constitutive law.
+    pub law: Arc<dyn Hyperelastic>,
+    /// Density of the undeformed material (kg/m^3).
+    pub density: f64,
+    /// Viscous damping; its stiffness part acts as decay `2 η / dt` of the energy–momentum form, its mass part drags all motion.
+    pub damping: Rayleigh,
+    /// Thickness out of the plane (m).
+    pub thickness: f64,
+}
+
+impl FiniteStrainDescription {
+    /// A body 1 m thick where its mesh is, of a density (kg/m^3), without damping.
+    pub fn new(mesh: Mesh, law: impl Hyperelastic + 'static, density: f64) -> Self {
+        Self {
+            rest_positions: mesh.nodes().iter().flatten().copied().collect(),
+            mesh: Arc::new(mesh),
+            elements: Vec::new(),
+            law: Arc::new(law),
+            density,
+            damping: Rayleigh::NONE,
+            thickness: 1.0,
+        }
+    }
+
+    fn validate(&self) -> Result<(), FiniteStrainError> {
+        self.law.validate()?;
+        if !(self.density > 0.0 && self.density.is_finite()) {
+            let value = self.density;
+            return Err(MaterialError::Density { value }.into());
+        }
+        let is_damping = |value: f64| value >= 0.0 && value.is_finite();
+        let Rayleigh { mass, stiffness } = self.damping;
+        if !is_damping(mass) {
+            return Err(MaterialError::DampingMass { value: mass }.into());
+        }
+        if !is_damping(stiffness) {
+            return Err(MaterialError::DampingStiffness { value: stiffness }.into());
+        }
+        if !(self.thickness.is_finite() && self.thickness > 0.0) {
+            return Err(ModelError::Thickness(self.thickness).into());
+        }
+        let (found, expected) = (self.rest_positions.len(), 2 * self.mesh.n_nodes());
+        if found != expected {
+            return Err(FiniteStrainError::RestPositions { found, expected });
+        }
+        Ok(())
+    }
+}
+
+/// Gradients of deformation at the quadrature points: at the beginning of a step, and at the end last asked for.
+#[derive(Clone, Debug)]
+pub struct Deformation {
+    start: Vec<[f64; 4]>,
+    end: Vec<[f64; 4]>,
+}
+
+impl Deformation {
+    /// Makes the end of the step the beginning of the next.
+    pub fn accept(&mut self) {
+        std::mem::swap(&mut self.start, &mut self.end);
+    }
+
+    /// Quadrature points that are turned inside out at the beginning of the step.
+    pub fn n_inverted(&self) -> usize {
+        let is_inverted = |[xx, xy, yx, yy]: &&[f64; 4]| xx * yy - xy * yx <= 0.0;
+        self.start.iter().filter(is_inverted).count()
+    }
+}
+
+/// The assembled, immutable model of one body at large strain, with lumped masses.
+///
+/// ```
+/// use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel, Form};
+/// use foil2d::fe::material::hyperelastic::StableNeoHookean;
+/// use foil2d::fe::mesh::{CellKind, generate::rectangle};
+///
+/// let mesh = rectangle([1.0, 0.5], [4, 2], CellKind::Tri6)?;
+/// let law = StableNeoHookean::plane_strain(1e5, 0.3);
+/// let model = FiniteStrainModel::assemble(FiniteStrainDescription::new(mesh, law, 1000.0))?;
+///
+/// // Stretched to twice its length: energy, and forces that pull back.
+/// let stretched: Vec<f64> = model.rest_positions().chunks(2).flat_map(|p| [2.0 * p[0], p[1]]).collect();
+/// assert!(model.elastic_energy(&stretched) > 0.0);
+/// let mut deformation = model.deformation(model.rest_positions());
+/// let mut residual = vec![0.0; model.n_dofs()];
+/// model.subtract_force(Form::Equilibrium, &stretched, &mut deformation, &mut residual)?;
+/// assert!(residual[0] > 0.0 && residual[8] < 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FiniteStrainModel {
+    description: FiniteStrainDescription,
+    groups: Vec<CellGroup>,
+    n_points: usize,
+    masses: Vec<f64>,
+    /// The zero matrix with the pattern of the tangent.
+    pattern: BlockMatrix,
+}
+
+impl FiniteStrainModel {
+    /// Lays out cells and matrix, and lumps the mass.
+    ///
+    /// # Errors
+    /// If a parameter is out of its range, a cell has no element, or an element refuses it.
+    pub fn assemble(description: FiniteStrainDescription) -> Result<Self, FiniteStrainError> {
+        description.validate()?;
+        let mesh = &description.mesh;
+        let n_nodes = mesh.n_nodes();
+        let pattern = BlockMatrix::from_cells(
+            n_nodes,
+            mesh.cells()
+                .map(|cell| cell.nodes)
+                .collect::<Vec<_>>()
+                .into_iter(),
+        );
+        let mut model = Self {
+            groups: Vec::new(),
+            n_points: 0,
+            masses: vec![0.0; n_nodes],
+            pattern,
+            description,
+        };
+        let mesh = Arc::clone(&model.description.mesh);
+        for (index, cell) in mesh.cells().enumerate() {
+            model
+                .add_cell(index, &cell)
+                .map_err(FiniteStrainError::Model)?;
+        }
+        for group in &mut model.groups {
+            group.first_point = model.n_points;
+            model.n_points += group.volumes.len();
+        }
+        Ok(model)
+    }
+
+    fn add_cell(&mut self, index: usize, cell: &Cell<'_>) -> Result<(), ModelError> {
+        let wrap = |source: ElementError| ModelError::Element {
+            cell: index,
+            source,
+        };
+        let description = &self.description;
+        let element = element_of(&description.elements, index, cell)?;
+        let element = element.as_ref();
+        let n = cell.nodes.len();
+        let corners = placed_nodes(&description.rest_positions, cell);
+        let (corners, thickness) = (&corners[..n], description.thickness);
+        let mut lumped = [0.0; MAX_NODES];
+        element
+            .lumped_mass(corners, description.density, thickness, &mut lumped[..n])
+            .map_err(wrap)?;
+        for (&node, mass) in cell.nodes.iter().zip(lumped) {
+            self.masses[node] += mass;
+        }
+        let n_points = element.quadrature().len();
+        let group = group_of(&mut self.groups, [n, n_points]);
+        group.cells.push(index);
+        for point in element.quadrature() {
+            let mut gradient = [[0.0; 2]; MAX_NODES];
+            let gradient = &mut gradient[..n];
+            let determinant =
+                physical_gradient(element, corners, point.at, gradient).map_err(wrap)?;
+            group.gradients.extend_from_slice(gradient);
+            group.volumes.push(determinant * point.weight * thickness);
+        }
+        for &row in cell.nodes {
+            // The pattern was built from these cells; numbers of nodes fit into 32 bits.
+            group.nodes.push(row as u32);
+            let places = cell
+                .nodes
+                .iter()
+                .filter_map(|&column| self.pattern.place(row, column));
+            group.places.extend(places.map(|place| place as u32));
+        }
+        Ok(())
+    }
+
+    /// Number of nodes.
+    pub fn n_nodes(&self) -> usize {
+        self.masses.len()
+    }
+
+    /// Number of dofs, two a node.
+    pub fn n_dofs(&self) -> usize {
+        2 * self.n_nodes()
+    }
+
+    /// The mesh, in its own coordinates.
+    pub fn mesh(&self) -> &Mesh {
+        &self.description.mesh
+    }
+
+    /// Undeformed positions in the world's axes, interleaved (m).
+    pub fn rest_positions(&self) -> &[f64] {
+        &self.description.rest_positions
+    }
+
+    /// The constitutive law.
+    pub fn law(&self) -> &dyn Hyperelastic {
+        self.description.law.as_ref()
+    }
+
+    /// Viscous damping.
+    pub fn damping(&self) -> Rayleigh {
+        self.description.damping
+    }
+
+    /// Nodal masses (kg): row sums, or of cells with midside nodes the scaled diagonal.
+    pub fn masses(&self) -> &[f64] {
+        &self.masses
+    }
+
+    /// The zero matrix with the blocks of the tangent.
+    pub fn new_matrix(&self) -> BlockMatrix {
+        self.pattern.clone()
+    }
+
+    /// The deformation at a step that begins at `positions` (m).
+    ///
+    /// # Panics
+    /// If there is not one entry per dof.
+    pub fn deformation(&self, positions: &[f64]) -> Deformation {
+        let mut deformation = Deformation {
+            start: vec![[0.0; 4]; self.n_points],
+            end: vec![[0.0; 4]; self.n_points],
+        };
+        self.begin(positions, &mut deformation);
+        deformation
+    }
+
+    /// Lets a step begin at `positions` (m); until a force is asked for it ends there, too.
+    ///
+    /// # Panics
+    /// If there is not one entry per dof.
+    pub fn begin(&self, positions: &[f64], deformation: &mut Deformation) {
+        self.assert_length(positions);
+        for group in &self.groups {
+            let out = &mut deformation.start[group.points()];
+            with_node_count!(group, deform(positions, out));
+        }
+        deformation.end.copy_from_slice(&deformation.start);
+    }
+
+    /// Subtracts the internal force (N) from `residual`, for a step that ends at `positions` (m), and keeps its deformation for
+    /// [`add_tangent`](Self::add_tangent). Allocates nothing.
+    ///
+    /// # Errors
+    /// [`Inadmissible`] with the first cell where the law has no energy; the residual then is incomplete.
+    ///
+    /// # Panics
+    /// If there is not one entry per dof.
+    pub fn subtract_force(
+        &self,
+        form: Form,
+        positions: &[f64],
+        deformation: &mut Deformation,
+        residual: &mut [f64],
+    ) -> Result<(), Inadmissible> {
+        self.assert_length(positions);
+        self.assert_length(residual);
+        let law = self.law();
+        for group in &self.groups {
+            let start = &deformation.start[group.points()];
+            let end = &mut deformation.end[group.points()];
+            let pair = (start, end);
+            with_node_count!(group, subtract_force(law, form, positions, pair, residual))?;
+        }
+        Ok(())
+    }
+
+    /// Adds `∂f/∂x'` (N/m) at the end last asked for. Allocates nothing.
+    ///
+    /// # Panics
+    /// If the matrix was not made by [`new_matrix`](Self::new_matrix).
+    pub fn add_tangent(
+        &self,
+        form: Form,
+        kind: Linearization,
+        deformation: &Deformation,
+        matrix: &mut BlockMatrix,
+    ) {
+        assert!(
+            matrix.has_pattern_of(&self.pattern),
+            "the tangent of a body fits only its own matrices: make them with `new_matrix`"
+        );
+        let law = self.law();
+        for group in &self.groups {
+            let points = group.points();
+            let pair = (&deformation.start[points.clone()], &deformation.end[points]);
+            with_node_count!(group, add_tangent(law, form, kind, pair, matrix));
+        }
+    }
+
+    /// Stored energy (J) at `positions` (m); not a number where the law has none.
+    ///
+    /// # Panics
+    /// If there is not one entry per dof.
+    pub fn elastic_energy(&self, positions: &[f64]) -> f64 {
+        self.assert_length(positions);
+        let law = self.law();
+        let energies = self
+            .groups
+            .iter()
+            .map(|group| with_node_count!(group, energy(law, positions)));
+        energies.sum()
+    }
+
+    fn assert_length(&self, dofs: &[f64]) {
+        assert!(
+            dofs.len() == self.n_dofs(),
+            "{} numbers were given for {} dofs",
+            dofs.len(),
+            self.n_dofs()
+        );
+    }
+}
+
+fn group_of(groups: &mut Vec<CellGroup>, [n_nodes, n_points]: [usize; 2]) -> &mut CellGroup {
+    let is_it = |group: &CellGroup| group.n_nodes == n_nodes && group.n_points == n_points;
+    let at = groups.iter().position(is_it).unwrap_or(groups.len());
+    if at == groups.len() {
+        groups.push(CellGroup {
+            n_nodes,
+            n_points,
+            cells: Vec::new(),
+            nodes: Vec::new(),
+            gradients: Vec::new(),
+            volumes: Vec::new(),
+            places: Vec::new(),
+            first_point: 0,
+        });
+    }
+    &mut groups[at]
+}

@@ -1,0 +1,125 @@
+//! Isotropic laws for large strains in the plane: `W(t, J)` with `t = |F|²` and `J = det F`.
+//!
+//! `F = dx/dX` is the gradient of deformation in the plane; out of it nothing stretches (plane strain). Every isotropic
+//! law is a function of these two invariants, and its stress is
+//!
+//! ```text
+//! P = dW/dF = 2 W_t F + W_J cof F,    cof F = dJ/dF = [F_yy, -F_yx; -F_xy, F_xx]
+//! ```
+//!
+//! so that it is indifferent to rotations by its form: `P(Q F) = Q P(F)`. `J` has a sign, by which a law knows material that is
+//! turned inside out; one of `C = FᵀF` does not.
+//!
+//! # The conserving pair
+//!
+//! Both invariants are quadratic in `F`, so between two states with the mean `F½ = (F + F')/2`
+//!
+//! ```text
+//! t' - t = 2 F½ : (F' - F),    J' - J = cof F½ : (F' - F)          (exactly)
+//! ```
+//!
+//! and a stress `P = 2 a F½ + b cof F½` with `a (t' - t) + b (J' - J) = W' - W` does exactly the work that the energy rises by,
+//! while `P F½ᵀ` is symmetric, so that it turns nothing. [`Hyperelastic::conserving_pair`] gives `(a, b)` in closed form,
+//! without quotients of differences that vanish together.
+//!
+//! | law | for what |
+//! |---|---|
+//! | [`StableNeoHookean`] | what is soft or crushed: recovers from being turned inside out |
+//! | [`Corotated`] | what is stiff and bends far |
+//! | [`NeoHookean`] | where `J > 0` must hold: the energy has a barrier there |
+//! | [`StVenantKirchhoff`] | comparisons: it softens when compressed below `1/√3` and stays inverted |
+//!
+//! Implementers are tested by [`conformance::check_law`].
+
+pub mod conformance;
+mod constants;
+mod corotated;
+mod neo_hookean;
+mod quotient;
+mod st_venant_kirchhoff;
+mod stable_neo_hookean;
+
+pub use constants::ElasticConstants;
+pub use corotated::Corotated;
+pub use neo_hookean::NeoHookean;
+pub use st_venant_kirchhoff::StVenantKirchhoff;
+pub use stable_neo_hookean::StableNeoHookean;
+
+use super::MaterialError;
+use std::fmt::Debug;
+
+/// The two invariants of a gradient of deformation in the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Invariants {
+    /// `t = |F|² = tr FᵀF` (-), 2 at rest.
+    pub t: f64,
+    /// `J = det F` (-), 1 at rest; negative where the material is turned inside out.
+    pub j: f64,
+}
+
+impl Invariants {
+    /// Those of the undeformed material.
+    pub const REST: Self = Self { t: 2.0, j: 1.0 };
+
+    /// Those of a gradient `[F_xx, F_xy, F_yx, F_yy]` (-).
+    #[inline]
+    pub fn of(gradient: [f64; 4]) -> Self {
+        let [xx, xy, yx, yy] = gradient;
+        Self {
+            t: xx * xx + xy * xy + yx * yx + yy * yy,
+            j: xx * yy - xy * yx,
+        }
+    }
+
+    /// The mean of both invariants.
+    #[inline]
+    pub fn mean(self, other: Self) -> Self {
+        Self {
+            t: 0.5 * (self.t + other.t),
+            j: 0.5 * (self.j + other.j),
+        }
+    }
+}
+
+/// An isotropic law of stored energy `W(t, J)` in plane strain.
+pub trait Hyperelastic: Send + Sync + Debug {
+    /// The name used in messages.
+    fn name(&self) -> &'static str;
+
+    /// The elastic constants at rest, which are those of linear elasticity.
+    fn constants(&self) -> ElasticConstants;
+
+    /// The stored energy `W` per undeformed volume (J/m^3), zero at rest.
+    fn energy_density(&self, at: Invariants) -> f64;
+
+    /// `[W_t, W_J]` (Pa).
+    fn gradient(&self, at: Invariants) -> [f64; 2];
+
+    /// `[W_tt, W_tJ, W_JJ]` (Pa).
+    fn hessian(&self, at: Invariants) -> [f64; 3];
+
+    /// The pair `(a, b)` (Pa) with `a (t' - t) + b (J' - J) = W' - W`, to rounding; the gradient where both states are one.
+    ///
+    /// Symmetric in its arguments.
+    fn conserving_pair(&self, from: Invariants, to: Invariants) -> [f64; 2];
+
+    /// Whether the law has an energy there.
+    fn admits(&self, at: Invariants) -> bool {
+        let _ = at;
+        true
+    }
+
+    /// Whether the parameters make sense; called once, when a body is assembled.
+    ///
+    /// # Errors
+    /// The first parameter out of its range, with its value and the cure.
+    fn validate(&self) -> Result<(), MaterialError> {
+        self.constants().validate()
+    }
+}
+
+/// The nominal stresses (Pa) along the principal axes of a material of principal stretches `σ` (-), one of which may be negative.
+pub fn principal_stress(law: &dyn Hyperelastic, [first, second]: [f64; 2]) -> [f64; 2] {
+    let [a, b] = law.gradient(Invariants::of([first, 0.0, 0.0, second]));
+    [2.0 * a * first + b * second, 2.0 * a * second + b * first]
+}

@@ -1,0 +1,88 @@
+//! The logarithmic neo-Hookean law: `W = μ/2 (t - 2) - μ ln J + λ/2 ln² J`.
+
+use super::quotient::slope_of_ln;
+use super::{ElasticConstants, Hyperelastic, Invariants};
+use crate::math::ln;
+
+/// `W = μ/2 (t - 2) - μ ln J + λ/2 ln² J`, for `J > 0` only.
+///
+/// The energy grows beyond bounds as material is crushed to nothing, so no solution turns it inside out; a step that would is
+/// not found, and has to be shortened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub struct NeoHookean {
+    constants: ElasticConstants,
+}
+
+impl NeoHookean {
+    /// The law in plane strain with Young's modulus `young` (Pa) and Poisson's ratio `poisson` (-) at rest.
+    pub fn plane_strain(young: f64, poisson: f64) -> Self {
+        Self {
+            constants: ElasticConstants::new(young, poisson),
+        }
+    }
+}
+
+impl Hyperelastic for NeoHookean {
+    fn name(&self) -> &'static str {
+        "neo-Hookean"
+    }
+
+    fn constants(&self) -> ElasticConstants {
+        self.constants
+    }
+
+    fn energy_density(&self, Invariants { t, j }: Invariants) -> f64 {
+        let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
+        let log = ln(j);
+        0.5 * mu * (t - 2.0) - mu * log + 0.5 * lambda * log * log
+    }
+
+    fn gradient(&self, Invariants { j, .. }: Invariants) -> [f64; 2] {
+        let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
+        [0.5 * mu, (lambda * ln(j) - mu) / j]
+    }
+
+    fn hessian(&self, Invariants { j, .. }: Invariants) -> [f64; 3] {
+        let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
+        [0.0, 0.0, (mu + lambda * (1.0 - ln(j))) / (j * j)]
+    }
+
+    /// `b = (Δ ln J / ΔJ) (-μ + λ/2 ln JJ')`.
+    fn conserving_pair(&self, from: Invariants, to: Invariants) -> [f64; 2] {
+        let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
+        let slope = slope_of_ln(from.j, to.j);
+        [0.5 * mu, slope * (0.5 * lambda * ln(from.j * to.j) - mu)]
+    }
+
+    fn admits(&self, at: Invariants) -> bool {
+        at.j > 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{conformance::check_law, principal_stress};
+    use super::*;
+
+    #[test]
+    fn the_law_conforms_over_the_range_of_poisson_ratios() {
+        for nu in [-0.4, 0.0, 0.3, 0.49] {
+            let law = NeoHookean::plane_strain(1e6, nu);
+            assert_eq!(check_law(&law), Ok(()), "{nu}");
+        }
+    }
+
+    /// Source: benchmark B45, E = 1, ν = .3, plane strain, the nominal stress along the pull with free sides.
+    #[test]
+    fn uniaxial_stress_has_the_digits_of_the_closed_solution() {
+        let law = NeoHookean::plane_strain(1.0, 0.3);
+        let [stress, side] = principal_stress(&law, [0.5, 1.288304972]);
+        assert!((stress + 1.084407463).abs() < 1e-9, "{stress}");
+        // The digits of the side's stretch, times a modulus of some 1.3.
+        assert!(side.abs() < 1e-9, "{side:e}");
+    }
+}

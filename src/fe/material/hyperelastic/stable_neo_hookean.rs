@@ -1,0 +1,108 @@
+//! The stable neo-Hookean law of Smith, de Goes and Kim (2018), with constants of its own for the plane.
+
+use super::quotient::slope_of_ln;
+use super::{ElasticConstants, Hyperelastic, Invariants};
+use crate::math::ln;
+
+/// `W = m/2 (t - 2) + l/2 (J - α)² - m/2 ln(t + 1)`, less its value at rest.
+///
+/// It has an energy and a stress at every `F`, and pushes material that is turned inside out back. In the plane,
+/// with Lamé's constants `λ`, `μ` at rest,
+///
+/// ```text
+/// m = 3/2 μ,    l = λ + 2/3 μ,    α = 1 + 2 m / (3 l)
+/// ```
+///
+/// make rest free of stress and the moduli there Hooke's; the constants of three dimensions do not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub struct StableNeoHookean {
+    constants: ElasticConstants,
+    /// `m` (Pa).
+    shear: f64,
+    /// `l` (Pa).
+    volumetric: f64,
+    /// `α` (-), where the volumetric term has its least.
+    rest_volume: f64,
+}
+
+impl StableNeoHookean {
+    /// The law in plane strain with Young's modulus `young` (Pa) and Poisson's ratio `poisson` (-) at rest.
+    pub fn plane_strain(young: f64, poisson: f64) -> Self {
+        let constants = ElasticConstants::new(young, poisson);
+        let shear = 1.5 * constants.mu();
+        let volumetric = constants.lambda() + 2.0 / 3.0 * constants.mu();
+        Self {
+            constants,
+            shear,
+            volumetric,
+            rest_volume: 1.0 + 2.0 * shear / (3.0 * volumetric),
+        }
+    }
+}
+
+impl Hyperelastic for StableNeoHookean {
+    fn name(&self) -> &'static str {
+        "stable neo-Hookean"
+    }
+
+    fn constants(&self) -> ElasticConstants {
+        self.constants
+    }
+
+    fn energy_density(&self, Invariants { t, j }: Invariants) -> f64 {
+        // Differences from rest: l/2 ((J - α)² - (1 - α)²), and ln(t + 1) - ln 3.
+        let volume = (j - 1.0) * (j + 1.0 - 2.0 * self.rest_volume);
+        let distortion = (t - 2.0) - ln((t + 1.0) / 3.0);
+        0.5 * self.volumetric * volume + 0.5 * self.shear * distortion
+    }
+
+    fn gradient(&self, Invariants { t, j }: Invariants) -> [f64; 2] {
+        [
+            0.5 * self.shear * t / (t + 1.0),
+            self.volumetric * (j - self.rest_volume),
+        ]
+    }
+
+    fn hessian(&self, Invariants { t, .. }: Invariants) -> [f64; 3] {
+        let beyond = t + 1.0;
+        [0.5 * self.shear / (beyond * beyond), 0.0, self.volumetric]
+    }
+
+    /// `a = m/2 (1 - Δ ln(t + 1)/Δt)`, `b = l (J̄ - α)`.
+    fn conserving_pair(&self, from: Invariants, to: Invariants) -> [f64; 2] {
+        let slope = slope_of_ln(from.t + 1.0, to.t + 1.0);
+        let j = 0.5 * (from.j + to.j);
+        [
+            0.5 * self.shear * (1.0 - slope),
+            self.volumetric * (j - self.rest_volume),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{conformance::check_law, principal_stress};
+    use super::*;
+
+    #[test]
+    fn the_law_conforms_over_the_range_of_poisson_ratios() {
+        for nu in [-0.4, 0.0, 0.3, 0.49] {
+            let law = StableNeoHookean::plane_strain(1e6, nu);
+            assert_eq!(check_law(&law), Ok(()), "{nu}");
+        }
+    }
+
+    /// A stretch through zero to the mirror image meets resistance all the way, and is pushed back from there.
+    #[test]
+    fn material_turned_inside_out_is_pushed_back() {
+        let law = StableNeoHookean::plane_strain(1e5, 0.3);
+        for stretch in [0.5, 0.1, 0.0, -0.1, -0.5, -1.0] {
+            let [stress, _] = principal_stress(&law, [stretch, 1.0]);
+            assert!(stress < 0.0, "{stretch}: {stress}");
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What can stop a step or an equilibrium of a large body.
+
+use crate::fe::finite_strain::Inadmissible;
+use crate::linalg::cholesky::CholeskyError;
+use thiserror::Error;
+
+/// Why a step or an equilibrium was not found. Motion and positions are as they were before.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum LargeError {
+    /// The step length is not a positive finite number.
+    #[error("the step is {0} s: give a positive finite length")]
+    StepLength(f64),
+    /// A setting is out of its range.
+    #[error("{name} is {value}: give a value in {range}")]
+    Setting {
+        /// Which setting.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// Where it may be.
+        range: &'static str,
+    },
+    /// A list has the wrong length.
+    #[error("{name} has {found} entries, {expected} are needed")]
+    Length {
+        /// Which list.
+        name: &'static str,
+        /// Entries given.
+        found: usize,
+        /// Entries needed.
+        expected: usize,
+    },
+    /// A number that was given is not finite.
+    #[error("{name} is not finite at node {node}")]
+    NotFinite {
+        /// Which list.
+        name: &'static str,
+        /// The first such node.
+        node: usize,
+    },
+    /// The iterations do not reach the tolerance.
+    #[error(
+        "{iterations} iterations left a residual of {residual:e} N at node {node}, where {limit:e} N was asked, also in smaller parts: \
+         shorten the step, allow more cutbacks, or look for crushed cells near that node"
+    )]
+    NotConverged {
+        /// Iterations of the last attempt.
+        iterations: usize,
+        /// Node of the largest residual.
+        node: usize,
+        /// That residual (N).
+        residual: f64,
+        /// The residual that would do (N).
+        limit: f64,
+    },
+    /// No cut of an increment leads to a state with a finite residual that does not grow.
+    #[error(
+        "no part of an increment keeps the residual of {residual:e} N from growing beyond bounds, also in smaller parts; it is largest \
+         at node {node}: shorten the step, or look for crushed cells near that node"
+    )]
+    Diverged {
+        /// Node of the largest residual.
+        node: usize,
+        /// That residual (N), before the increment.
+        residual: f64,
+    },
+    /// A cell is where its law has no energy.
+    #[error(transparent)]
+    Inadmissible(#[from] Inadmissible),
+    /// The matrix has no factor, not even with its definite part.
+    #[error(transparent)]
+    Factor(#[from] CholeskyError),
+    /// The iterations of all parts of a step have used up what was allowed.
+    #[error(
+        "a step took {iterations} iterations without an end: shorten it, or allow more in `LargeSettings::budget`; the last part failed at \
+         node {node}"
+    )]
+    Budget {
+        /// Iterations of all parts.
+        iterations: usize,
+        /// Node of the largest residual seen last.
+        node: usize,
+    },
+}

@@ -1,0 +1,42 @@
+//! Bodies that bend, stretch and fold: steps and equilibria of a [`FiniteStrainModel`] in world coordinates.
+//!
+//! Such bodies have **no contact yet**, and no part in a [`FlexPipeline`](crate::pipeline::FlexPipeline): they are stepped by
+//! themselves, under nodal loads and with held dofs. For contact there are the bodies of small strain in [`body`](crate::body).
+//!
+//! A step is the generalized Beta-m method with m = 1 and `β0 = 1/2`, with the conserving stress between both ends:
+//!
+//! ```text
+//! x' = x + dt/2 (v + v'),    M (v' - v)/dt + α M (x' - x)/dt + Σ ∫ P(F, F') : ∇N dV = f
+//! ```
+//!
+//! State is `(x, v)` alone. Without decay, energy and angular momentum of a free body are those it began with, to the tolerance of
+//! the iterations; with decay vibrations die and rotations go on. For small strains that is the trapezoidal rule.
+//!
+//! | file | owns |
+//! |---|---|
+//! | `motion` | positions and velocities, their energy and momenta |
+//! | `settings` | tolerance, decay, how hard to try |
+//! | `equation` | the residual of a step or of an equilibrium |
+//! | `newton` | the iteration on one factor, renewed when it converges slowly |
+//! | `turn` | the mean rotation of a body, by which a factor is turned |
+//! | `stepper` | [`LargeStepper`]: a step, in halves where it is not found |
+//! | `equilibrium` | [`LoadStepper`]: equilibrium under loads that grow, in smaller increments where it is not found |
+//! | `error` | [`LargeError`] |
+
+mod equation;
+mod equilibrium;
+mod error;
+mod motion;
+mod newton;
+mod settings;
+mod stepper;
+mod turn;
+
+pub use equilibrium::{LoadCase, LoadReport, LoadStepper};
+pub use error::LargeError;
+pub use motion::WorldMotion;
+pub use settings::LargeSettings;
+pub use stepper::{LargeStepper, StepWork};
+
+#[cfg(doc)]
+use crate::fe::finite_strain::FiniteStrainModel;

@@ -1,0 +1,12 @@
+//! Bodies of large deformation: forces and tangents, equilibria with known answers, steps that conserve, bodies that are crushed.
+
+#[path = "large/dynamics.rs"]
+mod dynamics;
+#[path = "large/forces.rs"]
+mod forces;
+#[path = "large/robustness.rs"]
+mod robustness;
+#[path = "large/statics.rs"]
+mod statics;
+#[path = "large/support.rs"]
+mod support;

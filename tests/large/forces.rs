@@ -1,0 +1,173 @@
+//! Internal forces and tangents of whole bodies.
+
+use super::support::{KINDS, deformed, describe, dot, largest, laws, warped_plate};
+use foil2d::fe::finite_strain::{FiniteStrainModel, Form, Linearization};
+use foil2d::fe::mesh::CellKind;
+use std::sync::Arc;
+
+const STRETCHED: [f64; 4] = [1.3, 0.4, -0.2, 0.8];
+
+/// The internal force between two states.
+fn force(model: &FiniteStrainModel, form: Form, start: &[f64], end: &[f64]) -> Vec<f64> {
+    let mut deformation = model.deformation(start);
+    let mut force = vec![0.0; model.n_dofs()];
+    model
+        .subtract_force(form, end, &mut deformation, &mut force)
+        .expect("the states are admissible");
+    force.iter_mut().for_each(|value| *value = -*value);
+    force
+}
+
+/// Force · (x' - x) is the change of energy, to rounding, for any step; forces sum up to nothing and turn nothing.
+#[test]
+fn the_conserving_force_does_the_work_that_the_energy_rises_by() {
+    for kind in KINDS {
+        for law in laws(1e5, 0.3) {
+            let model = warped_plate(kind, law);
+            let start = deformed(&model, [1.0, 0.1, -0.1, 0.9], 0.01);
+            let end = deformed(&model, STRETCHED, -0.02);
+            let force = force(&model, Form::EnergyMomentum { decay: 0.0 }, &start, &end);
+            let name = model.law().name();
+
+            let way: Vec<f64> = end
+                .iter()
+                .zip(&start)
+                .map(|(end, start)| end - start)
+                .collect();
+            let rise = model.elastic_energy(&end) - model.elastic_energy(&start);
+            let error = (dot(&force, &way) - rise) / rise;
+            assert!(error.abs() < 1e-13, "{kind:?} {name}: {error:e}");
+
+            let (mut sum, mut moment) = ([0.0; 2], 0.0);
+            for (dof, pair) in force.chunks_exact(2).enumerate() {
+                let x = 0.5 * (start[2 * dof] + end[2 * dof]);
+                let y = 0.5 * (start[2 * dof + 1] + end[2 * dof + 1]);
+                sum = [sum[0] + pair[0], sum[1] + pair[1]];
+                moment += x * pair[1] - y * pair[0];
+            }
+            let size = largest(&force);
+            assert!(largest(&sum) < 1e-13 * size, "{kind:?} {name}: {sum:?}");
+            assert!(moment.abs() < 1e-13 * size, "{kind:?} {name}: {moment:e}");
+        }
+    }
+}
+
+/// Along three directions against central differences over 1e-6 m: truncation 1e-11, rounding 1e-9 of the stiffness.
+#[test]
+fn the_tangent_is_the_derivative_of_the_force() {
+    for kind in KINDS {
+        for law in laws(1e5, 0.3) {
+            let model = warped_plate(kind, law);
+            let state = deformed(&model, STRETCHED, 0.01);
+            for form in [Form::Equilibrium, Form::EnergyMomentum { decay: 0.2 }] {
+                let error = error_of_tangent(&model, form, &state);
+                let name = model.law().name();
+                assert!(error < 1e-8, "{kind:?} {name} {form:?}: {error:e}");
+            }
+        }
+    }
+}
+
+fn error_of_tangent(model: &FiniteStrainModel, form: Form, state: &[f64]) -> f64 {
+    let mut deformation = model.deformation(state);
+    let mut matrix = model.new_matrix();
+    model
+        .subtract_force(
+            form,
+            state,
+            &mut deformation,
+            &mut vec![0.0; model.n_dofs()],
+        )
+        .expect("the state is admissible");
+    model.add_tangent(form, Linearization::Consistent, &deformation, &mut matrix);
+    let mut worst: f64 = 0.0;
+    for direction in 0..3 {
+        let way: Vec<f64> = (0..model.n_dofs())
+            .map(|dof| (1.0 + dof as f64 * (1.7 + direction as f64)).sin())
+            .collect();
+        let moved = |step: f64| -> Vec<f64> {
+            state
+                .iter()
+                .zip(&way)
+                .map(|(x, way)| x + step * way)
+                .collect()
+        };
+        let [above, below] = [1e-6, -1e-6].map(|step| force(model, form, state, &moved(step)));
+        let mut product = vec![0.0; model.n_dofs()];
+        matrix.multiply(&way, &mut product);
+        for ((above, below), product) in above.iter().zip(&below).zip(&product) {
+            worst = worst.max(((above - below) / 2e-6 - product).abs());
+        }
+        worst /= largest(&product).max(1.0);
+    }
+    worst
+}
+
+/// Patch test: under one and the same `F` in irregular and curved cells no node inside feels a force.
+#[test]
+fn a_homogeneous_state_is_in_equilibrium_inside() {
+    for kind in KINDS {
+        for law in laws(1e5, 0.3) {
+            let model = warped_plate(kind, law);
+            let state = deformed(&model, STRETCHED, 0.0);
+            let force = force(&model, Form::Equilibrium, &state, &state);
+            let boundary = model.mesh().boundary().nodes();
+            let inner = (0..model.n_nodes()).filter(|node| !boundary.contains(node));
+            let inside = inner.flat_map(|node| [force[2 * node], force[2 * node + 1]]);
+            let inside: Vec<f64> = inside.collect();
+            assert!(
+                !inside.is_empty() && largest(&inside) < 1e-12 * largest(&force),
+                "{kind:?}"
+            );
+        }
+    }
+}
+
+/// A force that is taken from differences of coordinates is the same a thousand kilometres away. Coordinates are multiples of 1/64, which
+/// are exact there, too.
+#[test]
+fn forces_lose_no_digits_far_from_the_origin() {
+    let law = Arc::clone(&laws(1e9, 0.3)[0]);
+    let model = foil2d::fe::finite_strain::FiniteStrainModel::assemble(describe(
+        [1.0, 0.5],
+        [4, 2],
+        CellKind::Tri6,
+        law,
+    ))
+    .expect("the plate is a good body");
+    let state: Vec<f64> = deformed(&model, STRETCHED, 0.0)
+        .iter()
+        .map(|x| (64.0 * x).round() / 64.0)
+        .collect();
+    let away: Vec<f64> = state.iter().map(|x| x + 1_048_576.0).collect();
+    let form = Form::Equilibrium;
+    let near = force(&model, form, &state, &state);
+    let far = force(&model, form, &away, &away);
+    let error = near.iter().zip(&far).map(|(near, far)| near - far);
+    let error: Vec<f64> = error.collect();
+    assert!(largest(&error) == 0.0, "{:e}", largest(&error));
+}
+
+/// What no body can be made of is refused by name, with the number.
+#[test]
+fn parameters_out_of_range_are_refused() {
+    let law = |young: f64, poisson: f64| Arc::clone(&laws(young, poisson)[3]);
+    let refused = |change: &dyn Fn(&mut foil2d::fe::finite_strain::FiniteStrainDescription)| {
+        let mut description = describe([1.0, 1.0], [1, 1], CellKind::Tri3, law(1e5, 0.3));
+        change(&mut description);
+        FiniteStrainModel::assemble(description)
+            .err()
+            .map(|error| error.to_string())
+            .unwrap_or_default()
+    };
+    assert!(refused(&|_| ()).is_empty());
+    assert!(refused(&|d| d.density = 0.0).contains("density is 0"));
+    assert!(refused(&|d| d.thickness = -1.0).contains("thickness is -1"));
+    assert!(refused(&|d| d.damping.mass = -2.0).contains("-2 1/s"));
+    assert!(refused(&|d| d.damping.stiffness = f64::NAN).contains("NaN s"));
+    assert!(refused(&|d| d.law = law(1e5, 0.5)).contains("Poisson's ratio is 0.5"));
+    assert!(refused(&|d| d.law = law(-1.0, 0.3)).contains("Young's modulus is -1"));
+    assert!(refused(&|d| d.rest_positions.truncate(3)).contains("3 rest positions"));
+    assert!(refused(&|d| d.rest_positions[0] = 2.0).contains("cell 0"));
+    assert!(refused(&|d| d.rest_positions[0] = f64::NAN).contains("cell 0"));
+}
