@@ -300,8 +300,7 @@ impl ActiveContact {
     /// Follows gap and slip from the base, from where the points have moved `onward`; returns how far the laws are from holding (m).
     fn measure_from(&mut self, base: AtBase, onward: Vec2, friction: f64) -> f64 {
         let Kinematics { normal, .. } = self.kinematics;
-        let gap = base.gap + normal.dot(&onward) - self.allowance;
-        self.kinematics.gap = gap;
+        self.kinematics.gap = base.gap + normal.dot(&onward) - self.allowance;
         self.slip = self.kinematics.tangent().dot(&(base.moved + onward));
         self.shortfall(friction)
     }
