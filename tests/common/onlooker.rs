@@ -249,6 +249,12 @@ impl Onlooker {
         times.get(times.len() / 2).copied().unwrap_or(f64::INFINITY)
     }
 
+    /// Least time of a step from `first` on (s): what other work on the machine adds to most of them, it adds not to all.
+    pub fn least_from(&self, first: usize) -> f64 {
+        let times = self.times.get(first..).unwrap_or_default().iter();
+        times.copied().fold(f64::INFINITY, f64::min)
+    }
+
     /// What holds of every scene: all steps were taken and solved, and nothing was in anything.
     pub fn check(&self, findings: &mut Findings, scene: &str) {
         findings.check(self.error.is_none(), || {

@@ -48,7 +48,7 @@ fn slabs(findings: &mut Findings, numbers: &[usize]) -> f64 {
         // A step is 17 ms of the world's time: one that takes a second is no step of a game.
         findings.check(worst < 1.0, || format!("{n} boxes: a step of {worst:.2} s"));
     }
-    seen[seen.len() - 1].1.median_from(60) / seen[0].1.median_from(60)
+    seen[seen.len() - 1].1.least_from(60) / seen[0].1.least_from(60)
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn a_soft_block_comes_to_rest_on_a_pile_of_sixty_boxes() {
     findings.report();
 }
 
-/// Middle time of a step of so many separate blocks at rest on a floor (s).
+/// Least time of a step of so many separate blocks at rest on a floor (s).
 fn separate(n: usize) -> f64 {
     let mut scene = Scene::new(1.0 / 60.0);
     scene.fixed(ColliderBuilder::cuboid(500.0, 0.5).translation(vec2(0.0, -0.5)));
@@ -132,7 +132,7 @@ fn separate(n: usize) -> f64 {
     }
     let mut onlooker = Onlooker::default();
     onlooker.watch(&mut scene, 60, |_| ());
-    onlooker.median_from(30)
+    onlooker.least_from(30)
 }
 
 #[test]
