@@ -13,6 +13,7 @@
 use super::Island;
 use crate::kkt::delassus::compliance;
 use crate::kkt::island::SolveSettings;
+use crate::kkt::joint_system::Rows;
 use crate::kkt::position::ROUND_OFF;
 use crate::kkt::summary::IslandSummary;
 use crate::math::Mat2;
@@ -43,6 +44,10 @@ impl Island {
             if solved.is_ok() && !self.contradicts(settings) {
                 break true;
             }
+            // Joints that turn far contradict each other less in a shorter step.
+            if self.strains_joints(settings) {
+                break false;
+            }
             let Some(softness) = softer.next() else {
                 break false;
             };
@@ -52,6 +57,18 @@ impl Island {
         };
         self.before_solve = before;
         is_consistent
+    }
+
+    /// Whether some joint is in that contradiction.
+    fn strains_joints(&self, settings: &SolveSettings) -> bool {
+        let extent = self.gap_tolerance(settings) / ROUND_OFF;
+        (0..self.ties.len()).any(|row| {
+            let tie = &self.ties[row];
+            let size = if tie.row.measure.is_turn() { 1.0 } else { extent };
+            let own = self.joint_mobility(row, Response::Position, Rows::Kept);
+            let moved = settings.b0 * tie.multiplier.abs() * own;
+            moved.is_nan() || moved > FARTHEST * size
+        })
     }
 
     /// Whether some multiplier would move its contact by far more than any motion of the island: then rows contradict each other, and forces
