@@ -25,6 +25,16 @@ const ALWAYS_DENSE: usize = 24;
 /// Factorizations that a sparse solve takes more often than the dense one takes its own: what makes them equal in the benches.
 const MORE_OFTEN: f64 = 4.0;
 
+/// Share of its own mobility that every row gives way by to the change of its force (-): `w = W p + b + s D (p - p₀)`, `D` the diagonal of `W`.
+///
+/// Where a body fits between two that nothing moves, forces of any size press it and change nothing; an interior point goes to the middle of all
+/// of them. With this they change by what rows disagree about, over `s D`. What is left out of a row vanishes as the forces come to rest.
+const YIELDING: f64 = 1e-5;
+
+/// Share of a normal force, or of a joint's, that is not kept by that (-): what rows disagree about step after step, `d`, ends in a force of
+/// `d / (s κ D)`, and what carries `p` rests `s κ D p` nearer. Friction keeps all, as it would creep.
+const FORGETTING: f64 = 1e-2;
+
 /// What stands behind a block's nodes, to tell when the pattern changes.
 #[derive(Clone, Debug)]
 enum Shape {
@@ -169,15 +179,17 @@ impl Island {
                 }
                 None => scale.map(|own| softness * own),
             };
-            let give = match asked.of {
-                // Where rows contradict each other.
-                Response::Position => [0, 1].map(|k| give[k] + self.softness * scale[k]),
-                _ => give,
-            };
             // Gaps are measured where the forces that act already have made it yield.
-            let given = match asked.of {
-                Response::Position => [0, 1].map(|k| give[k] * contact.multiplier[k]),
-                _ => [0.0; 2],
+            let (give, given) = match asked.of {
+                Response::Position => {
+                    let yielding = scale.map(|own| self.softness.max(YIELDING) * own);
+                    let kept = [yielding[0] * (1.0 - FORGETTING), yielding[1]];
+                    (
+                        [0, 1].map(|k| give[k] + yielding[k]),
+                        [0, 1].map(|k| (give[k] + kept[k]) * contact.multiplier[k]),
+                    )
+                }
+                _ => (give, [0.0; 2]),
             };
             let friction = match self.kinds.get(row + 1) {
                 Some(RowKind::Friction { coefficient, .. }) if has_friction => *coefficient,
@@ -231,6 +243,10 @@ impl Island {
                 sparse.joint_grip(&self.blocks, grip, direction, is_turn);
             }
             let scale = self.joint_mobility(self.joint_rows[slot], asked.of, asked.which);
+            let yielding = match asked.of {
+                Response::Position => YIELDING * scale,
+                _ => 0.0,
+            };
             sparse.rows.push(ConeRow {
                 entries: (first, sparse.entries.len() as u32),
                 law: match self.kinds[place] {
@@ -238,9 +254,14 @@ impl Island {
                     RowKind::Box { low, high } => ConeLaw::Box { low, high },
                     _ => ConeLaw::Unilateral,
                 },
-                free: [self.free[place], 0.0],
+                free: [
+                    self.free[place] - (1.0 - FORGETTING) * yielding * tie.multiplier,
+                    0.0,
+                ],
                 give: [
-                    self.joint_gives[slot] + (1.0 / tie.share_of(asked.of) - 1.0) * scale,
+                    self.joint_gives[slot]
+                        + yielding
+                        + (1.0 / tie.share_of(asked.of) - 1.0) * scale,
                     0.0,
                 ],
                 acted: [0.0; 2],
@@ -332,7 +353,22 @@ impl Island {
         solver.settings.slip_tolerance = 1e-4;
         solver.settings.tolerance = 1e-7;
         solver.scales_start = asked.of == Response::Velocity;
+        let most = |m: &[[f64; 2]]| m.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs()));
+        let before = most(multipliers);
         let outcome = solver.solve(&problem, multipliers, slip, answer)?;
+        if std::env::var("DBG").is_ok() {
+            eprintln!(
+                "  sparse {:?} rows {} before {before:.2e} after {:.2e} ip {} res {:.1e} dil {:.1e} solved {} fact {}",
+                asked.of,
+                problem.rows.len(),
+                most(multipliers),
+                outcome.used_interior_point,
+                outcome.residual,
+                outcome.dilation,
+                outcome.is_solved,
+                outcome.n_factorizations
+            );
+        }
         let n = self.kinds.len();
         self.multipliers.fill(0.0);
         self.statuses.clear();

@@ -64,7 +64,11 @@ impl Island {
         let extent = self.gap_tolerance(settings) / ROUND_OFF;
         (0..self.ties.len()).any(|row| {
             let tie = &self.ties[row];
-            let size = if tie.row.measure.is_turn() { 1.0 } else { extent };
+            let size = if tie.row.measure.is_turn() {
+                1.0
+            } else {
+                extent
+            };
             let own = self.joint_mobility(row, Response::Position, Rows::Kept);
             let moved = settings.b0 * tie.multiplier.abs() * own;
             moved.is_nan() || moved > FARTHEST * size

@@ -238,9 +238,11 @@ impl Island {
                 let friction = law.friction;
                 let mut contact =
                     ActiveContact::new(candidate, kinematics, remembered, friction, &self.blocks);
-                if listing.memory.is_some() && base.gap < -listing.slop {
-                    contact.allowance = listing.kept * base.gap;
-                }
+                contact.allowance = if listing.memory.is_some() && base.gap < -listing.slop {
+                    listing.kept * base.gap
+                } else {
+                    self.late_allowance(&kinematics, &base, listing)
+                };
                 self.fresh.push(self.contacts.len());
                 contact
             }
@@ -248,6 +250,23 @@ impl Island {
         contact.base = Some(base);
         contact.is_lost = false;
         self.contacts.push(contact);
+    }
+
+    /// What a row that comes near within the step leaves of an overlap that the step began with (m), zero or less: as much as its bodies, who
+    /// part by and by, and no more than there was along the row.
+    fn late_allowance(&self, row: &Kinematics, base: &AtBase, listing: &Listing<'_>) -> f64 {
+        let began = base.gap - row.normal.dot(&base.moved);
+        if began >= -listing.slop {
+            return 0.0;
+        }
+        let is_of_both = |contact: &&ActiveContact| {
+            contact
+                .base
+                .is_some_and(|other| other.near.pair == base.near.pair)
+        };
+        let others = self.contacts_before.iter().filter(is_of_both);
+        let left = others.fold(0.0, |least, contact| f64::min(least, contact.allowance));
+        left.max(listing.kept * began)
     }
 
     /// Lets vertices go that need not be held together.
