@@ -238,11 +238,11 @@ impl Island {
                 let friction = law.friction;
                 let mut contact =
                     ActiveContact::new(candidate, kinematics, remembered, friction, &self.blocks);
-                contact.allowance = if listing.memory.is_some() && base.gap < -listing.slop {
-                    listing.kept * base.gap
-                } else {
-                    self.late_allowance(&kinematics, &base, listing)
-                };
+                if listing.memory.is_some() && base.gap < -listing.slop {
+                    contact.allowance = listing.kept * base.gap;
+                } else if listing.memory.is_none() && contact.is_hard {
+                    contact.allowance = self.late_allowance(&kinematics, &base, listing);
+                }
                 self.fresh.push(self.contacts.len());
                 contact
             }
@@ -252,8 +252,8 @@ impl Island {
         self.contacts.push(contact);
     }
 
-    /// What a row that comes near within the step leaves of an overlap that the step began with (m), zero or less: as much as its bodies, who
-    /// part by and by, and no more than there was along the row.
+    /// What a row that comes near within the step leaves of an overlap that rapier has handed over (m), zero or less: as much as the rest of
+    /// both bodies, which part by and by, and no more than there was along the row.
     fn late_allowance(&self, row: &Kinematics, base: &AtBase, listing: &Listing<'_>) -> f64 {
         let began = base.gap - row.normal.dot(&base.moved);
         if began >= -listing.slop {
