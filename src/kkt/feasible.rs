@@ -373,37 +373,27 @@ impl FeasiblePath {
 
     fn go(&mut self, part: f64, blocks: &[Block]) {
         self.surfaces.advance(&self.motion, part);
-        for block in 0..blocks.len() {
-            self.go_with(block, part, blocks);
-        }
-        self.keep_on_bodies();
-    }
-
-    /// Moves the base of one block.
-    fn go_with(&mut self, block: usize, part: f64, blocks: &[Block]) {
-        let (base, block) = (&mut self.base[block], &blocks[block]);
-        let (centre, angle) = (block.centre(), angle_of(block));
-        if part >= 1.0 {
-            (base.centre, base.angle) = (centre, angle);
-        } else {
-            base.centre += part * (centre - base.centre);
-            base.angle += part * (angle - base.angle);
-        }
-        if let (Some(first), Block::Flex(body)) = (base.nodes, block) {
-            let ends = body.positions();
-            let nodes = &mut self.nodes[first..first + ends.len()];
+        for (base, block) in self.base.iter_mut().zip(blocks) {
+            let (centre, angle) = (block.centre(), angle_of(block));
             if part >= 1.0 {
-                nodes.copy_from_slice(ends);
+                (base.centre, base.angle) = (centre, angle);
             } else {
-                for (node, end) in nodes.iter_mut().zip(ends) {
-                    *node += part * (end - *node);
+                base.centre += part * (centre - base.centre);
+                base.angle += part * (angle - base.angle);
+            }
+            if let (Some(first), Block::Flex(body)) = (base.nodes, block) {
+                let ends = body.positions();
+                let nodes = &mut self.nodes[first..first + ends.len()];
+                if part >= 1.0 {
+                    nodes.copy_from_slice(ends);
+                } else {
+                    for (node, end) in nodes.iter_mut().zip(ends) {
+                        *node += part * (end - *node);
+                    }
                 }
             }
         }
-    }
-
-    /// Puts the points of rigid members on their bodies, to the last digit.
-    fn keep_on_bodies(&mut self) {
+        // Points of rigid members stay on their bodies to the last digit.
         for (member, carrier) in self.carriers.iter().enumerate() {
             let own = &self.surfaces.members()[member];
             if own.kind != MotionKind::Rigid {

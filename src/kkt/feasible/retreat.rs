@@ -2,32 +2,18 @@
 //!
 //! A pass leads from the base `b` to the end `T(b)` of the forces found there. Where the rows turn with the base, `T(b) - b` may change its
 //! sign from pass to pass and not get smaller. What two passes tell of it gives the share of the way after which it would vanish
-//! (Aitken's relaxation, as in the coupling of fluids and structures: Küttler and Wall 2008), block by block, since what takes turns here knows
-//! nothing of what does there:
+//! (Aitken's relaxation, as in the coupling of fluids and structures: Küttler and Wall 2008):
 //!
 //! ```text
 //! ω = -ω₀ r₀·(r - r₀) / |r - r₀|²,     r = T(b) - b
 //! ```
 
-use super::{BlockBase, Carrier, FeasiblePath};
+use super::{BlockBase, FeasiblePath};
 use crate::math::Vec2;
-use crate::path::{MotionKind, Surfaces};
 use crate::system::Block;
 
 /// Share of the way from which going all of it costs no more passes.
 const WHOLE: f64 = 0.8;
-
-/// Ways shorter than this share of the longest one are rounding beside it.
-const SHORT: f64 = 1e-3;
-
-/// What two passes tell of one block.
-#[derive(Clone, Copy, Debug)]
-struct Share {
-    /// Share of the way gone in the last pass.
-    gone: f64,
-    /// Share after which the way would vanish.
-    wanted: f64,
-}
 
 /// The way of the last pass, and the base before it.
 #[derive(Debug, Default)]
@@ -35,10 +21,10 @@ pub(super) struct LastWay {
     /// From the points to the end of the forces, in this pass and in the one before (m).
     now: Vec<Vec2>,
     before: Vec<Vec2>,
-    /// Of every block.
-    shares: Vec<Share>,
-    /// `-r₀·(r - r₀)`, `|r - r₀|²` and `|r|²` of every block (m²).
-    sums: Vec<[f64; 3]>,
+    /// Share of the way gone.
+    part: f64,
+    /// Share after which the way would vanish.
+    wanted: f64,
     /// The base before the last pass, if it is to be gone back to.
     points: Vec<Vec2>,
     base: Vec<BlockBase>,
@@ -50,13 +36,7 @@ impl LastWay {
     pub fn forget(&mut self, [n_points, n_blocks, n_coordinates]: [usize; 3]) {
         self.now.clear();
         self.before.clear();
-        self.shares.clear();
-        let whole = Share {
-            gone: 1.0,
-            wanted: 1.0,
-        };
-        self.shares.resize(n_blocks, whole);
-        self.sums.reserve(n_blocks);
+        (self.part, self.wanted) = (1.0, 1.0);
         self.points.clear();
         self.base.clear();
         self.nodes.clear();
@@ -67,23 +47,7 @@ impl LastWay {
 
     /// Whether less of the way is to be gone than was.
     fn goes_back(&self) -> bool {
-        self.shares.iter().any(|share| share.wanted < share.gone)
-    }
-
-    /// Sums up what the passes tell, block by block.
-    fn compare(&mut self, surfaces: &Surfaces, carriers: &[Carrier]) {
-        self.sums.clear();
-        self.sums.resize(self.shares.len(), [0.0; 3]);
-        for (member, carrier) in surfaces.members().iter().zip(carriers) {
-            let sums = &mut self.sums[carrier.block];
-            for point in member.points.clone() {
-                let (now, before) = (self.now[point], self.before[point]);
-                let change = now - before;
-                sums[0] -= before.dot(&change);
-                sums[1] += change.norm_squared();
-                sums[2] += now.norm_squared();
-            }
-        }
+        self.wanted < self.part
     }
 }
 
@@ -95,27 +59,26 @@ impl FeasiblePath {
         last.now.clear();
         let ways = self.motion.ends().iter().zip(self.surfaces.points());
         last.now.extend(ways.map(|(end, point)| end - point));
+        let (mut along, mut square) = (0.0, 0.0);
         if last.before.len() == last.now.len() {
-            last.compare(&self.surfaces, &self.carriers);
-            let longest = last
-                .sums
-                .iter()
-                .fold(0.0, |most, sums| f64::max(most, sums[2]));
-            for (share, &[along, square, own]) in last.shares.iter_mut().zip(&last.sums) {
-                // What was gone last limits what one look back may tell.
-                let most = (2.0 * share.wanted).min(1.0);
-                let told = share.gone * along / square;
-                share.wanted = if told.is_finite() && told > 0.0 && own > SHORT * SHORT * longest {
-                    told.clamp(0.25 * share.wanted, most)
-                } else {
-                    most
-                };
-                if share.wanted > WHOLE {
-                    share.wanted = 1.0;
-                }
+            for (now, before) in last.now.iter().zip(&last.before) {
+                let change = now - before;
+                along -= before.dot(&change);
+                square += change.norm_squared();
             }
         }
-        last.shares.iter_mut().for_each(|share| share.gone = part);
+        let share = last.part * along / square;
+        // What was gone last limits what one look back may tell.
+        let most = (2.0 * last.wanted).min(1.0);
+        last.wanted = if share.is_finite() && share > 0.0 {
+            share.clamp(0.25 * last.wanted, most)
+        } else {
+            most
+        };
+        if last.wanted > WHOLE {
+            last.wanted = 1.0;
+        }
+        last.part = part;
         // The base is needed only where a part of the way is gone anew: never in the first pass.
         if last.goes_back() {
             last.points.clear();
@@ -127,59 +90,17 @@ impl FeasiblePath {
 
     /// Goes back to where the way of the last pass is expected to vanish, if that is before the base; returns whether it was.
     pub(in crate::kkt) fn retreat(&mut self, blocks: &[Block]) -> bool {
-        if !self.last_way.goes_back() {
+        let last = &mut self.last_way;
+        if !last.goes_back() {
             return false;
         }
-        self.base.clone_from(&self.last_way.base);
-        self.nodes.clone_from(&self.last_way.nodes);
-        self.surfaces.set_points(&self.last_way.points);
-        self.motion.rest(&self.surfaces);
-        for member in 0..self.carriers.len() {
-            self.aim_at_share(member, blocks);
-        }
-        let impact =
-            self.search
-                .time_of_impact(&self.surfaces, &self.motion, &self.pairs, &mut self.hits);
-        let part = impact.t.min(1.0);
-        let shares = self.last_way.shares.iter_mut();
-        shares.for_each(|share| share.gone = part * share.wanted.min(share.gone));
-        self.surfaces.advance(&self.motion, part);
-        for block in 0..blocks.len() {
-            self.go_with(block, self.last_way.shares[block].gone, blocks);
-        }
-        self.keep_on_bodies();
+        let share = last.wanted;
+        last.part = share;
+        self.base.clone_from(&last.base);
+        self.nodes.clone_from(&last.nodes);
+        self.surfaces.set_points(&last.points);
+        self.go(share, blocks);
         true
-    }
-
-    /// Moves a member as much of the way as its block is to go.
-    fn aim_at_share(&mut self, member: usize, blocks: &[Block]) {
-        let block = self.carriers[member].block;
-        let Share { gone, wanted } = self.last_way.shares[block];
-        let (share, base) = (wanted.min(gone), self.base[block]);
-        match self.surfaces.members()[member].kind {
-            MotionKind::Rigid => {
-                let (shift, turn) = (
-                    blocks[block].centre() - base.centre,
-                    super::angle_of(&blocks[block]) - base.angle,
-                );
-                self.motion.move_rigid(
-                    &self.surfaces,
-                    member,
-                    base.centre,
-                    share * shift,
-                    share * turn,
-                );
-            }
-            MotionKind::Flexible => {
-                self.aim(member, (base.centre, base.angle), blocks);
-                let first = self.surfaces.members()[member].points.start;
-                let ends = self.motion.ends_mut(&self.surfaces, member);
-                for (end, from) in ends.iter_mut().zip(&self.surfaces.points()[first..]) {
-                    *end = from + share * (*end - from);
-                }
-            }
-            MotionKind::Still => {}
-        }
     }
 }
 
@@ -286,27 +207,5 @@ mod tests {
         assert_eq!(n_back, 0);
         // sqrt(6) 2^-n < 1e-9
         assert_eq!(n, 32);
-    }
-
-    #[test]
-    fn blocks_that_take_turns_by_themselves_do_not_hold_each_other_up() {
-        // `A` is diagonal: each body multiplies what is missing by a factor of its own.
-        let factors = [-1.2, -6.0, 0.1];
-        let (mut path, mut blocks) = scene();
-        let mut n = 0;
-        while distance(&path) > 1e-9 {
-            let bodies = blocks.iter_mut().zip(&path.base).zip(factors);
-            for ((block, base), factor) in bodies {
-                let goal = Vec2::new(1.0, 1.0);
-                if let Block::Rigid(body) = block {
-                    body.stop_at(goal + factor * (base.centre - goal), 0.0);
-                }
-            }
-            assert!(path.advance(&blocks), "nothing stands in the way");
-            path.retreat(&blocks);
-            n += 1;
-            // The third alone takes nine passes, 2^½ 10^-n < 1e-9; one share for all of them some hundred.
-            assert!(n <= 12, "{} m off after {n} passes", distance(&path));
-        }
     }
 }
