@@ -276,7 +276,7 @@ impl StepReport {
         &self.overbent
     }
 
-    /// Largest overlap at the contacts that the step was solved with (m), measured where it ended, in `f64`; what was put into each other
+    /// Largest overlap at the contacts that the step was solved with, or of what [`Quality::Unfinished`] tells of (m), measured where it ended, in `f64`; what was put into each other
     /// and is not asked to part in this step is left out. Between flexible bodies the contactor's nodes are kept out, not the target's.
     pub fn gap_violation(&self) -> f64 {
         self.gap_violation
