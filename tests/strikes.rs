@@ -100,6 +100,40 @@ fn what_a_force_drives_is_met_in_the_same_step() {
     assert!(depth < 1e-5, "{depth} m");
 }
 
+/// Rapier wakes a box that a ball strikes within its own step, and lets it fall into a block that still sleeps.
+#[test]
+fn what_is_struck_awake_does_not_fall_into_the_sleeper_under_it() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    let block = scene.flexible(
+        FlexBodyBuilder::rectangle([0.5, 0.25], [6, 3])
+            .material(elastic(1e7, 1000.0, 1e-3))
+            .translation([-0.25, 0.01]),
+    );
+    let rest = RigidBodyBuilder::dynamic().translation(vec2(0.0, 0.4));
+    let shape = ColliderBuilder::cuboid(0.2, 0.1).density(500.0);
+    let (rest, on_it) = scene.world.insert(rest, shape);
+    let sleeps = |scene: &Scene| {
+        let carrier = scene.body(block).rigid_body_handle();
+        let both = [carrier, rest].map(|body| &scene.world.bodies[body]);
+        both.iter().all(|body| body.is_sleeping())
+    };
+    for _ in 0..300 {
+        scene.step();
+    }
+    assert!(sleeps(&scene), "it does not sleep");
+    let ball = RigidBodyBuilder::dynamic()
+        .translation(vec2(0.0, 1.2))
+        .linvel(vec2(0.0, -1.0));
+    let shape = ColliderBuilder::ball(0.05).density(500.0);
+    scene.world.insert(ball, shape);
+    for _ in 0..60 {
+        scene.step();
+        let depth = depth(&scene, block, &[on_it]);
+        assert!(depth < 1e-5, "{depth} m");
+    }
+}
+
 /// The motor of a joint gives a body that is at rest all of its speed in one step of rapier's: nobody foresees it, and the report tells of it.
 #[test]
 fn what_a_motor_flings_into_a_plank_is_told() {

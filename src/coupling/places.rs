@@ -76,6 +76,12 @@ fn foreseen(body: &RigidBody, dt: Real) -> Pose {
     }
     let mut pose = *body.position();
     let gained = body.user_force() * body.mass_properties().effective_inv_mass * dt;
+    // A force that is no number is refused by the name of its body, which is looked for where it is.
+    let gained = if gained.is_finite() {
+        gained
+    } else {
+        Vector::ZERO
+    };
     pose.translation += (body.linvel() + gained) * dt;
     pose
 }

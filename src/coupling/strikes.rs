@@ -192,7 +192,8 @@ impl Claims {
         self.strikes = strikes;
     }
 
-    /// Visits colliders of bodies that miss a box by their own motion and may be driven into it, with how far they may be driven (m).
+    /// Visits colliders of bodies that miss a box by their own motion, or sleep in it, and may be driven into it, with how far they may be
+    /// driven (m).
     pub(super) fn visit_struck(
         &mut self,
         sets: &RapierSets<'_>,
@@ -213,11 +214,14 @@ impl Claims {
                     continue;
                 };
                 let away = apart(&swept_box(sets.bodies, collider, dt), around);
-                if away <= 0.0 || away > farthest || collider.is_sensor() {
+                // What moves into the box by itself is found without this; what sleeps there does not move before it is struck.
+                let sleeps = sets.bodies.get(body).is_some_and(RigidBody::is_sleeping);
+                let is_beside = away > 0.0 || sleeps;
+                if !is_beside || away > farthest || collider.is_sensor() {
                     continue;
                 }
                 let reach = strikes.reach_of(body, sets, |other| self.is_surface(other));
-                if away <= reach {
+                if reach > 0.0 && away <= reach {
                     visit(handle, reach);
                 }
             }

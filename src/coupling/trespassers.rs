@@ -7,7 +7,8 @@ use super::claim::Claims;
 use super::filter::may_touch;
 use super::newcomers::{DEEP, depth_in};
 use super::sets::RapierSets;
-use crate::body::{FlexBodyHandle, FlexBodySet};
+use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
+use crate::math::is_held;
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
 
@@ -31,39 +32,30 @@ impl Claims {
         known: f64,
         found: &mut Vec<Trespasser>,
     ) {
-        let surface_of =
-            |handle: ColliderHandle| sets.colliders.get(handle).map(Collider::compute_aabb);
-        let bodies = || {
-            flex_bodies
-                .iter()
-                .filter(|(_, body)| !body.is_quarantined())
-        };
-        let boxes = bodies().filter_map(|(_, body)| surface_of(body.collider_handle()));
-        let Some(around) = boxes.reduce(|one: Aabb, other| one.merged(&other)) else {
+        let surfaces = flexible_in_world(flex_bodies)
+            .filter_map(|(_, body)| box_of(body.collider_handle(), sets));
+        let Some(around) = surfaces.reduce(|one, other| one.merged(&other)) else {
             return;
         };
-        let awake = sets.islands.active_bodies();
         let mut answers = std::mem::take(&mut self.answers);
-        for handle in awake.filter(|handle| !self.rigid_index.contains_key(handle)) {
-            let Some(rigid) = sets.bodies.get(handle).filter(|body| body.is_dynamic()) else {
+        for handle in sets.islands.active_bodies() {
+            let body = sets.bodies.get(handle).filter(|body| body.is_dynamic());
+            let Some(body) = body.filter(|_| !self.rigid_index.contains_key(&handle)) else {
                 continue;
             };
-            for &collider in rigid.colliders() {
-                let Some(own) = surface_of(collider).filter(|own| own.intersects(&around)) else {
+            for &collider in body.colliders() {
+                let own = box_of(collider, sets).filter(|own| own.intersects(&around));
+                let Some(own) = own.filter(|_| !self.is_surface(collider)) else {
                     continue;
                 };
-                if self.is_surface(collider) {
-                    continue;
-                }
-                for (body, flexible) in bodies() {
+                for (body, flexible) in flexible_in_world(flex_bodies) {
                     let surface = flexible.collider_handle();
-                    if !surface_of(surface).is_some_and(|surface| surface.intersects(&own)) {
+                    if !box_of(surface, sets).is_some_and(|surface| surface.intersects(&own)) {
                         continue;
                     }
-                    let edge = flexible.mesh().boundary().mean_segment_length();
+                    let least = DEEP * flexible.mesh().boundary().mean_segment_length();
                     let depth = depth_in(flexible, collider, sets);
-                    if depth > known.max(DEEP * edge)
-                        && may_touch(sets, surface, collider, &mut answers)
+                    if depth > known.max(least) && may_touch(sets, surface, collider, &mut answers)
                     {
                         found.push(Trespasser {
                             body,
@@ -76,4 +68,16 @@ impl Claims {
         }
         self.answers = answers;
     }
+}
+
+fn flexible_in_world(bodies: &FlexBodySet) -> impl Iterator<Item = (FlexBodyHandle, &FlexBody)> {
+    bodies.iter().filter(|(_, body)| !body.is_quarantined())
+}
+
+/// Box of a collider where the step ends, if rapier's queries can reckon with it.
+fn box_of(handle: ColliderHandle, sets: &RapierSets<'_>) -> Option<Aabb> {
+    let aabb = sets.colliders.get(handle)?.compute_aabb();
+    let corners = [aabb.mins.x, aabb.mins.y, aabb.maxs.x, aabb.maxs.y];
+    let is_representable = corners.iter().all(|&value| is_held(f64::from(value)));
+    is_representable.then_some(aabb)
 }
