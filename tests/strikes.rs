@@ -91,7 +91,7 @@ fn what_sleeps_above_a_plank_is_not_struck_into_it() {
 #[test]
 fn what_a_force_drives_is_met_in_the_same_step() {
     let (mut scene, plank) = plank();
-    let body = RigidBodyBuilder::dynamic().translation(vec2(0.0, FACE + 0.15));
+    let body = RigidBodyBuilder::dynamic().translation(vec2(0.0, FACE + 0.3));
     let (body, collider) = scene.rigid(body, ColliderBuilder::cuboid(0.1, 0.1).density(25.0));
     scene.try_step().expect("the step can be taken");
     scene.world.bodies[body].add_force(vec2(0.0, -900.0), true);
