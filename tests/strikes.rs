@@ -87,14 +87,14 @@ fn what_sleeps_above_a_plank_is_not_struck_into_it() {
     assert!(deepest < 1e-5, "{deepest} m");
 }
 
-/// A force of the user's drives a body that is at rest by a quarter of a metre in a step.
+/// A force of the user's drives a body that is at rest by 0.3 m in a step.
 #[test]
 fn what_a_force_drives_is_met_in_the_same_step() {
     let (mut scene, plank) = plank();
     let body = RigidBodyBuilder::dynamic().translation(vec2(0.0, FACE + 0.3));
     let (body, collider) = scene.rigid(body, ColliderBuilder::cuboid(0.1, 0.1).density(25.0));
     scene.try_step().expect("the step can be taken");
-    scene.world.bodies[body].add_force(vec2(0.0, -900.0), true);
+    scene.world.bodies[body].add_force(vec2(0.0, -1800.0), true);
     scene.try_step().expect("the step can be taken");
     let depth = depth(&scene, plank, &[collider]);
     assert!(depth < 1e-5, "{depth} m");
