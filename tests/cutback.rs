@@ -338,3 +338,30 @@ fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
         assert!(quality != Quality::Unfinished, "step {step}: unfinished");
     }
 }
+
+/// Every part of the step fails here, as each may take two passes only: then the halves of halves of halves fail, too, and to try them all is
+/// seven times the work of the first try.
+#[test]
+fn what_fails_in_every_part_is_not_cut_without_end() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    scene.flex.parameters.max_newton = 1;
+    for place in 0..3 {
+        let block = FlexBodyBuilder::rectangle([1.0, 1.0], [6, 6])
+            .material(elastic(1e6, 1000.0, 0.0))
+            .friction(0.5)
+            .translation([0.3 * f64::from(place), 0.02 + 1.05 * f64::from(place)])
+            .linvel([2.0, -5.0])
+            .angvel(3.0);
+        scene.flexible(block);
+    }
+    let mut most = 0;
+    let mut n_unsolved = 0;
+    for _ in 0..60 {
+        let report = scene.try_step().expect("the step can be taken");
+        most = most.max(report.n_parts());
+        n_unsolved += usize::from(!is_solved(report));
+    }
+    assert!(n_unsolved > 0, "all was solved in two passes");
+    assert!(most > 1 && most < 8, "{most} parts");
+}

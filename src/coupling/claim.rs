@@ -11,6 +11,7 @@ use super::filter::{claimable_parent, may_touch};
 use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box, swept_surface};
 use super::sets::RapierSets;
 use super::sleep::Sleeper;
+use super::strikes::Strikes;
 use crate::body::{FlexBodySet, FlexState};
 use crate::math::from_rapier;
 use crate::rapier::math::Real;
@@ -88,6 +89,8 @@ pub(crate) struct Claims {
     pub(super) sleeping_surfaces: HashSet<ColliderHandle>,
     pub(super) woken: Vec<RigidBodyHandle>,
     pub(super) changes: Changes,
+    /// What may be struck into a flexible body by what nobody has claimed.
+    pub(super) strikes: Strikes,
     /// What the user's filter said of pairs that it was asked about.
     pub(super) answers: HashMap<PairName, Option<SolverFlags>>,
 }
@@ -198,6 +201,7 @@ impl Claims {
                     .for_each(|(handle, collider)| visit(handle, collider));
             }
         }
+        self.meet_struck(sets);
         self.swept_hits.sort_unstable_by_key(|(index, _)| *index);
     }
 
@@ -286,6 +290,8 @@ impl Claims {
             return;
         };
         let swept = swept_box(sets.bodies, collider, sets.integration_parameters.dt);
+        let driven = self.strikes.reach.get(&other).copied();
+        let swept = loosened(swept, driven.unwrap_or(0.0));
         let groups = [self.flex[flex].solver_groups, collider.solver_groups()];
         if !swept.intersects(&self.flex[flex].swept) || !groups[0].test(groups[1]) {
             return;

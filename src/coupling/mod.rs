@@ -40,6 +40,8 @@ mod sensor_events;
 mod sets;
 mod shapes;
 mod sleep;
+mod strikes;
+mod trespassers;
 mod under_way;
 mod ways;
 
@@ -60,4 +62,5 @@ pub(crate) use record::CouplingRecord;
 pub use sets::RapierSets;
 pub(crate) use shapes::{ShapeFault, rounding};
 pub(crate) use sleep::{is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving};
+pub(crate) use trespassers::Trespasser;
 pub(crate) use under_way::Span;

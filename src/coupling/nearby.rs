@@ -27,6 +27,7 @@ impl Claims {
         self.changes.strangers = strangers;
         let needs = self.meets_unsettled(sets) || self.meets_settled(sets, &mut hits);
         self.swept_hits = hits;
+        let needs = needs || self.meet_struck(sets);
         if !needs {
             self.meet_each_other();
             self.swept_hits.sort_unstable_by_key(|(index, _)| *index);

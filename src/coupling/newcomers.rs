@@ -10,7 +10,7 @@ use crate::rapier::prelude::*;
 
 /// Depth over the length of a boundary segment from which bodies count as overlapping: bodies that were laid flush overlap by the
 /// rounding of rapier's numbers, and boxes at rest in rapier by a few thousandths of their size.
-const DEEP: f64 = 1e-2;
+pub(super) const DEEP: f64 = 1e-2;
 
 impl Claims {
     /// The pairs of this step in which a body that has not been stepped before overlaps what it meets.
@@ -53,7 +53,7 @@ impl Claims {
 fn overlap(one: &FlexBody, other: &FlexBody, depth: f64, sets: &RapierSets<'_>) -> bool {
     one.contains(inner_point(other).into())
         || other.contains(inner_point(one).into())
-        || surfaces_cross(one.collider_handle(), other.collider_handle(), depth, sets)
+        || crossing(one.collider_handle(), other.collider_handle(), sets) > depth
 }
 
 fn overlaps_rigid(
@@ -62,14 +62,24 @@ fn overlaps_rigid(
     depth: f64,
     sets: &RapierSets<'_>,
 ) -> bool {
+    depth_in(body, other, sets) > depth
+}
+
+/// How deep a collider is in a flexible body (m), zero where it is not: at the surface, or by half its width if its middle is in there.
+pub(super) fn depth_in(body: &FlexBody, other: ColliderHandle, sets: &RapierSets<'_>) -> f64 {
     let Some(collider) = sets.colliders.get(other) else {
-        return false;
+        return 0.0;
     };
-    let middle = collider.shape().compute_local_aabb().center();
-    let is_solid = collider.shape().contains_local_point(middle);
-    let middle = pose_of(collider, sets) * middle;
-    (is_solid && body.contains(from_rapier(middle).into()))
-        || surfaces_cross(body.collider_handle(), other, depth, sets)
+    let local = collider.shape().compute_local_aabb();
+    let is_solid = collider.shape().contains_local_point(local.center());
+    let middle = pose_of(collider, sets) * local.center();
+    let at_surface = crossing(body.collider_handle(), other, sets);
+    if is_solid && body.contains(from_rapier(middle).into()) {
+        let half = local.half_extents();
+        at_surface.max(f64::from(half.x.min(half.y)))
+    } else {
+        at_surface
+    }
 }
 
 /// The middle of a cell: a point in the material, off the surface.
@@ -86,21 +96,16 @@ fn inner_point(body: &FlexBody) -> Vec2 {
     sum / nodes.len().max(1) as f64
 }
 
-/// Whether rapier finds the shapes of two colliders in each other by more than a depth (m); shapes that it has no answer for are not.
-fn surfaces_cross(
-    one: ColliderHandle,
-    other: ColliderHandle,
-    depth: f64,
-    sets: &RapierSets<'_>,
-) -> bool {
+/// How deep rapier finds the shapes of two colliders in each other (m), zero where they are not, or it has no answer.
+fn crossing(one: ColliderHandle, other: ColliderHandle, sets: &RapierSets<'_>) -> f64 {
     let both = [one, other].map(|handle| sets.colliders.get(handle));
     let [Some(one), Some(other)] = both else {
-        return false;
+        return 0.0;
     };
     let poses = [one, other].map(|collider| pose_of(collider, sets));
     let found = query::contact(&poses[0], one.shape(), &poses[1], other.shape(), 0.0);
     let contact = found.ok().flatten();
-    contact.is_some_and(|contact| f64::from(contact.dist) < -depth)
+    contact.map_or(0.0, |contact| f64::from(-contact.dist).max(0.0))
 }
 
 fn pose_of(collider: &Collider, sets: &RapierSets<'_>) -> Pose {

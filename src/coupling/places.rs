@@ -68,19 +68,32 @@ pub(super) fn placed_on(body: &RigidBody, collider: &Collider) -> Pose {
     *body.position() * offset
 }
 
-/// Where a body will be at the end of the step, as it is set: where its velocity takes it without turning, or where its user sends it.
+/// Where a body will be at the end of the step, as it is set: where its velocity and the user's force take it without turning, or where its user
+/// sends it.
 fn foreseen(body: &RigidBody, dt: Real) -> Pose {
     if body.body_type() == RigidBodyType::KinematicPositionBased {
         return *body.next_position();
     }
     let mut pose = *body.position();
-    pose.translation += body.linvel() * dt;
+    let gained = body.user_force() * body.mass_properties().effective_inv_mass * dt;
+    // A force that is no number is refused by the name of its body, which is looked for where it is.
+    let gained = if gained.is_finite() {
+        gained
+    } else {
+        Vector::ZERO
+    };
+    pose.translation += (body.linvel() + gained) * dt;
     pose
+}
+
+/// Where to a body goes in the step (m).
+pub(super) fn travel_vector(body: &RigidBody, dt: Real) -> Vector {
+    foreseen(body, dt).translation - body.position().translation
 }
 
 /// How far a body goes in the step (m).
 pub(super) fn travel_of(body: &RigidBody, dt: Real) -> Real {
-    (foreseen(body, dt).translation - body.position().translation).length()
+    travel_vector(body, dt).length()
 }
 
 /// Box of a collider from where it is to where its body will be.

@@ -104,6 +104,15 @@ impl Claims {
                 self.list_met(sets, &loosened(swept, margin), &mut woken);
             }
         }
+        self.list_movers(sets);
+        for slot in 0..self.asleep.len() {
+            let sleeper = self.asleep[slot];
+            let mut is_met = false;
+            self.visit_struck(sets, &sleeper.surface, |_, _| is_met = true);
+            if is_met && !woken.contains(&sleeper.carrier) {
+                woken.push(sleeper.carrier);
+            }
+        }
         self.woken = woken;
         let mut has_woken = false;
         for &carrier in &self.woken {

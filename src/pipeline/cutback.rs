@@ -14,6 +14,10 @@ use crate::coupling::{RapierSets, Span};
 use crate::kkt::GAINED;
 use crate::system::Step;
 
+/// Iterations after which an island is cut no further, over those of one solve (-): those of a failure at every size of parts down to eighths, of
+/// two passes each. What fails in all of its parts, as bodies that are crushed inside out, is not solved by the fifteen tries of all of them either.
+const LEVELS: usize = 8;
+
 impl FlexPipeline {
     /// Solves the step of one island, in parts if it must be.
     pub(super) fn solve_island(
@@ -51,9 +55,15 @@ impl FlexPipeline {
         let (summary, [before, reserve]) =
             self.solve_span((component, span), step, sets, flex_bodies, clock)?;
         let dt = 0.5 * step.dt;
+        let under_way = &mut self.gatherer.under_way;
+        under_way.n_passes += summary.n_newton;
+        let has_budget = under_way.n_passes < LEVELS * self.parameters.max_newton;
         // Links of multibodies move as rapier moves them, in one piece.
-        let may_be_cut =
-            n_cuts > 0 && dt >= SHORTEST && !step.is_explicit() && self.gatherer.links.is_empty();
+        let may_be_cut = n_cuts > 0
+            && has_budget
+            && dt >= SHORTEST
+            && !step.is_explicit()
+            && self.gatherer.links.is_empty();
         // What contact adds and cannot take back is the error of a step that is longer than the impact; what is parted costs energy at any pace.
         let owes_more = -reserve > GAINED * summary.brought() + (-before).max(0.0);
         // Not with joints: what they leave in stored accelerations swings, and a change of the step's length makes it swing more.

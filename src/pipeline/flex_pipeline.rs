@@ -9,7 +9,7 @@ use crate::body::{FlexBodyHandle, FlexBodySet};
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
     Claims, EventBook, Gatherer, HookGate, JointImpulse, Landing, LinkBook, Masters, RapierSets,
-    WorldChange, hand_back, land, rests, stop_if_asleep, sync_settings, wake_disturbed,
+    Trespasser, WorldChange, hand_back, land, rests, stop_if_asleep, sync_settings, wake_disturbed,
     write_impulses, write_surface,
 };
 use crate::kkt::Island;
@@ -55,6 +55,8 @@ pub struct FlexPipeline {
     pub(super) components: Vec<usize>,
     pub(super) events: EventBook,
     pub(super) report: StepReport,
+    /// What nobody has claimed and rapier's own step has left in a flexible body.
+    pub(super) trespassers: Vec<Trespasser>,
     /// Bodies taken out of the world in this step.
     pub(super) sick: Vec<FlexBodyHandle>,
 }
@@ -82,6 +84,7 @@ impl FlexPipeline {
             components: Vec::new(),
             events: EventBook::default(),
             report: StepReport::default(),
+            trespassers: Vec::new(),
             sick: Vec::new(),
         }
     }
@@ -273,6 +276,7 @@ impl FlexPipeline {
         self.commit_attachments(flex_bodies);
         self.commit(sets, flex_bodies);
         self.note_overbent(flex_bodies);
+        self.note_trespassers(sets, flex_bodies);
         self.events.tell(sets);
         clock.lap(&mut self.report.times.hand_back);
         Ok(())

@@ -20,7 +20,8 @@ pub enum Quality {
     /// a hundredth of an edge; or a contact has slid off what it pressed on within the step, and its force has acted to the end.
     Cut,
     /// Its budget ran out, in the smallest parts that it may be cut into. Surfaces on a feasible path are apart where it was stopped, velocities
-    /// come from the last forces; what lies on no path (pairs shown to hooks, what was put into each other) may overlap.
+    /// come from the last forces; what lies on no path (pairs shown to hooks, what was put into each other) may overlap. Or rapier's own step has
+    /// left in a flexible body what nothing foretold would reach it, as a body that a motor flings: it is solved for from the next step on.
     Unfinished,
 }
 
@@ -65,6 +66,28 @@ impl FlexPipeline {
                 .collect(),
             overlap: self.report.gap_violation,
         });
+    }
+
+    /// Notes what rapier's own step has left in flexible bodies: nothing was solved there, and the step has been taken.
+    pub(super) fn note_trespassers(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
+        let known = self.report.gap_violation;
+        let mut found = std::mem::take(&mut self.trespassers);
+        found.clear();
+        self.claims
+            .list_trespassers(sets, flex_bodies, known, &mut found);
+        for one in &found {
+            self.report.quality = Quality::Unfinished;
+            self.report.gap_violation = self.report.gap_violation.max(one.depth);
+            self.report.unsolved.push(Unsolved {
+                quality: Quality::Unfinished,
+                bodies: vec![
+                    Participant::Flex(one.body),
+                    Participant::Rigid(one.collider),
+                ],
+                overlap: one.depth,
+            });
+        }
+        self.trespassers = found;
     }
 
     /// Notes an island that was not solved in one piece.

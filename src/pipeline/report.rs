@@ -276,8 +276,8 @@ impl StepReport {
         &self.overbent
     }
 
-    /// Largest overlap at the contacts that the step was solved with (m), measured where it ended, in `f64`; what was put into each other
-    /// and is not asked to part in this step is left out. Between flexible bodies the contactor's nodes are kept out, not the target's.
+    /// Largest overlap at the contacts that the step was solved with (m), measured where it ended, in `f64`, or of what rapier's own step has left in
+    /// a flexible body; what was put into each other and is not asked to part in this step is left out. Between flexible bodies the contactor's nodes are kept out, not the target's.
     pub fn gap_violation(&self) -> f64 {
         self.gap_violation
     }
@@ -330,7 +330,7 @@ impl StepReport {
     }
 
     /// Most parts that the step of an island was taken in, zero where there is none: an island that is not solved in one piece is cut in halves, up to
-    /// [`FlexParameters::max_cutbacks`](super::FlexParameters::max_cutbacks) times.
+    /// [`FlexParameters::max_cutbacks`](super::FlexParameters::max_cutbacks) times, while its budget of iterations lasts.
     pub fn n_parts(&self) -> usize {
         self.n_parts
     }

@@ -39,7 +39,8 @@ pub struct FlexParameters {
     /// Most passes (Newton iterations) of an island in a step, at least 1; 20 by default, twice as many along a feasible path. What becomes of an island that needs more is told
     /// by [`StepReport::quality`](super::StepReport::quality).
     pub max_newton: usize,
-    /// How many times the step of an island that is not solved may be cut in halves; 3 by default, so that it is taken in 8 parts at most.
+    /// How many times the step of an island that is not solved may be cut in halves; 3 by default, so that it is taken in 8 parts at most. It is
+    /// cut no further once all tries of the step have taken eight times [`max_newton`](Self::max_newton) passes.
     /// See [`StepReport::n_parts`](super::StepReport::n_parts). Islands with links of multibodies and explicit steps are not cut.
     pub max_cutbacks: usize,
     /// Whether implicit steps with Lagrange multipliers lead the surfaces of bodies along a *feasible path*; yes by default.

@@ -193,3 +193,41 @@ fn a_large_stiff_chain_falls_back_on_one_factorization() {
         );
     }
 }
+
+#[test]
+fn rows_that_contradict_each_other_by_rounding_are_not_swept_for_ever() {
+    // A body of 1 kg between two walls that ask for 1e-7 m/s each, beside one that falls at 1 m/s: no answer closes both.
+    let case = Case {
+        delassus: vec![1.0, -1.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        free: vec![-1e-7, -1e-7, -1.0],
+        rows: vec![RowKind::Unilateral; 3],
+    };
+    let (mut multipliers, mut status) = ([0.0; 3], [Status::Open; 3]);
+    let outcome = Solver::new()
+        .with_redundancy_tolerance(1e-12)
+        .solve(&case.problem(), &mut multipliers, &mut status)
+        .expect("the data is finite");
+    assert!(
+        outcome.residual > 1e-8 && outcome.residual < 1e-6,
+        "{outcome:?}"
+    );
+    // Those that come before Lemke's method, and none after it.
+    assert!(outcome.n_sweeps <= 50, "{outcome:?}");
+}
+
+#[test]
+fn statuses_of_other_methods_settle_in_few_pivots_or_are_given_up() {
+    let (mut n_rescued, mut most) = (0, 0);
+    for seed in 0..400 {
+        let case = random_contacts(seed, 12, 40, 2.0);
+        let (_, _, outcome) = case.solve();
+        if outcome.n_lemke_pivots > 0 {
+            n_rescued += 1;
+            most = most.max(outcome.n_pivots);
+        }
+        assert!(outcome.residual <= 1e-9, "seed {seed}: {outcome:?}");
+    }
+    // The first run may take 20 and a quarter of the rows; then come the warm start, sweeps and paths.
+    assert!(n_rescued > 3, "{n_rescued} problems needed other methods");
+    assert!(most <= 20 + 20 + 5 * 12, "{most} pivots");
+}

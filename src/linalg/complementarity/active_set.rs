@@ -25,6 +25,9 @@ const RANK_TOLERANCE: f64 = 1e-11;
 /// Systems above this size are solved by iteration first.
 const DIRECT_LIMIT: usize = 256;
 
+/// Pivots from statuses that another method has found: those that are nearly right settle in some four, the others never do.
+const RESCUE_PIVOTS: usize = 12;
+
 /// Pivots after which statuses that have not settled are given up: a stack of boxes that falls on the
 /// ground closes one layer per pivot.
 fn pivot_budget(n: usize) -> usize {
@@ -120,7 +123,11 @@ impl ActiveSet {
             Redundancy::LeastChange => usize::MAX,
             Redundancy::MinimumNorm => redundant_pivot_budget(start.iter().any(|&p| p != 0.0)),
         };
-        while self.seen.len() < pivot_budget(n) {
+        let n_pivots = match redundancy {
+            Redundancy::MinimumNorm => pivot_budget(n),
+            Redundancy::LeastChange => RESCUE_PIVOTS.min(pivot_budget(n)),
+        };
+        while self.seen.len() < n_pivots {
             self.seen.push(fingerprint(status));
             let redundant = self.pivot(problem, status, redundancy, outcome);
             for row in 0..n {

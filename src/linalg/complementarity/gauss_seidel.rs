@@ -7,6 +7,7 @@
 //! limit, if any, is a solution. Here it only has to come close enough for the active set to finish.
 
 use super::problem::Checked;
+use faer::traits::pulp::{Arch, Simd, WithSimd};
 
 /// Over-relaxation: above 1 for speed, well below 2 because friction adds a coupling of its own.
 pub(super) const RELAXATION: f64 = 1.2;
@@ -22,27 +23,55 @@ pub(super) fn sweep(
     multipliers: &mut [f64],
     n_sweeps: usize,
 ) -> usize {
-    for done in 0..n_sweeps {
-        let (mut change, mut size) = (0.0_f64, 0.0_f64);
-        for row in 0..problem.n_rows() {
-            let present = multipliers[row];
-            let next = if problem.is_movable(row) {
-                let step = problem.velocity(row, multipliers) / problem.diagonal(row);
-                let normal = problem.normal_multiplier(row, multipliers);
-                problem.project(row, present - relaxation * step, normal)
-            } else {
-                problem.idle_multiplier(row)
-            };
-            let weight = problem.diagonal(row).max(0.0).sqrt();
-            change = change.max(weight * (next - present).abs());
-            size = size.max(weight * next.abs());
-            multipliers[row] = next;
+    Arch::new().dispatch(Sweep {
+        problem,
+        relaxation,
+        multipliers,
+        n_sweeps,
+    })
+}
+
+/// The sweeps, as a task for one instruction set; all give the same bits.
+struct Sweep<'a> {
+    problem: Checked<'a>,
+    relaxation: f64,
+    multipliers: &'a mut [f64],
+    n_sweeps: usize,
+}
+
+impl WithSimd for Sweep<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> usize {
+        let Self {
+            problem,
+            relaxation,
+            multipliers,
+            n_sweeps,
+        } = self;
+        for done in 0..n_sweeps {
+            let (mut change, mut size) = (0.0_f64, 0.0_f64);
+            for row in 0..problem.n_rows() {
+                let present = multipliers[row];
+                let next = if problem.is_movable(row) {
+                    let step = problem.velocity(row, multipliers) / problem.diagonal(row);
+                    let normal = problem.normal_multiplier(row, multipliers);
+                    problem.project(row, present - relaxation * step, normal)
+                } else {
+                    problem.idle_multiplier(row)
+                };
+                let weight = problem.diagonal(row).max(0.0).sqrt();
+                change = change.max(weight * (next - present).abs());
+                size = size.max(weight * next.abs());
+                multipliers[row] = next;
+            }
+            if change <= STALLED * size {
+                return done + 1;
+            }
         }
-        if change <= STALLED * size {
-            return done + 1;
-        }
+        n_sweeps
     }
-    n_sweeps
 }
 
 #[cfg(test)]

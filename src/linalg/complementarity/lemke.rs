@@ -7,7 +7,9 @@
 //! friction. Otherwise it may end on a ray, and nothing is offered. (Cottle, Pang and Stone, The Linear
 //! Complementarity Problem, §4.4 and §4.9.)
 
+use super::dense::add_scaled;
 use super::problem::{Checked, RowKind};
+use faer::traits::pulp::{Arch, Simd, WithSimd};
 
 /// Entries below this are no pivots; the tableau is scaled to unit diagonal.
 const SMALLEST_PIVOT: f64 = 1e-11;
@@ -144,6 +146,7 @@ impl Lemke {
     /// A ray also appears when round-off hides that the artificial unknown has just reached zero: what it
     /// ends with is for the residual to judge.
     fn pivot_to_the_end(&mut self, n: usize, attempt: usize, n_pivots: &mut usize) {
+        let arch = Arch::new();
         let (stride, artificial) = (2 * n + 2, 2 * n);
         let load = |row: usize| self.tableau[row * stride + stride - 1] / cover(attempt, row);
         // the lexicographic minimum of [q, I] is the last of equal ones
@@ -157,7 +160,7 @@ impl Lemke {
         let mut entering = artificial;
         for _ in 0..10 * n + 50 {
             let leaving = self.basis[leaving_row];
-            self.pivot(n, leaving_row, entering);
+            self.pivot(arch, n, leaving_row, entering);
             *n_pivots += 1;
             if leaving == artificial {
                 return;
@@ -204,21 +207,44 @@ impl Lemke {
     }
 
     /// Brings `entering` into the basis in place of the unknown of `leaving_row`.
-    fn pivot(&mut self, n: usize, leaving_row: usize, entering: usize) {
+    fn pivot(&mut self, arch: Arch, n: usize, leaving_row: usize, entering: usize) {
         let stride = 2 * n + 2;
         let line = &mut self.tableau[leaving_row * stride..(leaving_row + 1) * stride];
         let pivot = line[entering];
         line.iter_mut().for_each(|value| *value /= pivot);
         self.pivot_row.clear();
         self.pivot_row.extend_from_slice(line);
-        for (row, line) in self.tableau.chunks_exact_mut(stride).enumerate() {
-            let factor = line[entering];
-            if row != leaving_row && factor != 0.0 {
-                super::dense::add_scaled(line, -factor, &self.pivot_row);
-                line[entering] = 0.0;
+        arch.dispatch(Eliminate {
+            tableau: &mut self.tableau,
+            pivot_row: &self.pivot_row,
+            leaving_row,
+            entering,
+        });
+        self.basis[leaving_row] = entering;
+    }
+}
+
+/// The elimination of the entering column from all other rows, as a task for one instruction set; all give the same bits.
+struct Eliminate<'a> {
+    tableau: &'a mut [f64],
+    pivot_row: &'a [f64],
+    leaving_row: usize,
+    entering: usize,
+}
+
+impl WithSimd for Eliminate<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let lines = self.tableau.chunks_exact_mut(self.pivot_row.len());
+        for (row, line) in lines.enumerate() {
+            let factor = line[self.entering];
+            if row != self.leaving_row && factor != 0.0 {
+                add_scaled(line, -factor, self.pivot_row);
+                line[self.entering] = 0.0;
             }
         }
-        self.basis[leaving_row] = entering;
     }
 }
 

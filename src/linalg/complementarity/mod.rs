@@ -65,6 +65,9 @@ const RESCUE: [(Method, usize); 6] = [
     (Method::GaussSeidel, 500),
 ];
 
+/// The [`natural_map_residual`] below which rows contradict each other by no more than the rounding of the places that they were read from.
+const CONTRADICTED: f64 = 1e-5;
+
 /// Sweeps of a solver that is asked for Gauss–Seidel, before the active set takes over: contacts of masses take some ten, and
 /// those of a surface that transmits forces as many as it has nodes, squared.
 const MOST_SWEEPS: usize = 20_000;
@@ -288,7 +291,16 @@ impl Solver {
 
     /// Tries one way after the other until an answer is exact.
     fn rescue(&mut self, problem: Checked, outcome: &mut Outcome) {
+        let mut swept = f64::INFINITY;
         for (method, effort) in RESCUE {
+            match (method, effort) {
+                (Method::GaussSeidel, _) if swept.is_infinite() => swept = self.best.residual,
+                // Two methods that share nothing have left what rows that contradict each other leave: there is no better answer.
+                (Method::Lemke, 1) if self.best.residual > 0.5 * swept && swept < CONTRADICTED => {
+                    return;
+                }
+                _ => {}
+            }
             self.best.candidate = method;
             if !self.look_elsewhere(problem, method, effort, outcome) {
                 continue;

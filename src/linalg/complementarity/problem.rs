@@ -216,6 +216,7 @@ impl<'a> Checked<'a> {
     }
 
     /// `w_i`, at the cost of one row of the matrix.
+    #[inline(always)]
     pub fn velocity(&self, row: usize, multipliers: &[f64]) -> f64 {
         super::dense::dot(self.row(row), multipliers) + self.free[row]
     }

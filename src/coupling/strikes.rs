@@ -1,0 +1,307 @@
+//! Strikes: what flies past a flexible body, or rests beside it, is struck within the step and driven into it.
+//!
+//! A claim looks for what may be met along the velocities that the step begins with. Rapier's own step changes those of bodies that nobody
+//! has claimed: what closes in on a body at `v` sends it off by less than `2 v`, at any ratio of masses and any restitution. So a body
+//! that is about to be struck is looked for as far around its own way as twice what strikes it, or anything that it touches, closes in.
+
+use super::claim::Claims;
+use super::filter::{claimable_parent, is_free_body};
+use super::places::{loosened, swept_box, travel_vector};
+use super::sets::RapierSets;
+use crate::rapier::math::{Real, Vector};
+use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
+use crate::rapier::prelude::*;
+use std::collections::HashMap;
+
+/// Velocity of what is struck over that at which it is struck, at most: a light body off a heavy one, without loss.
+const THROWN: Real = 2.0;
+
+/// A collider that moves.
+#[derive(Clone, Copy, Debug)]
+struct Mover {
+    collider: ColliderHandle,
+    body: RigidBodyHandle,
+    swept: Aabb,
+    /// Way of its body in the step (m).
+    way: Vector,
+    /// How far its farthest point turns in it (m).
+    turn: Real,
+}
+
+/// What moves, and how hard it strikes; with its buffers.
+#[derive(Debug, Default)]
+pub(super) struct Strikes {
+    /// In the order of their left ends.
+    movers: Vec<Mover>,
+    /// Width of the widest (m).
+    widest: Real,
+    /// How far any two may close in on each other in the step (m).
+    hardest: Real,
+    /// By body, the slot of the bodies that it touches or is struck with.
+    group_of: HashMap<RigidBodyHandle, usize>,
+    /// How far the two of a group that close in the most do so in the step (m).
+    blow_of: Vec<Real>,
+    waiting: Vec<RigidBodyHandle>,
+    /// How far around its own way a collider may be driven (m).
+    pub reach: HashMap<ColliderHandle, Real>,
+    seen: Vec<ColliderHandle>,
+}
+
+impl Strikes {
+    /// How far a collider of a body in such a group may be driven (m).
+    fn reach_of(
+        &mut self,
+        body: RigidBodyHandle,
+        sets: &RapierSets<'_>,
+        is_surface: impl Fn(ColliderHandle) -> bool,
+    ) -> Real {
+        let group = self.group_of.get(&body).copied();
+        let group = group.unwrap_or_else(|| self.walk_group(body, sets, is_surface));
+        THROWN * self.blow_of[group]
+    }
+
+    /// Walks from a body through what touches it or closes in on it; returns the slot of the group.
+    fn walk_group(
+        &mut self,
+        first: RigidBodyHandle,
+        sets: &RapierSets<'_>,
+        is_surface: impl Fn(ColliderHandle) -> bool,
+    ) -> usize {
+        let group = self.blow_of.len();
+        let mut blow: Real = 0.0;
+        self.group_of.insert(first, group);
+        self.waiting.push(first);
+        while let Some(handle) = self.waiting.pop() {
+            let Some(body) = sets.bodies.get(handle) else {
+                continue;
+            };
+            for &own in body.colliders() {
+                for pair in sets.narrow_phase.contact_pairs_with(own) {
+                    if is_surface(pair.collider1) || is_surface(pair.collider2) {
+                        continue;
+                    }
+                    let closing = closing_of(pair, sets);
+                    blow = blow.max(closing.unwrap_or(0.0));
+                    let is_first = pair.collider1 == own;
+                    let other = if is_first {
+                        pair.collider2
+                    } else {
+                        pair.collider1
+                    };
+                    let other = sets.colliders.get(other).and_then(Collider::parent);
+                    if let (Some(_), Some(other)) = (closing, other) {
+                        self.join(group, other, sets);
+                    }
+                }
+                blow = blow.max(self.meet_movers((group, handle), own, sets));
+            }
+        }
+        self.blow_of.push(blow);
+        group
+    }
+
+    /// Adds what moves into the way of a collider to its group; returns how far the fastest closes in (m).
+    fn meet_movers(
+        &mut self,
+        (group, body): (usize, RigidBodyHandle),
+        own: ColliderHandle,
+        sets: &RapierSets<'_>,
+    ) -> Real {
+        let dt = sets.integration_parameters.dt;
+        let (Some(collider), Some(struck)) = (sets.colliders.get(own), sets.bodies.get(body))
+        else {
+            return 0.0;
+        };
+        let swept = swept_box(sets.bodies, collider, dt);
+        let way = travel_vector(struck, dt);
+        let turn = turn_of(struck, &swept, dt);
+        let mut blow: Real = 0.0;
+        let first = self
+            .movers
+            .partition_point(|mover| mover.swept.mins.x < swept.mins.x - self.widest);
+        for slot in first..self.movers.len() {
+            let mover = self.movers[slot];
+            if mover.swept.mins.x > swept.maxs.x {
+                break;
+            }
+            let pushes = || {
+                let other = sets.colliders.get(mover.collider);
+                other.is_some_and(|other| {
+                    other.collision_groups().test(collider.collision_groups())
+                        && other.solver_groups().test(collider.solver_groups())
+                })
+            };
+            if mover.body != body && mover.swept.intersects(&swept) && pushes() {
+                blow = blow.max((mover.way - way).length() + mover.turn + turn);
+                self.join(group, mover.body, sets);
+            }
+        }
+        blow
+    }
+
+    /// Adds a body to a group, if blows pass through it.
+    fn join(&mut self, group: usize, body: RigidBodyHandle, sets: &RapierSets<'_>) {
+        if is_free_body(sets, body) && !self.group_of.contains_key(&body) {
+            self.group_of.insert(body, group);
+            self.waiting.push(body);
+        }
+    }
+}
+
+impl Claims {
+    /// Lists what moves; to be called before [`Claims::visit_struck`].
+    pub(super) fn list_movers(&mut self, sets: &RapierSets<'_>) {
+        let dt = sets.integration_parameters.dt;
+        let mut strikes = std::mem::take(&mut self.strikes);
+        strikes.movers.clear();
+        strikes.group_of.clear();
+        strikes.blow_of.clear();
+        strikes.reach.clear();
+        let (mut farthest, mut widest): (Real, Real) = (0.0, 0.0);
+        for (handle, collider) in self.unsettled(sets) {
+            let parent = collider.parent();
+            let body = parent.and_then(|parent| Some((parent, sets.bodies.get(parent)?)));
+            let Some((parent, body)) = body else { continue };
+            let moves = !body.is_fixed() && !body.is_sleeping() && body.is_enabled();
+            if !moves || !collider.is_enabled() || collider.is_sensor() || self.is_surface(handle) {
+                continue;
+            }
+            let swept = swept_box(sets.bodies, collider, dt);
+            let (way, turn) = (travel_vector(body, dt), turn_of(body, &swept, dt));
+            // What is no number rapier takes out.
+            if !(way.length() + turn).is_finite() || !swept.mins.is_finite() {
+                continue;
+            }
+            farthest = farthest.max(way.length() + turn);
+            widest = widest.max(swept.extents().x);
+            strikes.movers.push(Mover {
+                collider: handle,
+                body: parent,
+                swept,
+                way,
+                turn,
+            });
+        }
+        strikes.movers.sort_unstable_by(|one, other| {
+            let left = one.swept.mins.x.total_cmp(&other.swept.mins.x);
+            let handles = [one, other].map(|mover| mover.collider.into_raw_parts());
+            left.then(handles[0].cmp(&handles[1]))
+        });
+        strikes.movers.dedup_by_key(|mover| mover.collider);
+        (strikes.widest, strikes.hardest) = (widest, 2.0 * farthest);
+        self.strikes = strikes;
+    }
+
+    /// Visits colliders of bodies that miss a box by their own motion, or sleep in it, and may be driven into it, with how far they may be
+    /// driven (m).
+    pub(super) fn visit_struck(
+        &mut self,
+        sets: &RapierSets<'_>,
+        around: &Aabb,
+        mut visit: impl FnMut(ColliderHandle, Real),
+    ) {
+        let mut strikes = std::mem::take(&mut self.strikes);
+        let farthest = THROWN * strikes.hardest;
+        if farthest > sets.integration_parameters.prediction_distance() {
+            self.list_beside(&mut strikes, &loosened(*around, farthest), sets);
+            let dt = sets.integration_parameters.dt;
+            for slot in 0..strikes.seen.len() {
+                let handle = strikes.seen[slot];
+                let Some(collider) = sets.colliders.get(handle) else {
+                    continue;
+                };
+                let Some(body) = claimable_parent(sets, collider) else {
+                    continue;
+                };
+                let away = apart(&swept_box(sets.bodies, collider, dt), around);
+                // What moves into the box by itself is found without this; what sleeps there does not move before it is struck.
+                let sleeps = sets.bodies.get(body).is_some_and(RigidBody::is_sleeping);
+                let is_beside = away > 0.0 || sleeps;
+                if !is_beside || away > farthest || collider.is_sensor() {
+                    continue;
+                }
+                let reach = strikes.reach_of(body, sets, |other| self.is_surface(other));
+                if reach > 0.0 && away <= reach {
+                    visit(handle, reach);
+                }
+            }
+        }
+        self.strikes = strikes;
+    }
+
+    /// Lists the colliders near a box: those that move, and those that rapier's tree has there.
+    fn list_beside(&self, strikes: &mut Strikes, near: &Aabb, sets: &RapierSets<'_>) {
+        strikes.seen.clear();
+        let first = strikes
+            .movers
+            .partition_point(|mover| mover.swept.mins.x < near.mins.x - strikes.widest);
+        let moving = strikes.movers[first..].iter();
+        let moving = moving.take_while(|mover| mover.swept.mins.x <= near.maxs.x);
+        let beside = moving.filter(|mover| mover.swept.intersects(near));
+        strikes.seen.extend(beside.map(|mover| mover.collider));
+        let query = sets.broad_phase.as_query_pipeline(
+            sets.narrow_phase.query_dispatcher(),
+            sets.bodies,
+            sets.colliders,
+            QueryFilter::new(),
+        );
+        let in_tree = query.intersect_aabb_conservative(*near);
+        let resting = in_tree.filter(|(handle, _)| !self.is_surface(*handle));
+        strikes.seen.extend(resting.map(|(handle, _)| handle));
+        strikes
+            .seen
+            .sort_unstable_by_key(|handle| handle.into_raw_parts());
+        strikes.seen.dedup();
+    }
+
+    /// Adds to what the swept boxes meet what may be driven into them; returns whether there is any.
+    pub(super) fn meet_struck(&mut self, sets: &RapierSets<'_>) -> bool {
+        self.list_movers(sets);
+        let mut hits = std::mem::take(&mut self.swept_hits);
+        let mut driven = std::mem::take(&mut self.strikes.reach);
+        let n_met = hits.len();
+        for slot in 0..self.flex.len() {
+            let flex = self.flex[slot];
+            self.visit_struck(sets, &flex.swept, |handle, reach| {
+                hits.push((slot, handle));
+                driven.insert(handle, reach);
+            });
+        }
+        let has_any = hits.len() > n_met;
+        (self.swept_hits, self.strikes.reach) = (hits, driven);
+        has_any
+    }
+}
+
+/// How far two colliders close in on each other where they touch in the step (m); `None` where they do not.
+fn closing_of(pair: &ContactPair, sets: &RapierSets<'_>) -> Option<Real> {
+    let dt = sets.integration_parameters.dt;
+    let first = sets.colliders.get(pair.collider1)?;
+    let bodies = [pair.collider1, pair.collider2].map(|handle| {
+        let parent = sets.colliders.get(handle).and_then(Collider::parent);
+        parent.and_then(|parent| sets.bodies.get(parent))
+    });
+    let mut closing = None;
+    for manifold in pair.manifolds() {
+        for point in &manifold.points {
+            let at = *first.position() * point.local_p1;
+            let [one, other] = bodies
+                .map(|body| body.map_or(Vector::default(), |body| body.velocity_at_point(at)));
+            let speed = (one - other).dot(manifold.data.normal).max(0.0);
+            closing = Some((speed * dt).max(closing.unwrap_or(0.0)));
+        }
+    }
+    closing
+}
+
+/// How far the farthest point of a box turns with its body in the step (m).
+fn turn_of(body: &RigidBody, swept: &Aabb, dt: Real) -> Real {
+    let lever = swept.half_extents().length();
+    (body.angvel().abs() * dt).min(1.0) * lever
+}
+
+/// How far two boxes are apart along an axis (m): no more than their distance.
+fn apart(one: &Aabb, other: &Aabb) -> Real {
+    let (low, high) = (other.mins - one.maxs, one.mins - other.maxs);
+    low.x.max(low.y).max(high.x).max(high.y)
+}

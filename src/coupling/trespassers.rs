@@ -1,0 +1,83 @@
+//! Trespassers: what nobody has claimed, and rapier's own step has left in a flexible body.
+//!
+//! A claim looks for what the motion that a step begins with, and the strikes in it, may bring. What moves otherwise, as a body that a
+//! motor or a joint flings, is met in the next step only: until then it lies where nothing was solved, and that is told.
+
+use super::claim::Claims;
+use super::filter::may_touch;
+use super::newcomers::{DEEP, depth_in};
+use super::sets::RapierSets;
+use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
+use crate::math::is_held;
+use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
+use crate::rapier::prelude::*;
+
+/// A collider that nobody has solved for, in a flexible body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Trespasser {
+    /// The flexible body.
+    pub body: FlexBodyHandle,
+    /// What is in it.
+    pub collider: ColliderHandle,
+    /// How deep (m).
+    pub depth: f64,
+}
+
+impl Claims {
+    /// Lists what moves, was not claimed and ends in a flexible body, by more than `known` (m); surfaces and bodies are where the step ends.
+    pub fn list_trespassers(
+        &mut self,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+        known: f64,
+        found: &mut Vec<Trespasser>,
+    ) {
+        let surfaces = flexible_in_world(flex_bodies)
+            .filter_map(|(_, body)| box_of(body.collider_handle(), sets));
+        let Some(around) = surfaces.reduce(|one, other| one.merged(&other)) else {
+            return;
+        };
+        let mut answers = std::mem::take(&mut self.answers);
+        for handle in sets.islands.active_bodies() {
+            let body = sets.bodies.get(handle).filter(|body| body.is_dynamic());
+            let Some(body) = body.filter(|_| !self.rigid_index.contains_key(&handle)) else {
+                continue;
+            };
+            for &collider in body.colliders() {
+                let own = box_of(collider, sets).filter(|own| own.intersects(&around));
+                let Some(own) = own.filter(|_| !self.is_surface(collider)) else {
+                    continue;
+                };
+                for (body, flexible) in flexible_in_world(flex_bodies) {
+                    let surface = flexible.collider_handle();
+                    if !box_of(surface, sets).is_some_and(|surface| surface.intersects(&own)) {
+                        continue;
+                    }
+                    let least = DEEP * flexible.mesh().boundary().mean_segment_length();
+                    let depth = depth_in(flexible, collider, sets);
+                    if depth > known.max(least) && may_touch(sets, surface, collider, &mut answers)
+                    {
+                        found.push(Trespasser {
+                            body,
+                            collider,
+                            depth,
+                        });
+                    }
+                }
+            }
+        }
+        self.answers = answers;
+    }
+}
+
+fn flexible_in_world(bodies: &FlexBodySet) -> impl Iterator<Item = (FlexBodyHandle, &FlexBody)> {
+    bodies.iter().filter(|(_, body)| !body.is_quarantined())
+}
+
+/// Box of a collider where the step ends, if rapier's queries can reckon with it.
+fn box_of(handle: ColliderHandle, sets: &RapierSets<'_>) -> Option<Aabb> {
+    let aabb = sets.colliders.get(handle)?.compute_aabb();
+    let corners = [aabb.mins.x, aabb.mins.y, aabb.maxs.x, aabb.maxs.y];
+    let is_representable = corners.iter().all(|&value| is_held(f64::from(value)));
+    is_representable.then_some(aabb)
+}
