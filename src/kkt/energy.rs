@@ -1,8 +1,12 @@
 //! The energy stage: contact may store energy and give it back; what it would add is taken from the velocities.
 //!
 //! With `E` the kinetic and elastic energy and `W` the work of applied forces and of prescribed motion, the step may end
-//! with `E' <= E + W + reserve`; the reserve is what contact has taken since it began. Beyond that the end velocity is
+//! with `E' <= E + W + reserve`. The reserve is what contact has taken since it began, as far as that is the swing of the integrator about
+//! the energy and no more: the rest is heat of dampers and impacts, which gives nothing back. Beyond that the end velocity is
 //! changed along the response to the contact forces, which leaves momentum alone.
+//!
+//! With joints the reserve is all that was taken: their forces swing in the stored accelerations by more than that, and velocities
+//! that are changed against it make it grow.
 
 use super::delassus::RowDirection;
 use super::island::{Island, SolveSettings};
@@ -114,14 +118,17 @@ impl Island {
             .contacts
             .iter()
             .any(|contact| contact.multiplier[0] > 0.0 || contact.remembered.normal > 0.0);
-        if !touches {
-            *reserve = reserve.min(0.0);
-        }
         let [kinetic, elastic] = summary.end_energy;
+        let kept = match (touches, self.ties.is_empty()) {
+            (false, _) => 0.0,
+            (true, true) => SWING * (kinetic + elastic),
+            (true, false) => f64::INFINITY,
+        };
+        *reserve = reserve.min(kept);
         let gain =
             kinetic + elastic - summary.start_energy[0] - summary.start_energy[1] - allowance;
         *reserve -= gain;
-        let band = if touches { ROUND_OFF } else { FLIGHT_BAND };
+        let band = if touches { ROUND_OFF } else { SWING };
         let debt = -*reserve - band * (kinetic + elastic);
         // At rest under load there are only rounding errors to take.
         let is_still = kinetic <= ROUND_OFF * elastic;
@@ -221,8 +228,9 @@ impl Island {
 /// Energy error of one step by rounding, relative.
 const ROUND_OFF: f64 = 1e-12;
 
-/// Gain of a freely turning body that is left alone, relative: within its band the trapezoidal rule only fluctuates.
-const FLIGHT_BAND: f64 = 1e-3;
+/// Change of energy, relative, within which the integrator swings about it and gains nothing in the long run: of a body that turns freely,
+/// and of what rests on each other and rocks.
+const SWING: f64 = 1e-3;
 
 /// The root nearer to zero of `curvature s² + slope s + excess = 0`, or the lowest point of the parabola.
 fn step_of_parabola(curvature: f64, slope: f64, excess: f64) -> f64 {

@@ -114,8 +114,10 @@ pub struct ActiveContact {
     pub slip: f64,
     /// The part of it that was gone on rows that this one has taken the force over from, less what its own row tells of that (m).
     pub(super) slip_before: f64,
-    /// Share of the contact that is shorter than the step, 0 to 1 (-).
+    /// Share of the contact that is shorter than the step, 0 to 1 (-): the springs of the surface do not give way within it.
     pub unresolved: f64,
+    /// Share of the contact in which the bodies meet as rigid ones within the step, 0 to 1 (-).
+    pub rigid: f64,
     /// Approach velocity at the beginning of the step, `n·v` (m/s).
     pub approach: f64,
     /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and

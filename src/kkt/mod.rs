@@ -30,6 +30,7 @@ mod position;
 mod sparse;
 mod summary;
 mod together;
+mod unresolved;
 mod velocity;
 
 pub use constraint_function::{ConstraintFunction, ContactMethod, EpsilonError};

@@ -354,6 +354,7 @@ impl ActiveContact {
             slip: 0.0,
             slip_before: 0.0,
             unresolved: 0.0,
+            rigid: 0.0,
             approach,
             remembered,
             base: None,

@@ -4,8 +4,8 @@
 //! The position stage leaves a multiplier `p` per contact. On a flexible body it acts as (C.5) says, and a surface with mass
 //! holds its relative velocity besides. Between rigid bodies it only moved the positions; the velocity obeys
 //! `0 <= P ⊥ n·v' + e n·v >= 0`.
-//! A flexible body that is stiff on the scale of the step behaves as a rigid one: its share of the contact's mobility is
-//! then rigid, and the same condition, weighted by that share, replaces the vibration that the step cannot resolve.
+//! Behind a massless surface that is stiff on the scale of the step the masses meet what they meet, and the same condition, weighted by
+//! their share of the contact's mobility, replaces the vibration that the step cannot resolve; see `kkt/unresolved.rs`.
 //!
 //! Impulses `P` and the forces `A` that change the stored accelerations come on top of what the multipliers have done. The laws,
 //! Coulomb's among them, hold for the whole: `b1 p + P` in velocities, `p + A` in accelerations. A contact that slides or parts
@@ -16,14 +16,9 @@ use super::island::{ActiveContact, Island, KktError, SolveSettings};
 use super::joint_system::Rows;
 use super::multipliers::prepare;
 use super::sparse::Asked;
-use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
 use crate::math::Vec2;
 use crate::system::{Block, Response};
-
-/// Share of rigid mobility below which an impact counts as resolved, and above which as unresolved.
-const RESOLVED: f64 = 0.3;
-const UNRESOLVED: f64 = 0.7;
 
 impl Island {
     pub(super) fn solve_velocities(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
@@ -32,8 +27,9 @@ impl Island {
             if self.contacts[index].is_closed() {
                 // Newton's iterations may have ended without asking for a compliance.
                 prepare(&mut self.blocks, &self.contacts[index].kinematics);
-                self.contacts[index].unresolved =
-                    self.unresolved_share(&self.contacts[index].kinematics);
+                let shares = self.unresolved_shares(&self.contacts[index].kinematics, settings);
+                let contact = &mut self.contacts[index];
+                [contact.unresolved, contact.rigid] = shares;
             }
         }
         if !self.impact_rows(settings)? {
@@ -110,30 +106,6 @@ impl Island {
         }
     }
 
-    /// How much of a contact's mobility within the step is that of rigid bodies, mapped to [0, 1].
-    fn unresolved_share(&self, kinematics: &Kinematics) -> f64 {
-        let normal = kinematics.normal;
-        let (mut rigid, mut actual) = (0.0, 0.0);
-        for a in kinematics.attachments() {
-            rigid += a.weight.abs() * self.blocks[a.block].rigid_mobility(a.grip, normal);
-            for b in kinematics.attachments() {
-                if a.block == b.block {
-                    let compliance =
-                        self.blocks[a.block].compliance(a.grip, b.grip, Response::Velocity);
-                    actual += a.weight * b.weight * normal.dot(&(compliance * normal));
-                }
-            }
-        }
-        Self::share_of(rigid, actual)
-    }
-
-    /// Maps a share of rigid mobility to [0, 1].
-    pub(super) fn share_of(rigid: f64, actual: f64) -> f64 {
-        let share = if actual > 0.0 { rigid / actual } else { 0.0 };
-        let t = ((share - RESOLVED) / (UNRESOLVED - RESOLVED)).clamp(0.0, 1.0);
-        t * t * (3.0 - 2.0 * t)
-    }
-
     /// States the impact law at the contacts that count and hold velocities, as velocities or masses respond.
     pub(super) fn velocity_rows(
         &mut self,
@@ -153,11 +125,10 @@ impl Island {
             let velocity = kinematics.relative(&self.blocks, |block, grip| block.velocity(grip));
             let rebound = law.rebound(contact.approach, settings.restitution_threshold);
             // A resolved impact rebounds by its elasticity.
-            let is_elastic = !contact.is_hard && !contact.is_massless;
-            let rebound = if is_elastic {
-                contact.unresolved * rebound
-            } else {
+            let rebound = if contact.is_hard {
                 rebound
+            } else {
+                contact.rigid * rebound
             };
             let normal = self.rows.len();
             self.contacts[index].parting = [rebound, 0.0];

@@ -28,7 +28,7 @@ impl FlexBlock {
             .add_to(1.0 + rayleigh.mass * weights.b1, &mut self.effective);
         self.effective.constrain(&self.is_fixed);
         self.factored_for = None;
-        if self.surface.is_none() && !self.following_dofs.is_empty() {
+        if self.surface.is_none() && self.has_massless_surface() {
             self.surface = Some(FollowingSurface::new(&self.model, &self.is_fixed)?);
         }
         self.factor.factorize(&self.effective)?;

@@ -365,7 +365,11 @@ impl FlexBlock {
             return self.mass_response(at, from);
         }
         let mut local = self.compliance.get(at, from);
-        if let Some(surface) = self.surface.as_ref().filter(|_| of == Response::Position) {
+        if let Some(surface) = self
+            .surface
+            .as_ref()
+            .filter(|_| of == Response::Position && !self.following_dofs.is_empty())
+        {
             // What `A⁻¹` has of it is damped by the weights of the masses.
             let Weights { b0, b1 } = self.step.weights;
             let damped = b0 + self.model.rayleigh().stiffness * b1;

@@ -30,10 +30,12 @@
 use super::flex_block::FlexBlock;
 use super::massless_surface::MasslessSurface;
 use crate::fe::model::Model;
+use crate::integrator::Weights;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
 use crate::math::{Mat2, Vec2, add_node_vec, node_vec, set_node_vec};
 
-/// The massless nodes of a damped body, with the factor of `K_ss`.
+/// The massless nodes of a body, with the factor of `K_ss`. Those of a damped body follow the masses as above; those of an undamped one
+/// balance at the end of the step by (C.5) itself.
 #[derive(Debug)]
 pub(super) struct FollowingSurface {
     nodes: MasslessSurface,
@@ -64,9 +66,17 @@ impl FollowingSurface {
     /// Begins a step of `dt` (s) where the nodes are displaced by so much in the frame (m).
     pub fn begin(&mut self, model: &Model, displacement: &[f64], dt: f64) {
         self.lag = model.rayleigh().stiffness / dt;
+        if !self.follows() {
+            return;
+        }
         for (slot, &node) in self.nodes.nodes.iter().enumerate() {
             set_node_vec(&mut self.start, slot, spring(model, node, displacement));
         }
+    }
+
+    /// Whether the nodes follow the masses by the backward rule: only where there is damping.
+    fn follows(&self) -> bool {
+        self.lag > 0.0
     }
 
     /// By how much damping reduces what a force moves within the step, `1 + κ` (-).
@@ -136,7 +146,7 @@ impl FlexBlock {
             turn,
             ..
         } = self;
-        if let Some(surface) = surface {
+        if let Some(surface) = surface.as_mut().filter(|surface| surface.follows()) {
             let back = turn.transpose();
             let (lag, slowness) = (surface.lag, surface.slowness());
             surface.relax(model, is_fixed, displacement, |node, start| {
@@ -144,6 +154,23 @@ impl FlexBlock {
                 (end + lag * start) / slowness
             });
         }
+    }
+
+    /// Whether the body has nodes without mass.
+    pub(super) fn has_massless_surface(&self) -> bool {
+        self.model.massless_support().next().is_some()
+    }
+
+    /// What the springs between surface and masses give of the [compliance](FlexBlock::compliance) of velocities, `K_ss⁻¹/(b0 + β b1)`,
+    /// in world axes (1/kg): the rest is what the masses give that the surface rests on. Zero but between nodes without mass.
+    pub fn spring_compliance(&self, at: usize, from: usize) -> Mat2 {
+        let Some(surface) = &self.surface else {
+            return Mat2::zeros();
+        };
+        let Weights { b0, b1 } = self.step.weights;
+        let reach = b0 + self.model.rayleigh().stiffness * b1;
+        let local = surface.flexibility(at, from) / reach;
+        self.turn * local * self.turn.transpose()
     }
 
     /// Whether a dof is one of a massless node of a damped body.
@@ -162,7 +189,7 @@ impl FlexBlock {
             step,
             ..
         } = self;
-        if let Some(surface) = surface {
+        if let Some(surface) = surface.as_mut().filter(|surface| surface.follows()) {
             surface.relax(model, is_fixed, rate, |node, start| {
                 (spring(model, node, displacement) - start) / step.dt
             });

@@ -136,6 +136,16 @@ impl Block {
         }
     }
 
+    /// What of [`Block::compliance`] of velocities the springs between a surface without mass and the masses give (1/kg).
+    pub fn spring_compliance(&self, at: Grip, from: Grip) -> Mat2 {
+        match (self, at.point, from.point) {
+            (Self::Flex(block), Point::Node(node), Point::Node(source)) => {
+                block.spring_compliance(node, source)
+            }
+            _ => Mat2::zeros(),
+        }
+    }
+
     /// Centre of the block at the current iterate: of mass, or what its frame turns about (m).
     pub fn centre(&self) -> Vec2 {
         match self {
