@@ -339,8 +339,8 @@ fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
     }
 }
 
-/// Every part of the step fails here, as each may take two passes only: then the halves of halves of halves fail, too, and to try them all is
-/// seven times the work of the first try.
+/// Steps fail here, as each part may take two passes only: what has failed in an eighth of a step fails in most of the others, too, and to try
+/// all of them is seven times the work of the first try.
 #[test]
 fn what_fails_in_every_part_is_not_cut_without_end() {
     let mut scene = Scene::new(1.0 / 60.0);
@@ -355,13 +355,14 @@ fn what_fails_in_every_part_is_not_cut_without_end() {
             .angvel(3.0);
         scene.flexible(block);
     }
-    let mut most = 0;
-    let mut n_unsolved = 0;
+    let mut parts = Vec::new();
     for _ in 0..60 {
         let report = scene.try_step().expect("the step can be taken");
-        most = most.max(report.n_parts());
-        n_unsolved += usize::from(!is_solved(report));
+        if report.quality() == Quality::Unfinished {
+            parts.push(report.n_parts());
+        }
     }
-    assert!(n_unsolved > 0, "all was solved in two passes");
-    assert!(most > 1 && most < 8, "{most} parts");
+    let mean = parts.iter().sum::<usize>() as f64 / parts.len() as f64;
+    assert!(!parts.is_empty(), "all was solved in two passes");
+    assert!(mean < 6.0, "unfinished in {mean} parts");
 }

@@ -12,7 +12,7 @@ use super::places::{loosened, order_of_boxes, order_of_colliders, swept_box, swe
 use super::sets::RapierSets;
 use super::sleep::Sleeper;
 use super::strikes::Strikes;
-use crate::body::{FlexBodySet, FlexState};
+use crate::body::{FlexBodyHandle, FlexBodySet, FlexState};
 use crate::math::from_rapier;
 use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
@@ -93,6 +93,8 @@ pub(crate) struct Claims {
     pub(super) strikes: Strikes,
     /// What the user's filter said of pairs that it was asked about.
     pub(super) answers: HashMap<PairName, Option<SolverFlags>>,
+    /// Boxes of the flexible surfaces where the step ends.
+    pub(super) surface_boxes: Vec<(FlexBodyHandle, Aabb)>,
 }
 
 impl Claims {

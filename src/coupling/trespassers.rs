@@ -32,15 +32,24 @@ impl Claims {
         known: f64,
         found: &mut Vec<Trespasser>,
     ) {
-        let surfaces = flexible_in_world(flex_bodies)
-            .filter_map(|(_, body)| box_of(body.collider_handle(), sets));
-        let Some(around) = surfaces.reduce(|one, other| one.merged(&other)) else {
+        let mut surfaces = std::mem::take(&mut self.surface_boxes);
+        surfaces.clear();
+        surfaces
+            .extend(flexible_in_world(flex_bodies).filter_map(|(handle, body)| {
+                Some((handle, box_of(body.collider_handle(), sets)?))
+            }));
+        let boxes = surfaces.iter().map(|(_, surface)| *surface);
+        let Some(around) = boxes.reduce(|one, other| one.merged(&other)) else {
+            self.surface_boxes = surfaces;
             return;
         };
         let mut answers = std::mem::take(&mut self.answers);
         for handle in sets.islands.active_bodies() {
             let body = sets.bodies.get(handle).filter(|body| body.is_dynamic());
-            let Some(body) = body.filter(|_| !self.rigid_index.contains_key(&handle)) else {
+            // Links of multibodies are not claimed, but what they meet is solved with them.
+            let is_link = sets.multibody_joints.rigid_body_link(handle).is_some();
+            let is_solved = is_link || self.rigid_index.contains_key(&handle);
+            let Some(body) = body.filter(|_| !is_solved) else {
                 continue;
             };
             for &collider in body.colliders() {
@@ -48,11 +57,14 @@ impl Claims {
                 let Some(own) = own.filter(|_| !self.is_surface(collider)) else {
                     continue;
                 };
-                for (body, flexible) in flexible_in_world(flex_bodies) {
-                    let surface = flexible.collider_handle();
-                    if !box_of(surface, sets).is_some_and(|surface| surface.intersects(&own)) {
+                let met = surfaces
+                    .iter()
+                    .filter(|(_, surface)| surface.intersects(&own));
+                for &(body, _) in met {
+                    let Some(flexible) = flex_bodies.get(body) else {
                         continue;
-                    }
+                    };
+                    let surface = flexible.collider_handle();
                     let least = DEEP * flexible.mesh().boundary().mean_segment_length();
                     let depth = depth_in(flexible, collider, sets);
                     if depth > known.max(least) && may_touch(sets, surface, collider, &mut answers)
@@ -66,7 +78,7 @@ impl Claims {
                 }
             }
         }
-        self.answers = answers;
+        (self.answers, self.surface_boxes) = (answers, surfaces);
     }
 }
 

@@ -14,10 +14,6 @@ use crate::coupling::{RapierSets, Span};
 use crate::kkt::GAINED;
 use crate::system::Step;
 
-/// Iterations after which an island is cut no further, over those of one solve (-): those of a failure at every size of parts down to eighths, of
-/// two passes each. What fails in all of its parts, as bodies that are crushed inside out, is not solved by the fifteen tries of all of them either.
-const LEVELS: usize = 8;
-
 impl FlexPipeline {
     /// Solves the step of one island, in parts if it must be.
     pub(super) fn solve_island(
@@ -56,11 +52,12 @@ impl FlexPipeline {
             self.solve_span((component, span), step, sets, flex_bodies, clock)?;
         let dt = 0.5 * step.dt;
         let under_way = &mut self.gatherer.under_way;
-        under_way.n_passes += summary.n_newton;
-        let has_budget = under_way.n_passes < LEVELS * self.parameters.max_newton;
+        // What has failed in a smallest part, as bodies that are crushed inside out, is not solved by the fifteen tries of all of them either.
+        under_way.has_failed |= n_cuts == 0 && summary.quality() == Quality::Unfinished;
+        let has_failed = under_way.has_failed;
         // Links of multibodies move as rapier moves them, in one piece.
         let may_be_cut = n_cuts > 0
-            && has_budget
+            && !has_failed
             && dt >= SHORTEST
             && !step.is_explicit()
             && self.gatherer.links.is_empty();

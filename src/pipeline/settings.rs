@@ -40,7 +40,7 @@ pub struct FlexParameters {
     /// by [`StepReport::quality`](super::StepReport::quality).
     pub max_newton: usize,
     /// How many times the step of an island that is not solved may be cut in halves; 3 by default, so that it is taken in 8 parts at most. It is
-    /// cut no further once all tries of the step have taken eight times [`max_newton`](Self::max_newton) passes.
+    /// cut no further once the smallest part has failed.
     /// See [`StepReport::n_parts`](super::StepReport::n_parts). Islands with links of multibodies and explicit steps are not cut.
     pub max_cutbacks: usize,
     /// Whether implicit steps with Lagrange multipliers lead the surfaces of bodies along a *feasible path*; yes by default.
