@@ -338,31 +338,3 @@ fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
         assert!(quality != Quality::Unfinished, "step {step}: unfinished");
     }
 }
-
-/// Steps fail here, as each part may take two passes only: what has failed in an eighth of a step fails in most of the others, too, and to try
-/// all of them is seven times the work of the first try.
-#[test]
-fn what_fails_in_every_part_is_not_cut_without_end() {
-    let mut scene = Scene::new(1.0 / 60.0);
-    scene.ground(0.5);
-    scene.flex.parameters.max_newton = 1;
-    for place in 0..3 {
-        let block = FlexBodyBuilder::rectangle([1.0, 1.0], [6, 6])
-            .material(elastic(1e6, 1000.0, 0.0))
-            .friction(0.5)
-            .translation([0.3 * f64::from(place), 0.02 + 1.05 * f64::from(place)])
-            .linvel([2.0, -5.0])
-            .angvel(3.0);
-        scene.flexible(block);
-    }
-    let mut parts = Vec::new();
-    for _ in 0..60 {
-        let report = scene.try_step().expect("the step can be taken");
-        if report.quality() == Quality::Unfinished {
-            parts.push(report.n_parts());
-        }
-    }
-    let mean = parts.iter().sum::<usize>() as f64 / parts.len() as f64;
-    assert!(!parts.is_empty(), "all was solved in two passes");
-    assert!(mean < 6.0, "unfinished in {mean} parts");
-}

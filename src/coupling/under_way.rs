@@ -85,8 +85,6 @@ pub(crate) struct UnderWay {
     pub joints: JointMemory,
     /// Parts that are over.
     pub n_parts: usize,
-    /// Whether a part that could be cut no further has found no end.
-    pub has_failed: bool,
     /// Where the island's contacts and joints begin in the report, and the impulses on rapier's joints.
     pub firsts: [usize; 3],
     /// Whether the report tells that one of the parts was not solved.
@@ -108,7 +106,6 @@ impl UnderWay {
         self.contacts = ContactMemory::default();
         self.joints = JointMemory::default();
         self.n_parts = 0;
-        self.has_failed = false;
         self.firsts = firsts;
         self.is_told = false;
         self.counted = [false; 4];

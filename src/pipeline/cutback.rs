@@ -51,16 +51,9 @@ impl FlexPipeline {
         let (summary, [before, reserve]) =
             self.solve_span((component, span), step, sets, flex_bodies, clock)?;
         let dt = 0.5 * step.dt;
-        let under_way = &mut self.gatherer.under_way;
-        // What has failed in a smallest part, as bodies that are crushed inside out, is not solved by the fifteen tries of all of them either.
-        under_way.has_failed |= n_cuts == 0 && summary.quality() == Quality::Unfinished;
-        let has_failed = under_way.has_failed;
         // Links of multibodies move as rapier moves them, in one piece.
-        let may_be_cut = n_cuts > 0
-            && !has_failed
-            && dt >= SHORTEST
-            && !step.is_explicit()
-            && self.gatherer.links.is_empty();
+        let may_be_cut =
+            n_cuts > 0 && dt >= SHORTEST && !step.is_explicit() && self.gatherer.links.is_empty();
         // What contact adds and cannot take back is the error of a step that is longer than the impact; what is parted costs energy at any pace.
         let owes_more = -reserve > GAINED * summary.brought() + (-before).max(0.0);
         // Not with joints: what they leave in stored accelerations swings, and a change of the step's length makes it swing more.

@@ -39,8 +39,7 @@ pub struct FlexParameters {
     /// Most passes (Newton iterations) of an island in a step, at least 1; 20 by default, twice as many along a feasible path. What becomes of an island that needs more is told
     /// by [`StepReport::quality`](super::StepReport::quality).
     pub max_newton: usize,
-    /// How many times the step of an island that is not solved may be cut in halves; 3 by default, so that it is taken in 8 parts at most. It is
-    /// cut no further once the smallest part has failed.
+    /// How many times the step of an island that is not solved may be cut in halves; 3 by default, so that it is taken in 8 parts at most.
     /// See [`StepReport::n_parts`](super::StepReport::n_parts). Islands with links of multibodies and explicit steps are not cut.
     pub max_cutbacks: usize,
     /// Whether implicit steps with Lagrange multipliers lead the surfaces of bodies along a *feasible path*; yes by default.
