@@ -184,8 +184,8 @@ fn what_a_sudden_force_throws_beyond_where_it_was_looked_for_is_seen() {
 fn a_ball_that_is_led_around_a_hub_is_not_stopped_on_the_chord() {
     let (dt, turn) = (1.0 / 60.0, 0.6);
     let mut scene = Scene::in_free_space(dt);
-    // Arc and hub are 1 cm apart; the chord is 2 cm inside of the arc.
-    scene.fixed(ColliderBuilder::ball(real(0.89)));
+    // Arc and hub are 2 cm apart; the chord is 4.5 cm inside of the arc.
+    scene.fixed(ColliderBuilder::ball(real(0.88)));
     let ball = RigidBodyBuilder::dynamic()
         .translation(vec2(1.0, 0.0))
         .linvel(vec2(0.0, turn / dt))

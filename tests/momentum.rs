@@ -157,10 +157,6 @@ fn collisions_keep_angular_momentum_within_a_thousandth() {
 }
 
 #[test]
-#[cfg_attr(
-    feature = "f64",
-    ignore = "open: one case fails in double precision since contact gives back no heat"
-)]
 fn the_error_of_angular_momentum_falls_at_least_as_the_square_of_the_step() {
     let mut findings = Findings::default();
     // In `f64` it is rounding, or 4e-8 where a ball rolls off the piece of surface it was listed with in the step in which

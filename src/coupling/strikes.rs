@@ -3,6 +3,8 @@
 //! A claim looks for what may be met along the velocities that the step begins with. Rapier's own step changes those of bodies that nobody
 //! has claimed: what closes in on a body at `v` sends it off by less than `2 v`, at any ratio of masses and any restitution. So a body
 //! that is about to be struck is looked for as far around its own way as twice what strikes it, or anything that it touches, closes in.
+//! A row of bodies that touch, each lighter than the one before, hands a blow on faster than that: what it leaves in a flexible body is told
+//! ([`super::trespassers`]).
 
 use super::claim::Claims;
 use super::filter::{claimable_parent, is_free_body};
@@ -256,6 +258,9 @@ impl Claims {
 
     /// Adds to what the swept boxes meet what may be driven into them; returns whether there is any.
     pub(super) fn meet_struck(&mut self, sets: &RapierSets<'_>) -> bool {
+        if self.flex.is_empty() {
+            return false;
+        }
         self.list_movers(sets);
         let mut hits = std::mem::take(&mut self.swept_hits);
         let mut driven = std::mem::take(&mut self.strikes.reach);

@@ -183,7 +183,10 @@ impl Island {
         for (row, impulse) in self.rows.iter().zip(&self.multipliers) {
             self.contacts[row.contact].impulse[0] += step * impulse;
         }
-        before - self.add_responses(1.0 + step)
+        self.add_responses(1.0 + step);
+        // What has flown away has slid since its row was measured: the levers of its force have a couple.
+        self.balance_angular_momentum();
+        before - self.kinetic_energy()
     }
 
     /// Adds a multiple of the responses to the velocities; returns the kinetic energy (J).

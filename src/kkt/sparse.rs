@@ -25,15 +25,15 @@ const ALWAYS_DENSE: usize = 24;
 /// Factorizations that a sparse solve takes more often than the dense one takes its own: what makes them equal in the benches.
 const MORE_OFTEN: f64 = 4.0;
 
-/// Share of its own mobility that every row gives way by to the change of its force (-): `w = W p + b + s D (p - p₀)`, `D` the diagonal of `W`.
+/// Share of its own mobility that every row gives way by to its force (-): `w = (W + s D) p + b`, `D` the diagonal of `W`.
 ///
 /// Where a body fits between two that nothing moves, forces of any size press it and change nothing; an interior point goes to the middle of all
-/// of them. With this they change by what rows disagree about, over `s D`. What is left out of a row vanishes as the forces come to rest.
-const YIELDING: f64 = 1e-5;
+/// of them. With this what rows disagree about, `d`, ends in a force of `d / (s D)`, and what carries `p` rests nearer by a
+/// millionth of the way that `p` would move it in the step. Friction gives way to the change of its force only, as it would creep.
+const YIELDING: f64 = 1e-6;
 
-/// Share of a normal force, or of a joint's, that is not kept by that (-): what rows disagree about step after step, `d`, ends in a force of
-/// `d / (s κ D)`, and what carries `p` rests `s κ D p` nearer. Friction keeps all, as it would creep.
-const FORGETTING: f64 = 1e-2;
+/// Share of a joint's force that it gives way to as contacts do (-); to the rest only as it changes, or a chain would open.
+const JOINT_SHARE: f64 = 0.05;
 
 /// What stands behind a block's nodes, to tell when the pattern changes.
 #[derive(Clone, Debug)]
@@ -183,7 +183,8 @@ impl Island {
             let (give, given) = match asked.of {
                 Response::Position => {
                     let yielding = scale.map(|own| self.softness.max(YIELDING) * own);
-                    let kept = [yielding[0] * (1.0 - FORGETTING), yielding[1]];
+                    let softness = scale.map(|own| self.softness * own);
+                    let kept = [softness[0], yielding[1]];
                     (
                         [0, 1].map(|k| give[k] + yielding[k]),
                         [0, 1].map(|k| (give[k] + kept[k]) * contact.multiplier[k]),
@@ -255,7 +256,7 @@ impl Island {
                     _ => ConeLaw::Unilateral,
                 },
                 free: [
-                    self.free[place] - (1.0 - FORGETTING) * yielding * tie.multiplier,
+                    self.free[place] - (1.0 - JOINT_SHARE) * yielding * tie.multiplier,
                     0.0,
                 ],
                 give: [
@@ -353,22 +354,7 @@ impl Island {
         solver.settings.slip_tolerance = 1e-4;
         solver.settings.tolerance = 1e-7;
         solver.scales_start = asked.of == Response::Velocity;
-        let most = |m: &[[f64; 2]]| m.iter().flatten().fold(0.0f64, |a, b| a.max(b.abs()));
-        let before = most(multipliers);
         let outcome = solver.solve(&problem, multipliers, slip, answer)?;
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "  sparse {:?} rows {} before {before:.2e} after {:.2e} ip {} res {:.1e} dil {:.1e} solved {} fact {}",
-                asked.of,
-                problem.rows.len(),
-                most(multipliers),
-                outcome.used_interior_point,
-                outcome.residual,
-                outcome.dilation,
-                outcome.is_solved,
-                outcome.n_factorizations
-            );
-        }
         let n = self.kinds.len();
         self.multipliers.fill(0.0);
         self.statuses.clear();

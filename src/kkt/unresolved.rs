@@ -71,3 +71,86 @@ fn smooth_step(value: f64, [from, to]: [f64; 2]) -> f64 {
     let t = ((value - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{FlexBodyBuilder, Pin};
+    use crate::fe::material::LinearElastic;
+    use crate::integrator::Beta2;
+    use crate::math::Vec2;
+    use crate::system::{Block, FlexBlock, FlexLoad, Grip, Point, Step};
+    use std::sync::Arc;
+
+    const DT: f64 = 1e-2;
+
+    /// Compliances of velocities of a pinned plate at a node of its upper face, along the face's normal: of the whole and of the springs (1/kg).
+    fn compliances(young: f64, density: f64, rayleigh: f64) -> [f64; 2] {
+        let material = LinearElastic::plane_stress(young, 0.3)
+            .density(density)
+            .rayleigh(rayleigh);
+        let plate = FlexBodyBuilder::rectangle([1.0, 0.8], [8, 6])
+            .material(material)
+            .pin_where(|[_, y]| y < 1e-9, Pin::both())
+            .build();
+        let Ok(body) = plate else {
+            panic!("a plain rectangle")
+        };
+        let fixed = body.fixed_dofs().to_vec();
+        let mut block = FlexBlock::new(Arc::clone(body.model()), fixed, body.frame());
+        let step = Step {
+            dt: DT,
+            weights: Beta2::default().weights(DT),
+        };
+        let load = FlexLoad {
+            force: body.nodal_force(),
+            gravity: Vec2::zeros(),
+            prescribed: body.prescribed(),
+            reaction: body.reactions(),
+        };
+        let mut state = body.state().clone();
+        let started = block.start(step, &mut state, &load);
+        assert!(started.is_ok() && block.predict(step, &state, &load).is_ok());
+        let rest = body.model().rest_positions();
+        let upper = (0..body.model().n_nodes()).filter(|node| rest[2 * node + 1] > 0.8 - 1e-9);
+        let middle = upper.min_by(|a, b| {
+            let off = |node: &usize| (rest[2 * node] - 0.5).abs();
+            off(a).total_cmp(&off(b))
+        });
+        let node = middle.unwrap_or(0);
+        block.prepare_compliance(node);
+        let block = Block::Flex(Box::new(block));
+        let grip = Grip {
+            point: Point::Node(node),
+            lever: Vec2::zeros(),
+        };
+        let whole = block.compliance(grip, grip, Response::Velocity);
+        [whole, block.spring_compliance(grip, grip)].map(|of| of[(1, 1)])
+    }
+
+    /// Masses that nothing moves leave the springs alone, which give way by their stiffness.
+    #[test]
+    fn behind_a_surface_on_immovable_masses_there_are_its_springs_only() {
+        for rayleigh in [0.0, 1e-3, 1e-1] {
+            let [whole, springs] = compliances(1e6, 1e15, rayleigh);
+            assert!(
+                springs > 0.0 && (springs / whole - 1.0).abs() < 1e-6,
+                "β {rayleigh}: springs {springs:e} of {whole:e}"
+            );
+            // Twice as stiff, half as much; and masses that move give way besides.
+            let [whole, stiffer] = compliances(2e6, 1e3, rayleigh);
+            assert!((springs / stiffer - 2.0).abs() < 1e-6 && whole > stiffer);
+        }
+    }
+
+    #[test]
+    fn the_share_of_what_is_held_rises_from_one_bound_to_the_other() {
+        assert_eq!(smooth_step(0.5, [0.5, 1.0]), 0.0);
+        assert_eq!(smooth_step(0.75, [0.5, 1.0]), 0.5);
+        assert_eq!(smooth_step(1.0, [0.5, 1.0]), 1.0);
+        assert_eq!(smooth_step(2.0, [1.0, 1.0]), 0.0);
+        // `b0/(b1 dt)` of the trapezoidal rule.
+        let weights = Beta2::trapezoidal().weights(DT);
+        assert!((weights.b0 / (weights.b1 * DT) - 0.5).abs() < 1e-12);
+    }
+}

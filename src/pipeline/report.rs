@@ -330,7 +330,7 @@ impl StepReport {
     }
 
     /// Most parts that the step of an island was taken in, zero where there is none: an island that is not solved in one piece is cut in halves, up to
-    /// [`FlexParameters::max_cutbacks`](super::FlexParameters::max_cutbacks) times, while its budget of iterations lasts.
+    /// [`FlexParameters::max_cutbacks`](super::FlexParameters::max_cutbacks) times.
     pub fn n_parts(&self) -> usize {
         self.n_parts
     }

@@ -178,10 +178,6 @@ fn a_rope_is_slack_until_it_is_taut_and_then_carries_weight_and_swing() {
 }
 
 #[test]
-#[cfg_attr(
-    feature = "f64",
-    ignore = "open: hinges open by 1.1e-8 m, as rows of joints keep all but a hundredth of their forces"
-)]
 fn a_chain_bridge_of_100_links_carries_a_flexible_plank() {
     // 100 links of 0.2 m in a parabola between two fixed bodies, a plank of 2 m across the middle.
     let mut scene = Scene::new(DT);

@@ -291,12 +291,14 @@ impl Solver {
 
     /// Tries one way after the other until an answer is exact.
     fn rescue(&mut self, problem: Checked, outcome: &mut Outcome) {
-        let mut swept = f64::INFINITY;
+        let mut unswept = f64::INFINITY;
         for (method, effort) in RESCUE {
             match (method, effort) {
-                (Method::GaussSeidel, _) if swept.is_infinite() => swept = self.best.residual,
-                // Two methods that share nothing have left what rows that contradict each other leave: there is no better answer.
-                (Method::Lemke, 1) if self.best.residual > 0.5 * swept && swept < CONTRADICTED => {
+                (Method::GaussSeidel, _) if unswept.is_infinite() => unswept = self.best.residual,
+                // Sweeps and a path have not halved what the active set left: rows contradict each other by that, and the residual tells of it.
+                (Method::Lemke, 1)
+                    if self.best.residual > 0.5 * unswept && unswept < CONTRADICTED =>
+                {
                     return;
                 }
                 _ => {}
