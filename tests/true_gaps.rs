@@ -7,22 +7,6 @@ use common::*;
 /// Positions that rapier holds in `f32` differ from the flexible stage's by their rounding (m).
 const ROUNDING: f64 = 2e-6;
 
-/// Signed distance of a point from the outline of a flexible body, negative inside (m).
-fn from_outline(body: &FlexBody, point: [f64; 2]) -> f64 {
-    let (mut nearest, mut is_inside) = (f64::INFINITY, false);
-    for &[a, b] in body.mesh().boundary().segments() {
-        let ([x0, y0], [x1, y1]) = (body.position(a), body.position(b));
-        let (along, off) = ([x1 - x0, y1 - y0], [point[0] - x0, point[1] - y0]);
-        let length = along[0].hypot(along[1]);
-        let share = ((off[0] * along[0] + off[1] * along[1]) / length.powi(2)).clamp(0.0, 1.0);
-        nearest = nearest.min((off[0] - share * along[0]).hypot(off[1] - share * along[1]));
-        if (y0 > point[1]) != (y1 > point[1]) && off[0] < along[0] * off[1] / along[1] {
-            is_inside = !is_inside;
-        }
-    }
-    if is_inside { -nearest } else { nearest }
-}
-
 /// How deep a flexible body and a collider are in each other (m): its boundary nodes in the shape, and the corners in its outline.
 fn overlap(scene: &Scene, body: &FlexBody, collider: ColliderHandle) -> f64 {
     let collider = &scene.world.colliders[collider];
@@ -161,8 +145,8 @@ fn heights(body: &FlexBody) -> [f64; 2] {
     })
 }
 
-/// What is shown between things that rest on each other: the offset that is documented, of two bodies that of the finer one, and nothing
-/// above what has an inside.
+/// What is shown between things that rest on each other: the offset that is documented above what has no thickness, and nothing above what
+/// has an inside, flexible bodies among them.
 #[test]
 fn a_block_at_rest_shows_its_contact_offset_and_nothing_else() {
     let line = ColliderBuilder::polyline(vec![vec2(-5.0, 0.0), vec2(5.0, 0.0)], None);
@@ -206,9 +190,9 @@ fn a_block_at_rest_shows_its_contact_offset_and_nothing_else() {
                 .map(|&node| from_outline(outline, scene.body(other).position(node)))
                 .fold(gap, f64::min);
         }
-        let error = gap - offsets[0].min(offsets[1]);
+        // Corners that lie on corners touch to the second order in how far the two surfaces are turned against each other.
         assert!(
-            error.abs() < 1e-6 * offsets[0].min(offsets[1]),
+            gap.abs() < 1e-3 * offsets[0].min(offsets[1]),
             "{gap} m, offsets {offsets:?}"
         );
     }

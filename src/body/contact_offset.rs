@@ -26,8 +26,9 @@ fn shortest_edge(model: &Model) -> f64 {
 }
 
 impl FlexBody {
-    /// Distance at which the surface closes with other flexible bodies and with terrain that has no thickness (m): a hundredth of its shortest edge, of
-    /// two bodies the smaller one; more only where rapier's numbers hold no such distance. Rigid bodies with an inside it touches without.
+    /// Distance at which the surface closes with terrain that has no thickness (m): a hundredth of its shortest edge, more only where rapier's
+    /// numbers hold no such distance. Other flexible bodies, and rigid ones with an inside, it touches; these are drawn inwards by as much for
+    /// the path that keeps them apart.
     pub fn contact_offset(&self) -> f64 {
         let positions = self.positions();
         let extent = positions.iter().fold(0.0f64, |most, x| most.max(x.abs()));

@@ -1,7 +1,8 @@
 //! Drafts: a piece of a collider's outline, drawn as points and edges in the axes of its block, for whoever keeps away from it.
 
 use super::candidates::Bounds;
-use super::outlines::{Outline, Piece, draw_inwards};
+use super::inset::draw_inwards;
+use super::outlines::{Outline, Piece};
 use crate::constraint::geometry::Pose2;
 use crate::kkt::Island;
 use crate::math::{Vec2, perp};

@@ -1,6 +1,7 @@
 //! Gathering: an island of blocks and candidates for every component of the claim.
 
 use super::claim::Claims;
+use super::flex_cores::FlexCores;
 use super::hooks::HookBook;
 use super::links::{LinkBlock, LinkBook};
 use super::masters::{Masters, cap_speed};
@@ -42,6 +43,7 @@ pub(crate) struct Gatherer {
     pub(super) outlines: OutlineCache,
     pub(super) draft: Draft,
     pub(super) cores: RigidCores,
+    pub(super) flex_cores: FlexCores,
     pub(super) references: References,
     pub(super) placed: HashMap<ColliderHandle, PlacedCollider>,
     block_of_body: HashMap<RigidBodyHandle, usize>,
@@ -142,6 +144,7 @@ impl Gatherer {
         island.clear();
         self.placed.clear();
         self.cores.clear();
+        self.flex_cores.clear();
         self.block_of_body.clear();
         self.flex_blocks.clear();
         self.bodies.clear();

@@ -87,7 +87,13 @@ impl Gatherer {
                 let edge = points_of.edge.max(surface_of.edge) + 2.0 * law.skin;
                 let colliders = [points_of.collider, surface_of.collider];
                 if settings.uses_path && !HookBook::asks(colliders, sets) {
-                    match ways::flex_flex(island, [points, surface], names, law) {
+                    match ways::flex_flex(
+                        island,
+                        [points, surface],
+                        names,
+                        law,
+                        &mut self.flex_cores,
+                    ) {
                         Ok(()) => return Ok(()),
                         Err(gap) => law.skin += gap,
                     }
@@ -155,7 +161,8 @@ impl Gatherer {
             outline: self.outlines.outline(handle, collider),
             offset: placed.offset,
         };
-        ways::flex_rigid(island, flex, &surface, names, law, reach, &mut self.draft)
+        let drawing = (&mut self.draft, &mut self.flex_cores);
+        ways::flex_rigid(island, flex, &surface, names, law, reach, drawing)
     }
 
     /// Leads two rigid colliders along a path that keeps them apart; returns whether they are.

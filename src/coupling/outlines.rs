@@ -6,7 +6,7 @@
 
 use super::shapes::{convert, pose_of};
 use crate::constraint::geometry::{ConvexPart, Pose2};
-use crate::math::{Vec2, atan2, cross, from_rapier, perp};
+use crate::math::{Vec2, atan2, from_rapier};
 use crate::rapier::parry::shape::{Shape, TypedShape};
 use crate::rapier::prelude::*;
 use std::collections::HashMap;
@@ -216,62 +216,9 @@ fn rim_of(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     rim.map(|slot| sides[slot].1).collect()
 }
 
-/// A convex polygon drawn inwards by up to `offset` (m), over `inset`; returns by how much: never so far that an edge would vanish.
-pub(super) fn draw_inwards(vertices: &[Vec2], offset: f64, inset: &mut Vec<Vec2>) -> f64 {
-    inset.clear();
-    let n = vertices.len();
-    let direction = |edge: usize| (vertices[(edge + 1) % n] - vertices[edge]).normalize();
-    // Tangent of half the turn at a vertex: how far a unit offset moves it along either edge.
-    let bend = |vertex: usize| {
-        let [before, after] = [(vertex + n - 1) % n, vertex].map(direction);
-        cross(before, after) / (1.0 + before.dot(&after)).max(f64::MIN_POSITIVE)
-    };
-    let mut most = offset;
-    for edge in 0..n {
-        let length = (vertices[(edge + 1) % n] - vertices[edge]).norm();
-        most = most.min(KEPT * length / (bend(edge) + bend((edge + 1) % n)));
-        // How far the tip of a corner stands out of its rounding, per unit.
-        let tip = (1.0 + bend(edge).powi(2)).sqrt() - 1.0;
-        most = most.min(TIP * offset / tip.max(TIP));
-    }
-    for (vertex, place) in vertices.iter().enumerate() {
-        let along = direction(vertex);
-        inset.push(place + most * (perp(along) + bend(vertex) * along));
-    }
-    most
-}
-
-/// What the tip of a corner may stand out of its rounding, relative to the offset: as much as that of a right angle does.
-const TIP: f64 = std::f64::consts::SQRT_2 - 1.0;
-
-/// Share of an edge that drawing inwards may take: a quarter leaves a core that is no sliver, whatever the polygon.
-const KEPT: f64 = 0.25;
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_rectangle_drawn_inwards_keeps_its_faces_at_the_offset() {
-        let corners = [[-2.0, -1.0], [2.0, -1.0], [2.0, 1.0], [-2.0, 1.0]].map(Vec2::from);
-        let mut inset = Vec::new();
-        let by = draw_inwards(&corners, 0.1, &mut inset);
-        assert_eq!(by, 0.1);
-        let expected = [[-1.9, -0.9], [1.9, -0.9], [1.9, 0.9], [-1.9, 0.9]].map(Vec2::from);
-        for (found, expected) in inset.iter().zip(expected) {
-            assert!((found - expected).norm() < 1e-15, "{found}");
-        }
-    }
-
-    #[test]
-    fn a_sliver_is_drawn_inwards_by_less_than_its_shortest_edge() {
-        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1e-3]].map(Vec2::from);
-        let mut inset = Vec::new();
-        let by = draw_inwards(&corners, 0.1, &mut inset);
-        assert!(by > 1e-5 && by < 5e-4, "{by}");
-        let area = cross(inset[1] - inset[0], inset[2] - inset[0]);
-        assert!(area > 0.0);
-    }
 
     #[test]
     fn the_rim_of_two_triangles_leaves_out_what_they_share() {

@@ -3,8 +3,8 @@
 use super::candidates::{Bounds, Names};
 use super::draft::Guest;
 pub(super) use super::draft::{Draft, RigidSurface};
+use super::flex_cores::{FlexCore, FlexCores, Inset, offset_of};
 use super::outlines::Piece;
-use crate::body::contact_offset;
 use crate::constraint::contact::ContactLaw;
 use crate::kkt::{Island, Way};
 use crate::math::rotation;
@@ -25,7 +25,8 @@ const MOST_INWARDS: f64 = 0.125;
 
 /// Keeps a flexible block apart from the pieces of a rigid collider near it; `reach` is how far around its swept box it may get (m).
 ///
-/// If they are not apart to begin with, nothing is added, and the distance at which they should come to be is returned (m).
+/// If they are not apart to begin with, drawn inwards as far as may be, nothing is added, and the distance at which they should come to
+/// be is returned (m).
 pub(super) fn flex_rigid(
     island: &mut Island,
     flex: usize,
@@ -33,41 +34,65 @@ pub(super) fn flex_rigid(
     names: Names,
     law: ContactLaw,
     reach: f64,
-    draft: &mut Draft,
+    (draft, cores): (&mut Draft, &mut FlexCores),
 ) -> Result<(), f64> {
     let Block::Flex(body) = &island.blocks[flex] else {
         return Err(0.0);
     };
+    let offset = offset_of(body);
     if is_below(surface, body, island) {
         return Err(0.0);
     }
-    let offset = offset_of(body);
     let guest = Guest {
         centre: body.centre(),
         size: body.size(),
         near: bounds_of(body).loosened(reach),
     };
+    for length in std::iter::once(0.0).chain(Inset::all_of(offset)) {
+        let inset = Inset {
+            length,
+            is_forced: true,
+        };
+        let Some(own) = cores.core(flex, inset, island) else {
+            return Err(0.0);
+        };
+        if lead_pieces(island, own, surface, (names, law), offset, &guest, draft) {
+            return Ok(());
+        }
+    }
+    Err(surface.outline.gap(offset))
+}
+
+/// Keeps a flexible surface apart from the pieces of a rigid collider; returns whether they are to begin with. If not, nothing is added.
+fn lead_pieces(
+    island: &mut Island,
+    own: FlexCore,
+    surface: &RigidSurface<'_>,
+    (names, law): (Names, ContactLaw),
+    offset: f64,
+    guest: &Guest,
+    draft: &mut Draft,
+) -> bool {
     let first = island.path.n_ways();
-    let own = island.path.flex_member(flex, &island.blocks);
     for (name, piece) in surface.outline.named_pieces() {
-        let Some(closing) = draw(draft, piece, surface, offset, &guest, island) else {
+        let Some(closing) = draw(draft, piece, surface, offset, guest, island) else {
             continue;
         };
         let other = draft.add_to(island, surface.block, name);
         let way = Way {
-            members: [own, other],
+            members: [own.member, other],
             owners: [names.one, names.other],
             law,
-            closing: closing.distance + law.skin,
+            closing: closing.distance + own.round + law.skin,
             margin: closing.margin,
             reach: REACH * closing.margin,
         };
         if !island.path.add_way(way) {
             island.path.truncate(first);
-            return Err(surface.outline.gap(offset));
+            return false;
         }
     }
-    Ok(())
+    true
 }
 
 /// Whether a node has begun the step in a half-space: its boundary alone does not tell the sides apart.
@@ -94,31 +119,43 @@ fn is_below(surface: &RigidSurface<'_>, body: &FlexBlock, island: &Island) -> bo
     })
 }
 
-/// Keeps two flexible blocks apart. If they are not to begin with, returns the distance at which they should come to be (m).
+/// Keeps two flexible blocks apart. If they are not to begin with, drawn inwards as far as may be, the distance at which they should come
+/// to be is returned (m).
 pub(super) fn flex_flex(
     island: &mut Island,
     blocks: [usize; 2],
     names: Names,
     law: ContactLaw,
+    cores: &mut FlexCores,
 ) -> Result<(), f64> {
     let [Block::Flex(one), Block::Flex(other)] = blocks.map(|block| &island.blocks[block]) else {
         return Err(0.0);
     };
     let offset = offset_of(one).min(offset_of(other));
-    let members = blocks.map(|block| island.path.flex_member(block, &island.blocks));
-    let way = Way {
-        members,
-        owners: [names.one, names.other],
-        law,
-        closing: offset + law.skin,
-        margin: offset,
-        reach: REACH * offset,
-    };
-    if island.path.add_way(way) {
-        Ok(())
-    } else {
-        Err(offset)
+    for is_forced in [false, true] {
+        let mut margin = f64::INFINITY;
+        for length in Inset::all_of(offset) {
+            let inset = Inset { length, is_forced };
+            let [Some(one), Some(other)] = blocks.map(|block| cores.core(block, inset, island))
+            else {
+                return Err(0.0);
+            };
+            let closing = (one.round + other.round).max(offset);
+            margin = margin.min(closing);
+            let way = Way {
+                members: [one.member, other.member],
+                owners: [names.one, names.other],
+                law,
+                closing: closing + law.skin,
+                margin,
+                reach: REACH * offset,
+            };
+            if island.path.add_way(way) {
+                return Ok(());
+            }
+        }
     }
+    Err(0.0)
 }
 
 /// Distance of cores at which a contact closes, and the part of it that the path may use up (m).
@@ -158,11 +195,6 @@ fn draw(
         distance
     };
     is_near.then_some(Closing { distance, margin })
-}
-
-/// The offset of a flexible body's surface (m).
-fn offset_of(body: &FlexBlock) -> f64 {
-    contact_offset(body.model(), body.extent())
 }
 
 /// Box of a surface over the step.

@@ -10,9 +10,9 @@ pub(super) use self::kept::KeptBase;
 use self::meetings::Meeting;
 use self::retreat::LastWay;
 use crate::constraint::contact::{ContactLaw, ContactMemory, Owner};
-use crate::math::Vec2;
+use crate::math::{Vec2, rotation};
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};
-use crate::system::{Block, Point, RigidMotion};
+use crate::system::{Block, FlexBlock, Point, RigidMotion};
 
 /// Turn of a member with near pairs within a pass (rad): rows are straight where arcs are not.
 const MOST_TURN: f64 = 0.5;
@@ -48,10 +48,20 @@ struct SurfacePoint {
     point: Point,
     /// Its name in contact keys.
     name: u32,
-    /// From a core's vertex to the sharp corner that it stands for, in body axes (m).
+    /// From a core's vertex to the corner or node that it stands for, in body axes (m).
     corner: Vec2,
     /// Radius by which the core is rounded there (m).
     round: f64,
+}
+
+impl SurfacePoint {
+    /// Where it is, with the node that it stands for there (m) and the axes of its body turned by `angle` (rad).
+    fn beside(&self, node: Vec2, angle: f64) -> Vec2 {
+        if self.round == 0.0 {
+            return node;
+        }
+        node - rotation(angle) * self.corner
+    }
 }
 
 /// Where a block is at the base; of a flexible one its frame, and where its nodes begin among those of all.
@@ -82,8 +92,6 @@ pub struct FeasiblePath {
     ways: Vec<Way>,
     carriers: Vec<Carrier>,
     points: Vec<SurfacePoint>,
-    /// Member of each flexible block.
-    flex_members: Vec<Option<usize>>,
     near: Vec<NearPair>,
     hits: Vec<Hit>,
     base: Vec<BlockBase>,
@@ -105,7 +113,6 @@ impl FeasiblePath {
         self.ways.clear();
         self.carriers.clear();
         self.points.clear();
-        self.flex_members.clear();
         self.near.clear();
         self.farthest_tip = 0.0;
     }
@@ -126,39 +133,33 @@ impl FeasiblePath {
         self.pairs.truncate(first);
     }
 
-    /// The member of a flexible block, added when first asked for.
-    pub(crate) fn flex_member(&mut self, block: usize, blocks: &[Block]) -> usize {
-        if self.flex_members.len() <= block {
-            self.flex_members.resize(block + 1, None);
-        }
-        if let (Some(member), _) | (None, Some(member)) =
-            (self.flex_members[block], self.add_flex(block, blocks))
-        {
-            self.flex_members[block] = Some(member);
-            return member;
-        }
-        usize::MAX
-    }
-
-    fn add_flex(&mut self, block: usize, blocks: &[Block]) -> Option<usize> {
-        let Block::Flex(body) = &blocks[block] else {
-            return None;
-        };
-        if self.flex_members[block].is_some() {
-            return None;
-        }
+    /// Adds the surface of a flexible block.
+    ///
+    /// - `round`: by how much it is drawn inwards and rounded (m).
+    /// - `corners`: from where its boundary nodes are then to these, in body axes (m); empty if it stays where it is.
+    pub(crate) fn flex_member(
+        &mut self,
+        block: usize,
+        body: &FlexBlock,
+        round: f64,
+        corners: &[Vec2],
+    ) -> usize {
         let boundary = body.model().mesh().boundary();
         self.scratch.clear();
         self.edges.clear();
         let first = self.points.len();
-        for &node in boundary.nodes() {
-            self.scratch.push(body.start_position(node));
-            self.points.push(SurfacePoint {
+        let angle = body.start_frame().angle;
+        for (slot, &node) in boundary.nodes().iter().enumerate() {
+            let point = SurfacePoint {
                 point: Point::Node(node),
                 name: node as u32,
-                corner: Vec2::zeros(),
-                round: 0.0,
-            });
+                corner: corners.get(slot).copied().unwrap_or_default(),
+                round,
+            };
+            self.scratch
+                .push(point.beside(body.start_position(node), angle));
+            self.points.push(point);
+            self.farthest_tip = self.farthest_tip.max(point.corner.norm() - round);
         }
         // Segment k starts at boundary node k.
         for segment in 0..boundary.segments().len() {
@@ -171,8 +172,8 @@ impl FeasiblePath {
             is_flex: true,
         });
         let edges = self.edges.iter().copied();
-        let kind = MotionKind::Flexible;
-        Some(self.surfaces.add(kind, true, &self.scratch, edges))
+        self.surfaces
+            .add(MotionKind::Flexible, true, &self.scratch, edges)
     }
 
     /// Adds a piece of a rigid block.
@@ -313,9 +314,16 @@ impl FeasiblePath {
         }
         let points = own.points.clone();
         let block = &blocks[self.carriers[member].block];
+        let angle = match block {
+            Block::Flex(body) => body.start_frame().angle,
+            Block::Rigid(body) => body.start().angle,
+        };
         let places = self.surfaces.points_mut(member).iter_mut();
         for (place, own) in places.zip(&self.points[points]) {
-            *place = block.start_position(own.point);
+            *place = match own.point {
+                Point::Node(_) => own.beside(block.start_position(own.point), angle),
+                Point::Arm(_) => block.start_position(own.point),
+            };
         }
     }
 
@@ -327,8 +335,9 @@ impl FeasiblePath {
                 let first = self.surfaces.members()[member].points.start;
                 let ends = self.motion.ends_mut(&self.surfaces, member);
                 for (slot, end) in ends.iter_mut().enumerate() {
-                    if let Point::Node(node) = self.points[first + slot].point {
-                        *end = body.position(node);
+                    let own = &self.points[first + slot];
+                    if let Point::Node(node) = own.point {
+                        *end = own.beside(body.position(node), body.angle());
                     }
                 }
             }

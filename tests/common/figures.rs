@@ -268,3 +268,19 @@ impl Figure {
         2.0 * radius + if corners.len() < 3 { 0.0 } else { width }
     }
 }
+
+/// Signed distance of a point from the outline of a flexible body, negative inside (m).
+pub fn from_outline(body: &FlexBody, point: [f64; 2]) -> f64 {
+    let (mut nearest, mut is_inside) = (f64::INFINITY, false);
+    for &[a, b] in body.mesh().boundary().segments() {
+        let ([x0, y0], [x1, y1]) = (body.position(a), body.position(b));
+        let (along, off) = ([x1 - x0, y1 - y0], [point[0] - x0, point[1] - y0]);
+        let length = along[0].hypot(along[1]);
+        let share = ((off[0] * along[0] + off[1] * along[1]) / length.powi(2)).clamp(0.0, 1.0);
+        nearest = nearest.min((off[0] - share * along[0]).hypot(off[1] - share * along[1]));
+        if (y0 > point[1]) != (y1 > point[1]) && off[0] < along[0] * off[1] / along[1] {
+            is_inside = !is_inside;
+        }
+    }
+    if is_inside { -nearest } else { nearest }
+}

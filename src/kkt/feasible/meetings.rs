@@ -71,6 +71,7 @@ impl FeasiblePath {
         // The same share of friction on the other side.
         let turned = force.dot(&own) * next + force.dot(&perp(own)) * perp(next);
         let (normals, forces) = ([own, next], [force, turned]);
+        let is_between = self.are_foremost(vertices, own + next);
         let known = self
             .meetings
             .iter_mut()
@@ -99,10 +100,25 @@ impl FeasiblePath {
         let is_wide = |[a, b]: [Vec2; 2]| a.dot(&b) <= LEAST_COSINE;
         let turns = (normals[0] - normals[1]).norm() > SAME;
         meeting.is_held = turns
+            && is_between
             && meeting.n_over < MOST_HELD
             && meeting.slides >= SLIDES
             && !is_wide(normals)
             && !is_wide(forces);
+    }
+
+    /// Whether two vertices are where their surfaces reach farthest towards each other, the first one against this direction. Elsewhere one of
+    /// them lies over an edge of the other, and forces do not pass from vertex to vertex.
+    fn are_foremost(&self, vertices: [usize; 2], outward: Vec2) -> bool {
+        let is_foremost = |vertex: usize, outward: Vec2| {
+            self.surfaces.edges_at(vertex).iter().all(|&edge| {
+                let ends = self.surfaces.edges()[edge as usize].map(|end| end as usize);
+                let other = ends[usize::from(ends[0] == vertex)];
+                let along = self.surfaces.points()[other] - self.surfaces.points()[vertex];
+                along.dot(&outward) >= -SAME * along.norm() * outward.norm()
+            })
+        };
+        is_foremost(vertices[0], outward) && is_foremost(vertices[1], -outward)
     }
 
     /// The normal on the other side of a vertex that is slid over, on the side of this normal; this normal where there is none.

@@ -91,9 +91,9 @@ impl FeasiblePath {
         let point = self.surfaces.points()[near.point];
         // Forces act on the surface of a flexible body: at the point's own, or where the target's is met.
         let position = if own.is_flex {
-            point
+            self.at_base(own.block, self.points[near.point].point)
         } else {
-            point - near.distance * near.normal + self.aside(near)
+            point - (near.distance - self.rounding(near)) * near.normal + self.aside(near)
         };
         let lever = |carrier: Carrier| position - self.base[carrier.block].centre;
         let held = |carrier: Carrier, at: usize| {
@@ -110,9 +110,11 @@ impl FeasiblePath {
         match near.target {
             Target::Edge(edge) if met.is_flex => {
                 let [from, to] = self.surfaces.edges()[edge].map(|end| end as usize);
-                let along = self.surfaces.points()[to] - self.surfaces.points()[from];
-                let aside = (position - point).dot(&along) / along.norm_squared();
-                let xi = (near.xi + aside).clamp(0.0, 1.0);
+                let [start, end] =
+                    [from, to].map(|end| self.at_base(met.block, self.points[end].point));
+                let along = end - start;
+                let foot = (position - start).dot(&along) / along.norm_squared();
+                let xi = if foot.is_finite() { foot } else { near.xi }.clamp(0.0, 1.0);
                 row(&[first, target(from, xi - 1.0), target(to, -xi)])
             }
             Target::Edge(edge) => {
@@ -120,6 +122,20 @@ impl FeasiblePath {
                 row(&[first, target(from as usize, -1.0)])
             }
             Target::Vertex(vertex) => row(&[first, target(vertex, -1.0)]),
+        }
+    }
+
+    /// By how much the flexible surface that a rigid body meets has been drawn inwards (m).
+    fn rounding(&self, near: &NearPair) -> f64 {
+        let met = self.carriers[self.members_of(near)[1]];
+        let target = match near.target {
+            Target::Edge(edge) => self.surfaces.edges()[edge][0] as usize,
+            Target::Vertex(vertex) => vertex,
+        };
+        if met.is_flex {
+            self.points[target].round
+        } else {
+            0.0
         }
     }
 

@@ -1,0 +1,135 @@
+//! Flexible bodies laid exactly on and beside each other, as a user builds a wall.
+
+mod common;
+
+use common::*;
+
+const WIDTH: f64 = 0.5;
+const HEIGHT: f64 = 0.25;
+
+/// Deepest boundary node of one body in another (m).
+fn overlap(scene: &Scene, bodies: &[FlexBodyHandle]) -> f64 {
+    let mut deepest = 0.0f64;
+    for &one in bodies {
+        for &other in bodies.iter().filter(|&&other| other != one) {
+            let (one, outline) = (scene.body(one), scene.body(other));
+            let nodes = one.mesh().boundary().nodes().iter();
+            let depths = nodes.map(|&node| -from_outline(outline, one.position(node)));
+            deepest = depths.fold(deepest, f64::max);
+        }
+    }
+    deepest
+}
+
+/// Blocks in columns and rows on the ground, with gaps (m) between them.
+fn wall([columns, rows]: [usize; 2], gap: f64) -> (Scene, Vec<FlexBodyHandle>) {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    let places = (0..columns * rows).map(|k| [k % columns, k / columns]);
+    let bodies = places.map(|[column, row]| {
+        let block = FlexBodyBuilder::rectangle([WIDTH, HEIGHT], [4, 2])
+            .material(elastic(1e6, 1000.0, 2e-3))
+            .friction(0.5)
+            .translation([column as f64 * (WIDTH + gap), row as f64 * (HEIGHT + gap)]);
+        scene.flexible(block)
+    });
+    let bodies = bodies.collect();
+    (scene, bodies)
+}
+
+#[test]
+fn a_wall_laid_flush_settles_as_one_laid_with_a_hair_between() {
+    for size in [[1, 2], [1, 4], [2, 1], [3, 3]] {
+        // In binary fractions the faces of the first one are the same to the last digit.
+        let ends = [0.0, 1e-7, 1e-5].map(|gap| {
+            let (mut scene, bodies) = wall(size, gap);
+            for step in 0..120 {
+                let report = scene.step();
+                let told = report.gap_violation();
+                let there = overlap(&scene, &bodies);
+                assert!(
+                    there <= 1e-3 * HEIGHT && told <= 1e-3 * HEIGHT,
+                    "{size:?}, {gap} m apart, step {step}: {there} m, {told} m told"
+                );
+            }
+            let ends = bodies.iter().map(|&body| centre(scene.body(body)));
+            (ends.collect::<Vec<_>>(), speed(&scene, &bodies))
+        });
+        for (found, still) in &ends {
+            assert!(*still < 1e-2, "{size:?}: {still} m/s");
+            for (at, expected) in found.iter().zip(&ends[0].0) {
+                let off = (at[0] - expected[0]).hypot(at[1] - expected[1]);
+                assert!(off < 1e-4, "{size:?}: {off} m");
+            }
+        }
+    }
+}
+
+/// Centre of the nodes of a body (m).
+fn centre(body: &FlexBody) -> [f64; 2] {
+    let n = body.n_nodes();
+    let sum = (0..n).map(|node| body.position(node));
+    let sum = sum.fold([0.0; 2], |sum, at| [sum[0] + at[0], sum[1] + at[1]]);
+    sum.map(|sum| sum / n as f64)
+}
+
+/// Largest speed of a node (m/s).
+fn speed(scene: &Scene, bodies: &[FlexBodyHandle]) -> f64 {
+    let speeds = bodies.iter().flat_map(|&body| {
+        let body = scene.body(body);
+        (0..body.n_nodes()).map(|node| {
+            let [x, y] = body.velocity(node);
+            x.hypot(y)
+        })
+    });
+    speeds.fold(0.0, f64::max)
+}
+
+/// A block that a pin keeps from being pushed out: its lower left corner stays on the upper side of a coarser block.
+#[test]
+fn what_is_pinned_where_it_is_flush_stays_on_the_surface_all_along() {
+    for divisions in [[[2, 5], [4, 2]], [[4, 2], [2, 5]]] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        scene.ground(0.5);
+        let block = |level: usize, divisions: [usize; 2]| {
+            FlexBodyBuilder::rectangle([0.75, 0.5], divisions)
+                .material(elastic(5e5, 1500.0, 0.0))
+                .friction(0.9)
+                .translation([0.0, 0.5 * level as f64])
+        };
+        let lower = scene.flexible(block(0, divisions[0]));
+        let upper = block(1, divisions[1]).pin_where(|[x, y]| x < 1e-9 && y < 1e-9, Pin::both());
+        let upper = scene.flexible(upper);
+        for step in 0..90 {
+            let told = scene.step().gap_violation();
+            let there = overlap(&scene, &[lower, upper]);
+            assert!(
+                there <= 2e-3 * 0.5,
+                "{divisions:?}, step {step}: {there} m, {told} m told"
+            );
+        }
+    }
+}
+
+/// What a user has put into each other by less than a tenth of a cell comes apart without a kick.
+#[test]
+fn blocks_that_overlap_a_little_come_apart() {
+    for depth in [1e-4, 1e-3, 5e-3] {
+        let (mut scene, bodies) = wall([1, 2], -depth);
+        let weight = 1000.0 * WIDTH * HEIGHT * G;
+        let report = scene.step();
+        assert!(is_solved(report));
+        let moved = speed(&scene, &bodies);
+        // The overlap is left within the step.
+        assert!(moved < 4.0 * depth * 60.0 + 0.2, "{depth} m: {moved} m/s");
+        scene.steps(180);
+        let there = overlap(&scene, &bodies);
+        assert!(there <= 1e-4 * HEIGHT, "{depth} m: {there} m");
+        let report = scene.step();
+        let carried: f64 = report.contacts().iter().map(|c| c.force()[1].abs()).sum();
+        assert!(
+            (carried - 3.0 * weight).abs() < 0.05 * weight,
+            "{depth} m: {carried} N of {weight} N"
+        );
+    }
+}
