@@ -31,3 +31,6 @@ mod multibody_rest;
 
 #[path = "joints/coming_and_going.rs"]
 mod coming_and_going;
+
+#[path = "joints/caught.rs"]
+mod caught;

@@ -124,7 +124,7 @@ impl Island {
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let is_eased = pass >= settings.max_newton;
             let near = self.enough(is_eased, NEAR * tolerance);
-            let misleads = is_guess && self.measure(true) > near;
+            let misleads = is_guess && self.measure_guess() > near;
             let mut arrives = false;
             let mut error = 0.0;
             if !self.is_finite() || has_left && self.leads_around() {

@@ -93,7 +93,11 @@ impl Island {
             let is_guess =
                 round == 0 && iteration == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let extrapolates = iteration >= GAPS_KEPT_FROM;
-            let mut error = self.measure(is_guess || extrapolates);
+            let mut error = if is_guess {
+                self.measure_guess()
+            } else {
+                self.measure(extrapolates)
+            };
             // Under the last step's multipliers bodies may be anywhere: geometry counts if these are nearly right.
             let misleads = is_guess && error > NEAR * tolerance;
             if is_guess && !misleads {

@@ -236,6 +236,27 @@ impl Island {
         error
     }
 
+    /// Extrapolates all joint rows from the beginning of the step, along the rows that they have; returns how far the laws are from holding
+    /// there (m or rad).
+    pub(super) fn extrapolate_joints(&mut self) -> f64 {
+        let mut error = 0.0f64;
+        for tie in &mut self.ties {
+            let is_turn = tie.row.measure.is_turn();
+            let grips = &self.joint_grips[tie.row.grips.0..tie.row.grips.1];
+            let moved = grips.iter().map(|grip| match &self.blocks[grip.block] {
+                Block::Rigid(block) => {
+                    let wrench = unit_wrench(grip, tie.direction, is_turn);
+                    let moved = block.moved();
+                    wrench.iter().zip(moved).map(|(w, x)| w * x).sum::<f64>()
+                }
+                block => grip.weight * tie.direction.dot(&block.displacement(grip.grip())),
+            });
+            tie.gap = tie.start + moved.sum::<f64>() - tie.goal;
+            error = error.max(tie.error());
+        }
+        error
+    }
+
     /// Notes that the forces of soft joints acted along the rows that they have.
     pub(super) fn keep_joints(&mut self) {
         self.applied_grips.clear();

@@ -17,6 +17,7 @@ mod gentle;
 mod impact;
 mod island;
 mod iterate;
+mod joint_held;
 mod joint_mass;
 mod joint_rows;
 mod joint_system;

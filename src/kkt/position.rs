@@ -88,8 +88,8 @@ impl Island {
         self.contacts.clear();
         self.is_working.clear();
         self.is_working.resize(self.candidates.len(), false);
-        self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
         self.open_joints(settings);
+        self.remember_contacts(OVERLAPPED * tolerance, kept, memory);
     }
 
     /// Round-off of a gap: positions of this size, and their predictions, are no better known.
@@ -120,7 +120,7 @@ impl Island {
                 let mut contact =
                     ActiveContact::new(index, kinematics, remembered, friction, blocks);
                 let is_overlap = contact.allow_overlap(kept, slop, candidate, &scene);
-                if is_overlap && self.ignores_overlaps {
+                if is_overlap && self.ignores_overlaps || self.is_held_by_joints(&kinematics) {
                     continue;
                 }
                 self.is_working[index] = true;
@@ -166,7 +166,19 @@ impl Island {
     /// The forces keep acting along the rows they have: gaps are true, and Newton's matrix is that of the rows. With
     /// `extrapolates` gaps follow the rows too, which always converges.
     pub(super) fn measure(&mut self, extrapolates: bool) -> f64 {
-        let mut error = self.measure_joints();
+        let error = self.measure_joints();
+        error.max(self.measure_contacts(extrapolates))
+    }
+
+    /// Measures the working set under the multipliers of the last step; returns how far the laws are from holding, extrapolated from the
+    /// beginning of the step (m).
+    pub(super) fn measure_guess(&mut self) -> f64 {
+        let error = self.extrapolate_joints();
+        error.max(self.measure_contacts(true))
+    }
+
+    fn measure_contacts(&mut self, extrapolates: bool) -> f64 {
+        let mut error = 0.0f64;
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         for contact in &mut self.contacts {
             let candidate = &self.candidates[contact.candidate];
@@ -222,7 +234,8 @@ impl Island {
                 ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
             let slop = OVERLAPPED * tolerance;
             let is_overlap = contact.allow_overlap(kept, slop, candidate, &scene);
-            let is_met = !(is_overlap && self.ignores_overlaps);
+            let is_met =
+                !(is_overlap && self.ignores_overlaps) && !self.is_held_by_joints(&kinematics);
             if is_met && contact.kinematics.gap < -tolerance {
                 self.is_working[index] = true;
                 self.contacts.push(contact);

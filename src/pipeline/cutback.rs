@@ -14,6 +14,9 @@ use crate::coupling::{RapierSets, Span};
 use crate::kkt::GAINED;
 use crate::system::Step;
 
+/// Energy gained in a step, relative to what there was and was brought, that no swing of stored accelerations explains (-).
+const DOUBLED: f64 = 1.0;
+
 impl FlexPipeline {
     /// Solves the step of one island, in parts if it must be.
     pub(super) fn solve_island(
@@ -55,9 +58,15 @@ impl FlexPipeline {
         let may_be_cut =
             n_cuts > 0 && dt >= SHORTEST && !step.is_explicit() && self.gatherer.links.is_empty();
         // What contact adds and cannot take back is the error of a step that is longer than the impact; what is parted costs energy at any pace.
-        let owes_more = -reserve > GAINED * summary.brought() + (-before).max(0.0);
-        // Not with joints: what they leave in stored accelerations swings, and a change of the step's length makes it swing more.
-        let is_coarse = owes_more && !summary.is_parting && self.island.ties.is_empty();
+        // What joints leave in stored accelerations swings, and a change of the step's length makes it swing more: with joints it must be as
+        // much as there was, on a path.
+        let share = match (self.island.ties.is_empty(), self.leads(step)) {
+            (true, _) => GAINED,
+            (false, true) => DOUBLED,
+            (false, false) => f64::INFINITY,
+        };
+        let owes_more = -reserve > share * summary.brought() + (-before).max(0.0);
+        let is_coarse = owes_more && !summary.is_parting;
         if may_be_cut && (is_coarse || summary.quality() != Quality::Solved) {
             let half = Step {
                 dt,

@@ -316,6 +316,12 @@ impl RigidBlock {
         self.current.angle += step[2];
     }
 
+    /// Motion of the centre and turn over the step (m, m, rad).
+    pub fn moved(&self) -> [f64; 3] {
+        let shift = self.current.centre - self.start.centre;
+        [shift.x, shift.y, self.current.angle - self.start.angle]
+    }
+
     /// Displacement of the end of a lever over the step, linear in the dofs (m).
     pub fn displacement(&self, lever: Vec2) -> Vec2 {
         let turned = self.current.angle - self.start.angle;

@@ -231,6 +231,8 @@ impl Island {
                 },
                 ..before
             },
+            // What is at work stays at work until the step ends.
+            None if self.is_held_by_joints(&kinematics) => return,
             None => {
                 let remembered = listing
                     .memory
