@@ -115,6 +115,7 @@ impl Island {
         self.list_near(&listing);
         self.note_pressing();
         listing.memory = None;
+        self.note_yielding(settings.b0);
         let mut turned = self.correct();
         let mut n_stopped = 0;
         let mut has_left = false;
@@ -179,6 +180,7 @@ impl Island {
             if !self.solve_consistently(settings, tolerance, summary) {
                 return false;
             }
+            self.note_yielding(settings.b0);
             if n_stopped > 0 && !self.impact.is_known {
                 self.keep_impact();
             }

@@ -118,6 +118,8 @@ pub struct ActiveContact {
     pub unresolved: f64,
     /// Share of the contact in which the bodies meet as rigid ones within the step, 0 to 1 (-).
     pub rigid: f64,
+    /// How far the row gives way to its own normal force in the sparse problem (m/N).
+    pub(super) yielding: f64,
     /// Approach velocity at the beginning of the step, `n·v` (m/s).
     pub approach: f64,
     /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and

@@ -368,6 +368,7 @@ impl ActiveContact {
             slip_before: 0.0,
             unresolved: 0.0,
             rigid: 0.0,
+            yielding: 0.0,
             approach,
             remembered,
             base: None,

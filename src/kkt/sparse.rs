@@ -124,6 +124,21 @@ impl Island {
         outcome
     }
 
+    /// Notes how far every contact that presses gives way to its force, where the rows at hand are solved as a sparse problem.
+    pub(super) fn note_yielding(&mut self, b0: f64) {
+        let yields =
+            self.softness == 0.0 && self.is_sparse(2 * self.contacts.len() + self.ties.len());
+        for contact in &mut self.contacts {
+            contact.yielding = 0.0;
+            if yields && contact.base.is_some() && contact.multiplier[0] > 0.0 {
+                let row = &contact.kinematics;
+                let own = compliance(&self.blocks, row, row, Response::Position);
+                let along = own.map_or(0.0, |own| row.normal.dot(&(own * row.normal)));
+                contact.yielding = b0 * YIELDING * along.max(0.0);
+            }
+        }
+    }
+
     fn state_sparse(&self, sparse: &mut Sparse, asked: Asked) -> Result<(), KktError> {
         sparse.fill_matrix(&self.blocks);
         sparse.rows.clear();
@@ -350,7 +365,11 @@ impl Island {
             }
         };
         // The dilation of what slides may leave a fifth of what a pass accepts.
-        solver.settings.gap_tolerance = 2e-4 * self.path.least_margin().min(1e-3) / asked.unit;
+        let unit = match asked.of {
+            Response::Position | Response::Velocity => asked.unit,
+            Response::Acceleration | Response::ByMass => asked.unit * asked.unit,
+        };
+        solver.settings.gap_tolerance = 2e-4 * self.path.least_margin().min(1e-3) / unit;
         solver.settings.slip_tolerance = 1e-4;
         solver.settings.tolerance = 1e-7;
         solver.scales_start = asked.of == Response::Velocity;

@@ -23,7 +23,9 @@ impl ActiveContact {
         if self.is_lost || self.base.is_some_and(slides_off) {
             return f64::MAX;
         }
-        self.law_error(self.kinematics.gap, friction)
+        // What gives way rests nearer by that much: so was it solved.
+        let yielded = self.yielding * self.multiplier[0];
+        self.law_error(self.kinematics.gap + yielded, friction)
     }
 
     /// How far Signorini's and Coulomb's laws are from holding (m).
@@ -101,5 +103,24 @@ impl ActiveContact {
         }
         self.is_lost = self.losses <= LET_GO;
         self.apart = apart;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constraint::contact::Remembered;
+
+    #[test]
+    fn what_gives_way_to_its_force_holds_to_its_law_where_it_rests() {
+        let row = Kinematics::with_levers(-3e-8, Vec2::new(0.0, 1.0), Vec2::zeros(), &[]);
+        let remembered = Remembered {
+            normal: 2.0,
+            ..Remembered::default()
+        };
+        let mut contact = ActiveContact::new(0, row, remembered, 0.0, &[]);
+        assert!(contact.shortfall(0.0) >= 3e-8);
+        contact.yielding = 1.5e-8;
+        assert!(contact.shortfall(0.0) < 1e-20);
     }
 }

@@ -10,7 +10,7 @@
 //! All solvers work on `H = A + Gᵀ S G`, as sparse as the graph of bodies that touch:
 //!
 //! 1. proximal steps from the last answer, by Newton's method (`proximal`);
-//! 2. if that takes more than a few factorizations, an interior point (`interior`),
+//! 2. if that takes more than a few factorizations without gaining, an interior point (`interior`),
 //! 3. whose forces proximal steps finish;
 //! 4. the budget spent, projected gradients (`sweep`), which obey every bound and bring no energy, but leave gaps.
 //!
@@ -65,15 +65,19 @@ use system::System;
 /// a soft one finds its piece sooner. Stiffer ones only speed up the last digits.
 const WARM: [f64; 2] = [1e4, 1e6];
 const POLISH: [f64; 3] = [1e2, 1e4, 1e6];
-/// Factorizations allowed to warm proximal steps; few if they have failed the last time.
+/// Factorizations allowed to warm proximal steps until the residual is lower by [`GAIN`](proximal); few if they have failed the last time.
 const N_WARM: [usize; 2] = [12, 3];
+
+/// The part of the error at the start that may be left (-).
+const SETTLING: f64 = 1e-3;
 
 /// What is good enough, and how much work it may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConeSettings {
     /// The natural-map residual to reach, relative to the largest force (-).
     pub tolerance: f64,
-    /// The gap that dilation may leave under a sliding contact, in the unit of `w`.
+    /// The error of `w` that is good enough whatever the forces are, and the gap that dilation may leave under a sliding contact, in
+    /// the unit of `w`.
     pub gap_tolerance: f64,
     /// The part of its slip that sigma may miss (-), which leaves a gap of `mu` times that slip.
     pub slip_tolerance: f64,
@@ -192,6 +196,7 @@ impl ConeSolver {
             self.scale_start(problem, multipliers);
         }
         self.warm_start(problem, multipliers, slip);
+        self.set_goal(problem);
         let used_interior_point = self.improve(problem);
         let outcome = self.hand_back(problem, multipliers, slip);
         acceleration.clone_from(&self.state.a);
@@ -276,13 +281,32 @@ impl ConeSolver {
         self.system.solve_bodies(&mut self.state.a);
     }
 
+    /// Allows the error of `w` that the settings admit, but no more than a thousandth of what the start is off: what comes to rest is
+    /// solved the finer the less it moves, and comes to rest.
+    fn set_goal(&mut self, problem: &ConeProblem) {
+        let State {
+            forces,
+            slip,
+            a,
+            status,
+        } = &mut self.state;
+        let start = self
+            .reduced
+            .measure(problem, a, forces, slip, &self.settings, status);
+        self.reduced.enough = self.settings.gap_tolerance.min(SETTLING * start.miss);
+    }
+
     /// Runs one solver after the other until one succeeds; whether the interior point was among them.
     fn improve(&mut self, problem: &ConeProblem) -> bool {
-        let limit = self.system.n_factorizations + self.settings.max_factorizations;
-        let n_warm = N_WARM[usize::from(self.is_hard)].min(self.settings.max_factorizations);
-        let (ending, _) = self.approach(problem, &WARM, n_warm);
-        self.is_hard = ending == Ending::Spent;
-        if ending != Ending::Spent {
+        let begun = self.system.n_factorizations;
+        let limit = begun + self.settings.max_factorizations;
+        let n_most = self.settings.max_factorizations.div_ceil(2);
+        let n_warm = N_WARM[usize::from(self.is_hard)].min(n_most);
+        let (ending, _) = self.approach(problem, &WARM, [n_warm, n_most]);
+        // what stalls after it has gained may be slips that chase each other on the way
+        let is_late = self.system.n_factorizations > begun + n_warm;
+        self.is_hard = ending == Ending::Spent || ending == Ending::Stalled && is_late;
+        if !self.is_hard {
             return false;
         }
         self.restart(problem);
@@ -295,7 +319,7 @@ impl ConeSolver {
             n_left,
         );
         let n_left = limit - self.system.n_factorizations.min(limit);
-        let (ending, completed) = self.approach(problem, &POLISH, n_left);
+        let (ending, completed) = self.approach(problem, &POLISH, [n_left, n_left]);
         if ending == Ending::Spent {
             self.sweep_instead(problem, completed);
         }
@@ -329,7 +353,7 @@ impl ConeSolver {
         &mut self,
         problem: &ConeProblem,
         levels: &[f64],
-        n_allowed: usize,
+        n_allowed: [usize; 2],
     ) -> (Ending, Measure) {
         let Self {
             proximal,
@@ -365,7 +389,11 @@ impl ConeSolver {
         }
         slip.copy_from_slice(&state.slip);
         // rounding may leave a little more than the iterations saw
-        let is_solved = measure.residual <= 2.0 * settings.tolerance && !measure.is_dilated;
+        let rounded = ConeSettings {
+            tolerance: 2.0 * settings.tolerance,
+            ..*settings
+        };
+        let is_solved = measure.is_within(&rounded, 2.0 * self.reduced.enough);
         ConeOutcome {
             residual: measure.residual,
             dilation: measure.dilation,

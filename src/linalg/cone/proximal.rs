@@ -28,6 +28,9 @@ const MODERATE: f64 = 1e4;
 /// Proximal steps without a residual lower by a tenth after which there is no use in more.
 const PATIENCE: usize = 6;
 
+/// Gain in the residual that renews the factorizations allowed (-).
+const GAIN: f64 = 0.1;
+
 /// Share of the tolerance to which what is solved is refined, as far as the factor at hand goes.
 const FINE: f64 = 1e-4;
 
@@ -84,7 +87,8 @@ fn nearest_power_of_two(value: f64) -> f64 {
 }
 
 impl Proximal {
-    /// Improves `state` by proximal steps until it is solved, stalls, or `n_allowed` factorizations are spent.
+    /// Improves `state` by proximal steps until it is solved, stalls, or has spent `n_allowed` factorizations without a lower residual, or
+    /// `n_most` in all.
     ///
     /// The measure is that of the last step completed, infinite if the budget did not last for one.
     ///
@@ -98,10 +102,11 @@ impl Proximal {
         state: &mut State,
         settings: &ConeSettings,
         levels: &[f64],
-        n_allowed: usize,
+        [n_allowed, n_most]: [usize; 2],
     ) -> (Ending, Measure) {
         let start = system.n_factorizations;
-        let limit = start + n_allowed;
+        let mut limit = start + n_allowed.min(n_most);
+        let mut renewed = f64::INFINITY;
         let (mut level, mut is_lowered) = (0, false);
         self.penalize(reduced, levels[0]);
         let mut refined: Option<Measure> = None;
@@ -114,7 +119,7 @@ impl Proximal {
             settings,
             &mut state.status,
         );
-        if measure.residual <= settings.tolerance && !measure.is_dilated {
+        if measure.is_within(settings, reduced.enough) {
             if measure.residual <= FINE * settings.tolerance {
                 return (Ending::Solved, measure);
             }
@@ -166,10 +171,13 @@ impl Proximal {
             if refined.is_none() {
                 self.saved_slip.clone_from(&state.slip);
             }
-            let is_solved = measure.residual <= settings.tolerance && !measure.is_dilated;
+            let is_solved = measure.is_within(settings, reduced.enough);
             let is_fine = measure.residual <= FINE * settings.tolerance
                 || refined.is_some_and(|best| measure.residual > 0.5 * best.residual);
-            if is_solved && measure.relative_dilation <= settings.tolerance && is_fine {
+            // where errors are admitted, only what rests is refined: what has changed its pieces goes on moving
+            let has_moved = reduced.enough > 0.0 && system.n_factorizations > start + 1;
+            let is_undilated = measure.relative_dilation <= settings.tolerance;
+            if is_solved && (has_moved || is_fine && is_undilated) {
                 return (Ending::Solved, measure);
             }
             let is_better = |best: Measure| {
@@ -182,6 +190,10 @@ impl Proximal {
                 refined = Some(measure);
             }
             let merit = measure.worst();
+            if merit < GAIN * renewed {
+                renewed = merit;
+                limit = (system.n_factorizations + n_allowed).min(start + n_most);
+            }
             if merit < 0.9 * best {
                 (best, n_idle) = (merit, 0);
             } else {

@@ -17,6 +17,8 @@ pub(super) struct Reduced {
     pub inverse_diagonal: Vec<f64>,
     /// The largest `|load| / sqrt(A_ii)`.
     pub largest_load: f64,
+    /// The error of `w` that is good enough, in its unit.
+    pub enough: f64,
 }
 
 /// How well forces and motion fit the laws.
@@ -24,6 +26,8 @@ pub(super) struct Reduced {
 pub(super) struct Measure {
     /// The natural map with the slips used, relative to the largest force (-).
     pub residual: f64,
+    /// The same in the unit of `w`.
+    pub miss: f64,
     /// The part of the dilation left, `max mu |sigma - |w_t||`, in the unit of `w`.
     pub dilation: f64,
     /// The same as a force, relative to the largest force (-).
@@ -33,6 +37,12 @@ pub(super) struct Measure {
 }
 
 impl Measure {
+    /// Whether the answer is good enough, where the error of `w` may be `enough`.
+    pub fn is_within(&self, settings: &ConeSettings, enough: f64) -> bool {
+        let is_near = self.residual <= settings.tolerance || self.miss <= enough;
+        is_near && !self.is_dilated
+    }
+
     /// The worse of both defects.
     pub fn worst(&self) -> f64 {
         self.residual.max(self.relative_dilation)
@@ -153,11 +163,11 @@ impl Reduced {
             w[0] += mu * slip[index];
             let (mapped, now) = self.natural(row, index, force, w);
             status[index] = now;
-            let term = weight
-                * (force[0] - mapped[0])
-                    .abs()
-                    .max((force[1] - mapped[1]).abs())
-                / scale;
+            let error = (force[0] - mapped[0])
+                .abs()
+                .max((force[1] - mapped[1]).abs());
+            let term = weight * error / scale;
+            measure.miss = measure.miss.max(self.resistance[index] * error);
             // `f64::max` would pass over a NaN
             measure.residual = if term.is_finite() {
                 measure.residual.max(term)
