@@ -210,9 +210,7 @@ fn collision(options: &Options) -> Result<Collision, Box<dyn Error>> {
     // The right bar is 1 % taller and as much thinner, so that the left one's corners meet its face inside the corners.
     let x = 0.5 * BAR_GAP;
     let left = bar(-BAR_LENGTH - x, BAR_SIDE, BAR_SPEED, [20, 41]);
-    // Surfaces of flexible bodies close at their offset from each other.
-    let offset = 1e-2 * BAR_LENGTH / 20.0;
-    let right = bar(x + offset, 1.01 * BAR_SIDE, -BAR_SPEED, [0, 21]);
+    let right = bar(x, 1.01 * BAR_SIDE, -BAR_SPEED, [0, 21]);
     let mut scene = Scene::new(0.0, dt, Beta2::trapezoidal(), [left, right])?;
     let total = |scene: &Scene| {
         let energies = [0, 1].map(|i| scene.body(i).energy());

@@ -141,9 +141,7 @@ fn collide(
         SPEED,
         [n, 2 * n + 1],
     ))?;
-    // Surfaces close at their offset from each other.
-    let place = 0.5 * GAP + scene.body(left).contact_offset();
-    let right = scene.add(bar(mass, n, place, 1.01 * SIDE, -SPEED, [0, n + 1]))?;
+    let right = scene.add(bar(mass, n, 0.5 * GAP, 1.01 * SIDE, -SPEED, [0, n + 1]))?;
     let total = |scene: &Scene| {
         let energies = [left, right].map(|bar| scene.body(bar).energy());
         energies.iter().map(|e| e.kinetic + e.elastic).sum::<f64>()

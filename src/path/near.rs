@@ -1,12 +1,16 @@
 //! The near pairs of a placement: what the rows of contact are made of.
 //!
 //! A row is a foot inside an edge, or a vertex against a vertex where each lies in the other's cone, asked of all the edges
-//! that meet in them. Elsewhere another pair of the two chains is closer, and has a row of its own.
+//! that meet in them. Elsewhere another pair of the two chains is closer, and has a row of its own; so has the bottom of a notch that
+//! keeps its shape none.
 
 use super::distance::{Beside, Foot, direction, inner_foot};
 use super::search::Extent;
-use super::{MemberPair, Path, Surfaces};
-use crate::math::{Vec2, mix};
+use super::{MemberPair, MotionKind, Path, Surfaces};
+use crate::math::{Vec2, cross, mix};
+
+/// Sine of the turn between two edges below which they may be meant as one (-): joints of a floor that is given in single precision.
+const FLAT: f64 = 1e-3;
 
 /// What a point is near to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -102,7 +106,9 @@ impl Asked<'_> {
         let beside = Beside::of(position, ends);
         if beside.is_inner() {
             let foot = inner_foot(position, ends, beside.inside);
-            self.push(point, Target::Edge(edge), foot, rows);
+            if !self.is_notch(point, foot.normal) {
+                self.push(point, Target::Edge(edge), foot, rows);
+            }
             return;
         }
         if self.side == 1 {
@@ -140,6 +146,29 @@ impl Asked<'_> {
             let end = usize::from(self.surfaces.edges()[edge as usize][0] as usize != vertex);
             Beside::of(position, self.surfaces.ends(edge as usize)).is_beyond(end)
         })
+    }
+
+    /// Whether a vertex of a surface that keeps its shape lies between its two edges as seen from where this normal comes from. Both rise
+    /// towards what is there, and their own rows, or those of its ends, are closer wherever it goes.
+    fn is_notch(&self, vertex: usize, normal: Vec2) -> bool {
+        let surfaces = self.surfaces;
+        let [one, other] = *surfaces.edges_at(vertex) else {
+            return false;
+        };
+        let member = [self.pair.one, self.pair.other][self.side];
+        if surfaces.members()[member].kind == MotionKind::Flexible {
+            return false;
+        }
+        let [one, other] = [one, other].map(|edge| {
+            let [from, to] = surfaces.edges()[edge as usize].map(|end| end as usize);
+            let far = if from == vertex { to } else { from };
+            surfaces.points()[far] - surfaces.points()[vertex]
+        });
+        // Between two runs of less than half a turn.
+        let between = [cross(one, -normal), cross(-normal, other)];
+        let turn = cross(one, other);
+        let is_flat = turn.abs() <= FLAT * one.norm() * other.norm();
+        !is_flat && between.iter().all(|part| part * turn > 0.0)
     }
 
     fn push(&self, point: usize, target: Target, foot: Foot, rows: &mut Vec<NearPair>) {

@@ -9,6 +9,7 @@ use super::{FeasiblePath, Way};
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
 use crate::math::{Vec2, perp};
 use crate::path::{NearPair, Target};
+use crate::system::Point;
 
 /// Passes within a step that have a force slide off at a vertex before its two sides are held together there.
 const SLIDES: usize = 2;
@@ -71,7 +72,7 @@ impl FeasiblePath {
         // The same share of friction on the other side.
         let turned = force.dot(&own) * next + force.dot(&perp(own)) * perp(next);
         let (normals, forces) = ([own, next], [force, turned]);
-        let is_between = self.are_foremost(vertices, own + next);
+        let is_between = self.are_extreme(vertices, own + next);
         let known = self
             .meetings
             .iter_mut()
@@ -107,18 +108,22 @@ impl FeasiblePath {
             && !is_wide(forces);
     }
 
-    /// Whether two vertices are where their surfaces reach farthest towards each other, the first one against this direction. Elsewhere one of
-    /// them lies over an edge of the other, and forces do not pass from vertex to vertex.
-    fn are_foremost(&self, vertices: [usize; 2], outward: Vec2) -> bool {
-        let is_foremost = |vertex: usize, outward: Vec2| {
-            self.surfaces.edges_at(vertex).iter().all(|&edge| {
-                let ends = self.surfaces.edges()[edge as usize].map(|end| end as usize);
+    /// Whether two vertices are where their surfaces reach farthest towards each other, the first one against this direction, or where
+    /// a flexible one draws back farthest: a corner in a dent. Elsewhere one of them lies over an edge of the other, and forces do not pass from vertex to vertex.
+    fn are_extreme(&self, vertices: [usize; 2], along: Vec2) -> bool {
+        let is_extreme = |vertex: usize, along: Vec2| {
+            let leans = |edge: &u32| {
+                let ends = self.surfaces.edges()[*edge as usize].map(|end| end as usize);
                 let other = ends[usize::from(ends[0] == vertex)];
-                let along = self.surfaces.points()[other] - self.surfaces.points()[vertex];
-                along.dot(&outward) >= -SAME * along.norm() * outward.norm()
-            })
+                let run = self.surfaces.points()[other] - self.surfaces.points()[vertex];
+                run.dot(&along) / (run.norm() * along.norm())
+            };
+            let edges = self.surfaces.edges_at(vertex);
+            let is_flex = matches!(self.points[vertex].point, Point::Node(_));
+            edges.iter().map(leans).all(|lean| lean >= -SAME)
+                || is_flex && edges.iter().map(leans).all(|lean| lean <= SAME)
         };
-        is_foremost(vertices[0], outward) && is_foremost(vertices[1], -outward)
+        is_extreme(vertices[0], along) && is_extreme(vertices[1], -along)
     }
 
     /// The normal on the other side of a vertex that is slid over, on the side of this normal; this normal where there is none.

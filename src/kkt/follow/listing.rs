@@ -139,6 +139,7 @@ impl Island {
         } else {
             applied
         };
+        self.fresh.retain(|&slot| slot != next);
         self.contacts[next] = ActiveContact {
             candidate: met.candidate,
             kinematics: met.kinematics,

@@ -59,6 +59,31 @@ fn the_closest_pair_of_two_members_always_has_a_row() {
     }
 }
 
+/// A spike in a valley has rows at its tip, one with each slope; the bottom of the valley is in the way of nothing, and is a corner from below.
+#[test]
+fn the_bottom_of_a_notch_is_no_corner() {
+    let valley = [[-1.0, 0.5], [0.0, 0.0], [1.0, 0.2]].map(|[x, y]| Vec2::new(x, y));
+    for (kind, up) in [
+        (MotionKind::Still, true),
+        (MotionKind::Still, false),
+        (MotionKind::Flexible, true),
+    ] {
+        let mut surfaces = Surfaces::new();
+        let spike = [[0.004, 0.012], [0.5, 0.4], [-0.02, 1.0]].map(|[x, y]| {
+            let y = if up { y } else { 0.1 - y };
+            Vec2::new(x, y)
+        });
+        surfaces.add_chain(MotionKind::Rigid, false, &spike, true);
+        surfaces.add_chain(kind, false, &valley, false);
+        let rows = rows(&surfaces, 1.0);
+        let of_bottom = rows.iter().filter(|row| row.point == 4).count();
+        let of_tip = rows.iter().filter(|row| row.point == 0).count();
+        let is_left_out = kind == MotionKind::Still && up;
+        assert_eq!(of_bottom == 0, is_left_out, "{kind:?}, from above {up}");
+        assert!(!up || of_tip == 2, "{of_tip} at the tip");
+    }
+}
+
 #[test]
 fn rows_are_as_defined_and_no_key_comes_twice() {
     let mut random = Random::new(11);
