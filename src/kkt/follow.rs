@@ -79,13 +79,7 @@ impl Island {
         self.softness = 0.0;
         self.left.clear();
         if self.try_passes(settings, memory, tolerance, summary) {
-            // Forces of rows that contradict each other are not the only ones: they are asked what energy they bring.
-            let is_certain = self.softness == 0.0;
-            return if is_certain {
-                Passed::Solved
-            } else {
-                Passed::Arrived
-            };
+            return Passed::Solved;
         }
         if let Some(passed) = self.end_at_arrival() {
             return passed;

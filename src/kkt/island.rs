@@ -118,8 +118,8 @@ pub struct ActiveContact {
     pub unresolved: f64,
     /// Share of the contact in which the bodies meet as rigid ones within the step, 0 to 1 (-).
     pub rigid: f64,
-    /// How far the row gives way to its own normal force in the sparse problem (m/N).
-    pub(super) yielding: f64,
+    /// How far the row gives way to its own force in the problem solved, along its normal and its tangent (m/N).
+    pub(super) yielding: [f64; 2],
     /// Approach velocity at the beginning of the step, `n·v` (m/s).
     pub approach: f64,
     /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and
@@ -207,6 +207,8 @@ pub struct Island {
     pub(super) parted: Vec<ActiveContact>,
     /// Contacts that are new in the last list of near pairs.
     pub(super) fresh: Vec<usize>,
+    /// Contacts of the last list that have taken over the force of another one.
+    pub(super) handed_over: Vec<usize>,
     /// The first impact of a step, the best place that the whole of the step has reached, and the best with contacts that slid off.
     pub(super) impact: Stage,
     pub(super) arrival: Stage,

@@ -132,7 +132,8 @@ impl Island {
         }
     }
 
-    /// Lets every contact give way to the change of its own multipliers, by the island's softness.
+    /// Lets every contact give way by the island's softness, along its normal to the change of its own multipliers, and along its tangent to
+    /// all of them: friction that holds against itself slips a little, or its forces grow from pass to pass.
     fn yield_to_changes(&mut self) {
         if self.softness == 0.0 {
             return;
@@ -141,7 +142,9 @@ impl Island {
         for row in 0..n {
             let give = self.softness * self.delassus[row * (n + 1)];
             self.delassus[row * (n + 1)] += give;
-            self.free[row] -= give * self.multipliers[row];
+            if !matches!(self.kinds[row], RowKind::Friction { .. }) {
+                self.free[row] -= give * self.multipliers[row];
+            }
         }
     }
 

@@ -368,7 +368,7 @@ impl ActiveContact {
             slip_before: 0.0,
             unresolved: 0.0,
             rigid: 0.0,
-            yielding: 0.0,
+            yielding: [0.0; 2],
             approach,
             remembered,
             base: None,

@@ -124,17 +124,22 @@ impl Island {
         outcome
     }
 
-    /// Notes how far every contact that presses gives way to its force, where the rows at hand are solved as a sparse problem.
+    /// Notes how far every contact that presses gives way to its force: along its normal where the rows at hand are solved as a sparse
+    /// problem, along its tangent where they contradict each other.
     pub(super) fn note_yielding(&mut self, b0: f64) {
-        let yields =
-            self.softness == 0.0 && self.is_sparse(2 * self.contacts.len() + self.ties.len());
+        let is_sparse = self.is_sparse(2 * self.contacts.len() + self.ties.len());
+        let yields = match self.softness {
+            0.0 if is_sparse => [YIELDING, 0.0],
+            softness => [0.0, softness],
+        };
         for contact in &mut self.contacts {
-            contact.yielding = 0.0;
-            if yields && contact.base.is_some() && contact.multiplier[0] > 0.0 {
+            contact.yielding = [0.0; 2];
+            if yields != [0.0; 2] && contact.base.is_some() && contact.multiplier[0] > 0.0 {
                 let row = &contact.kinematics;
                 let own = compliance(&self.blocks, row, row, Response::Position);
-                let along = own.map_or(0.0, |own| row.normal.dot(&(own * row.normal)));
-                contact.yielding = b0 * YIELDING * along.max(0.0);
+                let own = own.unwrap_or_default();
+                let along = [row.normal, row.tangent()].map(|along| along.dot(&(own * along)));
+                contact.yielding = [0, 1].map(|k| b0 * yields[k] * along[k].max(0.0));
             }
         }
     }
@@ -199,7 +204,9 @@ impl Island {
                 Response::Position => {
                     let yielding = scale.map(|own| self.softness.max(YIELDING) * own);
                     let softness = scale.map(|own| self.softness * own);
-                    let kept = [softness[0], yielding[1]];
+                    // What friction holds against itself slips a little, or its forces grow from pass to pass.
+                    let contradicts = self.softness > 0.0;
+                    let kept = [softness[0], if contradicts { 0.0 } else { yielding[1] }];
                     (
                         [0, 1].map(|k| give[k] + yielding[k]),
                         [0, 1].map(|k| (give[k] + kept[k]) * contact.multiplier[k]),

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! (a proximal step, Rockafellar 1976): passes that go on so lead to the same forces where there are any, and forces that push against
-//! each other grow no faster than what they cannot close.
+//! each other grow no faster than what they cannot close. Along its tangent a contact gives way to the whole of its force, `p₀ = 0`: friction that
+//! holds a corner in a notch against itself slips by a thousandth of what the force alone would move it, and there is one answer.
 
 use super::Island;
 use crate::kkt::delassus::compliance;

@@ -42,6 +42,7 @@ impl Island {
         std::mem::swap(&mut self.contacts, &mut self.contacts_before);
         self.contacts.clear();
         self.fresh.clear();
+        self.handed_over.clear();
         self.slot_of.clear();
         self.slot_of.resize(self.candidates.len(), u32::MAX);
         for (slot, contact) in self.contacts_before.iter().enumerate() {
@@ -114,52 +115,67 @@ impl Island {
             self.next_of(contact, base)
         };
         let Some(next) = next else {
-            self.contacts.push(ActiveContact {
-                applied,
-                is_lost: true,
-                ..*contact
-            });
+            self.lose_contact(contact, applied);
             // Corners of rigid bodies lose forces for good.
             let may_meet =
                 !contact.is_hard && !listing.is_again && !base.is_meeting && !contact.is_lost;
             if may_meet && !self.path.is_at_meeting(&base.near) {
-                let rows = [&contact.kinematics; 2];
-                let multiplier = contact.multiplier;
-                self.path
-                    .note_slide(&base.near, None, rows, multiplier, listing.pass);
+                self.note_slide(contact, base, None, listing);
             }
             return;
         };
         let met = self.contacts[next];
-        let is_swapped = met
-            .base
-            .is_some_and(|now| now.near.point != base.near.point);
-        let applied = if is_swapped {
-            applied.swapped()
+        if self.handed_over.contains(&next) {
+            // It has one force already, and takes one only.
+            self.lose_contact(contact, applied);
         } else {
-            applied
-        };
-        self.fresh.retain(|&slot| slot != next);
-        self.contacts[next] = ActiveContact {
-            candidate: met.candidate,
-            kinematics: met.kinematics,
-            base: met.base,
+            let is_swapped = met
+                .base
+                .is_some_and(|now| now.near.point != base.near.point);
+            let applied = if is_swapped {
+                applied.swapped()
+            } else {
+                applied
+            };
+            self.handed_over.push(next);
+            self.contacts[next] = ActiveContact {
+                candidate: met.candidate,
+                kinematics: met.kinematics,
+                base: met.base,
+                applied,
+                slip_before: self.slip_before(contact, &met),
+                is_lost: false,
+                ..*contact
+            };
+        }
+        if !listing.is_again {
+            self.note_slide(contact, base, Some(&met), listing);
+        }
+    }
+
+    /// Keeps a contact that is near no more for one solve, which takes its force out.
+    fn lose_contact(&mut self, contact: &ActiveContact, applied: Kinematics) {
+        self.contacts.push(ActiveContact {
             applied,
-            slip_before: self.slip_before(contact, &met),
-            is_lost: false,
+            is_lost: true,
             ..*contact
-        };
-        if let Some(now) = met.base
-            && !listing.is_again
-        {
-            let rows = [&contact.kinematics, &met.kinematics];
-            self.path.note_slide(
-                &base.near,
-                Some(&now.near),
-                rows,
-                contact.multiplier,
-                listing.pass,
-            );
+        });
+    }
+
+    /// Notes that the force of a contact has slid to another one, or off a corner.
+    fn note_slide(
+        &mut self,
+        contact: &ActiveContact,
+        base: &AtBase,
+        next: Option<&ActiveContact>,
+        listing: &Listing<'_>,
+    ) {
+        let rows = [&contact.kinematics, &next.unwrap_or(contact).kinematics];
+        let to = next.and_then(|next| next.base);
+        if to.is_some() == next.is_some() {
+            let to = to.as_ref().map(|to| &to.near);
+            self.path
+                .note_slide(&base.near, to, rows, contact.multiplier, listing.pass);
         }
     }
 

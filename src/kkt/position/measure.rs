@@ -24,20 +24,24 @@ impl ActiveContact {
             return f64::MAX;
         }
         // What gives way rests nearer by that much: so was it solved.
-        let yielded = self.yielding * self.multiplier[0];
-        self.law_error(self.kinematics.gap + yielded, friction)
+        let yielded = [0, 1].map(|k| self.yielding[k] * self.multiplier[k]);
+        self.law_error(
+            self.kinematics.gap + yielded[0],
+            self.slip + yielded[1],
+            friction,
+        )
     }
 
     /// How far Signorini's and Coulomb's laws are from holding (m).
-    fn law_error(&self, gap: f64, friction: f64) -> f64 {
+    fn law_error(&self, gap: f64, slip: f64, friction: f64) -> f64 {
         if self.multiplier[0] <= 0.0 {
             return -gap;
         }
         let slip = if friction > 0.0 {
             match self.status[1] {
-                Status::SlipPositive => self.slip,
-                Status::SlipNegative => -self.slip,
-                Status::Stick | Status::Open => self.slip.abs(),
+                Status::SlipPositive => slip,
+                Status::SlipNegative => -slip,
+                Status::Stick | Status::Open => slip.abs(),
             }
         } else {
             0.0
@@ -69,7 +73,7 @@ impl ActiveContact {
             error = error.max(self.apart);
         }
         self.slip = slip(&self.kinematics, scene.blocks);
-        error.max(self.law_error(gap, candidate.law.friction))
+        error.max(self.law_error(gap, self.slip, candidate.law.friction))
     }
 
     /// The gap beyond the allowance where the blocks are, with the points moved to `at` (m).
@@ -120,7 +124,7 @@ mod tests {
         };
         let mut contact = ActiveContact::new(0, row, remembered, 0.0, &[]);
         assert!(contact.shortfall(0.0) >= 3e-8);
-        contact.yielding = 1.5e-8;
+        contact.yielding = [1.5e-8, 0.0];
         assert!(contact.shortfall(0.0) < 1e-20);
     }
 }
