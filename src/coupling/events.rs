@@ -254,7 +254,8 @@ impl EventBook {
             };
             let points = self.points_of(name);
             let total: f64 = points.iter().map(|point| point.force[0]).sum();
-            let is_above = total > threshold;
+            // What has opened for good has no force that is told, though what takes back its energy may press.
+            let is_above = total > threshold && points.iter().any(|point| point.is_closed);
             if is_above {
                 let order = in_rapiers_order(name, sets);
                 let known = self.pressed_before.get(&name).copied();
