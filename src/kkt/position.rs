@@ -234,9 +234,9 @@ impl Island {
                 ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
             let slop = OVERLAPPED * tolerance;
             let is_overlap = contact.allow_overlap(kept, slop, candidate, &scene);
-            let is_met =
-                !(is_overlap && self.ignores_overlaps) && !self.is_held_by_joints(&kinematics);
-            if is_met && contact.kinematics.gap < -tolerance {
+            let is_left_alone =
+                is_overlap && self.ignores_overlaps || self.is_held_by_joints(&kinematics);
+            if !is_left_alone && contact.kinematics.gap < -tolerance {
                 self.is_working[index] = true;
                 self.contacts.push(contact);
             }

@@ -79,7 +79,7 @@ fn struck_tower(dt: f64) -> Scene {
         ),
     ];
     let [lower, upper] = boxes.map(|([x, y], height, mass, restitution)| {
-        let shape = ColliderBuilder::cuboid(0.398_700_178_262_756_6, real(height))
+        let shape = ColliderBuilder::cuboid(real(0.398_700_178_262_756_6), real(height))
             .friction([0.442, 0.197][usize::from(mass < 1000.0)]);
         let shape = shape.mass(mass).restitution(restitution);
         let body = RigidBodyBuilder::dynamic().translation(vec2(x, y));
