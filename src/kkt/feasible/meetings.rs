@@ -108,8 +108,9 @@ impl FeasiblePath {
             && !is_wide(forces);
     }
 
-    /// Whether two vertices are where their surfaces reach farthest towards each other, the first one against this direction, or where
-    /// a flexible one draws back farthest: a corner in a dent. Elsewhere one of them lies over an edge of the other, and forces do not pass from vertex to vertex.
+    /// Whether two vertices are where their surfaces reach farthest towards each other, or nearly so, the first one against this direction, or
+    /// where a flexible one draws back farthest: a corner in a dent. Elsewhere one of them lies over an edge of the other, and forces do not
+    /// pass from vertex to vertex.
     fn are_extreme(&self, vertices: [usize; 2], along: Vec2) -> bool {
         let is_extreme = |vertex: usize, along: Vec2| {
             let leans = |edge: &u32| {
@@ -120,7 +121,7 @@ impl FeasiblePath {
             };
             let edges = self.surfaces.edges_at(vertex);
             let is_flex = matches!(self.points[vertex].point, Point::Node(_));
-            edges.iter().map(leans).all(|lean| lean >= -SAME)
+            edges.iter().map(leans).all(|lean| lean >= -LEANING)
                 || is_flex && edges.iter().map(leans).all(|lean| lean <= SAME)
         };
         is_extreme(vertices[0], along) && is_extreme(vertices[1], -along)
@@ -249,6 +250,10 @@ impl FeasiblePath {
 
 /// Turn below which two normals are the same side (rad).
 const SAME: f64 = 1e-6;
+
+/// Sine of the angle by which an edge may lean over a direction in which its end reaches farthest: bodies turn from pass to pass, and a corner that
+/// lies over an edge of the other body leans by half a right angle.
+const LEANING: f64 = 0.4;
 
 /// Cosine of the widest angle between two forces whose mean has a direction to speak of.
 const LEAST_COSINE: f64 = -0.9;
