@@ -1,8 +1,9 @@
 //! Surfaces of flexible bodies as members of the path: where they are, or drawn inwards.
 //!
 //! Two flexible bodies meet by their surfaces drawn inwards and rounded by as much: bodies laid flush on each other touch, and cores are
-//! apart. Drawn further inwards they have room for an overlap. What has been crushed until there is no room for this stays where it is. By how much a surface can be drawn inwards is taken from the body at rest, so
-//! that it does not depend on how far that has been crushed; which way each vertex goes, from the surface where the step begins.
+//! apart. Drawn further inwards they have room for an overlap. What has been crushed until there is no room for this stays where it is. By
+//! how much a surface can be drawn inwards is told by the body at rest, whatever has crushed it since; which way each vertex goes, by the
+//! surface where the step begins.
 
 use super::inset::{inwards, most_inwards};
 use crate::body::contact_offset;

@@ -1,8 +1,8 @@
 //! The near pairs of a placement: what the rows of contact are made of.
 //!
 //! A row is a foot inside an edge, or a vertex against a vertex where each lies in the other's cone, asked of all the edges
-//! that meet in them. Elsewhere another pair of the two chains is closer, and has a row of its own; so has the bottom of a notch that
-//! keeps its shape none.
+//! that meet in them. Elsewhere another pair of the two chains is closer, and has a row of its own. For the same reason the bottom of a
+//! notch that keeps its shape has no rows.
 
 use super::distance::{Beside, Foot, direction, inner_foot};
 use super::search::Extent;

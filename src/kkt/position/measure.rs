@@ -127,4 +127,23 @@ mod tests {
         contact.yielding = [1.5e-8, 0.0];
         assert!(contact.shortfall(0.0) < 1e-20);
     }
+
+    /// A thousandth of what the force alone would move it, against the force.
+    #[test]
+    fn what_sticks_and_gives_way_to_its_friction_holds_to_its_law_there_and_nowhere_else() {
+        let row = Kinematics::with_levers(0.0, Vec2::new(0.0, 1.0), Vec2::zeros(), &[]);
+        let remembered = Remembered {
+            normal: 2.0,
+            ..Remembered::default()
+        };
+        let mut contact = ActiveContact::new(0, row, remembered, 0.5, &[]);
+        contact.multiplier = [2.0, -0.5];
+        contact.status = [Status::Stick; 2];
+        contact.slip = 4e-6;
+        assert!((contact.shortfall(0.5) - 4e-6).abs() < 1e-18);
+        contact.yielding = [0.0, 8e-6];
+        assert!(contact.shortfall(0.5) < 1e-18);
+        contact.slip = -4e-6;
+        assert!((contact.shortfall(0.5) - 8e-6).abs() < 1e-18);
+    }
 }
