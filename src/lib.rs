@@ -34,6 +34,9 @@ pub mod prelude {
         Attachment, AttachmentBuilder, AttachmentHandle, ContactInertia, FlexBody, FlexBodyBuilder,
         FlexBodyHandle, FlexBodySet, Pin,
     };
+    pub use crate::fe::material::hyperelastic::{
+        Corotated, HyperelasticSolid, NeoHookean, StableNeoHookean,
+    };
     pub use crate::fe::material::{LinearElastic, Material};
     pub use crate::fe::mesh::{CellKind, Mesh};
     pub use crate::fe::model::MassKind;

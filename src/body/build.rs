@@ -3,7 +3,9 @@
 use super::builder::{ContactInertia, FlexBodyBuilder};
 use super::error::BuildError;
 use super::flex_body::FlexBody;
-use super::frame::{Frame, frame_of_pins};
+use super::frame::{Frame, frame_of};
+use crate::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+use crate::fe::material::Material;
 use crate::fe::mesh::Mesh;
 use crate::fe::model::{MassKind, Model, ModelDescription};
 use crate::math::{Vec2, is_held, perp, rotation};
@@ -31,8 +33,13 @@ impl FlexBodyBuilder {
             })
             .collect();
         check_places(&rest)?;
-        let frame = frame_of_pins(&rest, &is_fixed).ok_or(BuildError::RotatingPins)?;
-        let massless = self.massless_nodes(&mesh, &is_fixed, frame)?;
+        let large = self.large_model(&mesh, &rest, &material)?;
+        let frame = frame_of(&rest, &is_fixed, large.is_some()).ok_or(BuildError::RotatingPins)?;
+        let massless = match large {
+            // What the two ends of a step share of its stress lets nodes without mass swing for ever.
+            Some(_) => vec![false; n_nodes],
+            None => self.massless_nodes(&mesh, &is_fixed, frame)?,
+        };
         let model = Model::assemble(ModelDescription {
             rest_positions: rest.clone(),
             mesh,
@@ -48,7 +55,7 @@ impl FlexBodyBuilder {
         check_range(&model)?;
         let nodal_force = self.gather_nodal_forces(n_nodes)?;
         let mut body = FlexBody::new(
-            Arc::new(model),
+            (Arc::new(model), large),
             is_fixed,
             frame,
             self.contact,
@@ -58,6 +65,27 @@ impl FlexBodyBuilder {
         body.load(nodal_force, self.body_force, self.gravity_scale);
         body.n_idle_pins = self.n_idle_pins;
         Ok(body)
+    }
+
+    /// The body of large strain, if the material has a law for that.
+    fn large_model(
+        &self,
+        mesh: &Arc<Mesh>,
+        rest: &[f64],
+        material: &Arc<dyn Material>,
+    ) -> Result<Option<Arc<FiniteStrainModel>>, BuildError> {
+        if material.hyperelastic().is_some() && self.mass_kind == MassKind::Consistent {
+            return Err(BuildError::LargeConsistent);
+        }
+        let description = FiniteStrainDescription::of_material(
+            Arc::clone(mesh),
+            rest.to_vec(),
+            &self.elements,
+            material.as_ref(),
+            self.thickness,
+        );
+        let assemble = |description| FiniteStrainModel::assemble(description).map(Arc::new);
+        Ok(description.map(assemble).transpose()?)
     }
 
     fn check_numbers(&self) -> Result<(), BuildError> {

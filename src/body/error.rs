@@ -1,6 +1,7 @@
 //! What can be wrong with the description of a body, or with the handle that names it.
 
 use super::handle::FlexBodyHandle;
+use crate::fe::finite_strain::FiniteStrainError;
 use crate::fe::material::MaterialError;
 use crate::fe::mesh::MeshError;
 use crate::fe::model::ModelError;
@@ -19,6 +20,14 @@ pub enum BuildError {
     /// Stiffness or mass cannot be assembled.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// The body of large strain cannot be assembled.
+    #[error(transparent)]
+    Large(#[from] FiniteStrainError),
+    /// A body of large strain with a consistent mass.
+    #[error(
+        "the material is one of large strain, for which masses are lumped: leave `.mass_kind` at `MassKind::Lumped`"
+    )]
+    LargeConsistent,
     /// No material was given.
     #[error(
         "the body has no material: call `.material(LinearElastic::plane_stress(E, nu).density(rho))`"

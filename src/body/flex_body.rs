@@ -3,6 +3,7 @@
 use super::contact_settings::ContactSettings;
 use super::frame::{Arms, Frame};
 use super::state::{BodyEnergy, FlexState};
+use crate::fe::finite_strain::FiniteStrainModel;
 use crate::fe::mesh::Mesh;
 use crate::fe::model::{Model, ModelError};
 use crate::fe::recovery::Stress;
@@ -14,6 +15,7 @@ use std::sync::{Arc, OnceLock};
 #[derive(Debug)]
 pub struct FlexBody {
     pub(super) model: Arc<Model>,
+    pub(super) large: Option<Arc<FiniteStrainModel>>,
     pub(super) frame: Frame,
     pub(super) arms: Arms,
     pub(super) is_fixed: Vec<bool>,
@@ -43,7 +45,7 @@ pub struct FlexBody {
 
 impl FlexBody {
     pub(super) fn new(
-        model: Arc<Model>,
+        (model, large): (Arc<Model>, Option<Arc<FiniteStrainModel>>),
         is_fixed: Vec<bool>,
         frame: Frame,
         contact: ContactSettings,
@@ -75,6 +77,7 @@ impl FlexBody {
             is_new: true,
             n_idle_pins: 0,
             model,
+            large,
         }
     }
 
@@ -117,6 +120,11 @@ impl FlexBody {
     /// How many calls of `pin_where` chose no node.
     pub(crate) fn n_idle_pins(&self) -> usize {
         self.n_idle_pins
+    }
+
+    /// The assembled body of large strain, if its material has a law for that; [`model`](Self::model) is it at rest then.
+    pub fn large(&self) -> Option<&Arc<FiniteStrainModel>> {
+        self.large.as_ref()
     }
 
     /// The assembled model.
@@ -245,7 +253,10 @@ impl FlexBody {
                     .model
                     .mass()
                     .inner(&self.state.velocity, &self.state.velocity),
-            elastic: self.model.elastic_energy(self.local_displacements()),
+            elastic: match &self.large {
+                Some(large) => large.elastic_energy(&self.state.position),
+                None => self.model.elastic_energy(self.local_displacements()),
+            },
         }
     }
 
@@ -260,12 +271,17 @@ impl FlexBody {
         self.model.cell_stress(cell, self.local_displacements())
     }
 
-    /// Smoothed stress at every node, in the body's frame (Pa).
+    /// Smoothed stress at every node, in the body's frame (Pa); of a body of large strain Cauchy's, in the world's axes.
     ///
     /// # Errors
     /// If an element cannot evaluate its strain.
     pub fn stress(&self) -> Result<Vec<Stress>, ModelError> {
-        self.model.nodal_stress(self.local_displacements())
+        match &self.large {
+            Some(large) => self
+                .model
+                .smooth(|cell| Ok(large.cell_stress(cell, &self.state.position))),
+            None => self.model.nodal_stress(self.local_displacements()),
+        }
     }
 
     /// Smoothed von Mises stress at every node (Pa).

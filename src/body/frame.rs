@@ -159,7 +159,7 @@ fn weighted_mean(weight: &[f64], total: f64, dofs: &[f64]) -> Vec2 {
 ///
 /// `is_fixed` has one entry per dof. A rotation is free if some rigid motion `v = t + ω J (X - c)` satisfies every
 /// pinned dof with `ω ≠ 0`.
-pub fn frame_of_pins(rest: &[f64], is_fixed: &[bool]) -> Option<Frame> {
+fn frame_of_pins(rest: &[f64], is_fixed: &[bool]) -> Option<Frame> {
     let pinned: Vec<usize> = (0..rest.len() / 2)
         .filter(|&node| is_fixed[2 * node] || is_fixed[2 * node + 1])
         .collect();
@@ -169,6 +169,11 @@ pub fn frame_of_pins(rest: &[f64], is_fixed: &[bool]) -> Option<Frame> {
         _ if holds_rotation(rest, is_fixed) => Some(Frame::Fixed),
         _ => None,
     }
+}
+
+/// The frame of a body under pins; one of large strain, which is stepped in the world's axes, may have any.
+pub fn frame_of(rest: &[f64], is_fixed: &[bool], is_large: bool) -> Option<Frame> {
+    frame_of_pins(rest, is_fixed).or(is_large.then_some(Frame::Fixed))
 }
 
 /// Whether the pinned dofs leave no rigid rotation about any centre.

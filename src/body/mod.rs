@@ -30,7 +30,7 @@ pub(crate) use contact_offset::contact_offset;
 pub use contact_settings::ContactSettings;
 pub use error::{BuildError, FlexBodyError};
 pub use flex_body::FlexBody;
-pub use frame::{Arms, Frame, frame_of_pins};
+pub use frame::{Arms, Frame, frame_of};
 pub use handle::FlexBodyHandle;
 pub(crate) use kept_motion::KeptMotion;
 pub use pick::SurfacePick;

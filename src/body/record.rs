@@ -3,11 +3,12 @@
 use super::attachment::Attachments;
 use super::contact_settings::ContactSettings;
 use super::flex_body::FlexBody;
-use super::frame::{Arms, Frame, frame_of_pins};
+use super::frame::{Arms, Frame, frame_of};
 use super::handle::FlexBodyHandle;
 use super::set::{FlexBodySet, Slot};
 use super::state::FlexState;
 use super::{Anchor, Attachment, AttachmentKind, AttachmentTarget};
+use crate::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
 use crate::fe::model_record::{ModelRecord, ModelRecordError};
 use crate::fe::record::KnownLaws;
 use crate::math::Vec2;
@@ -84,11 +85,21 @@ impl BodyRecord {
         if self.is_fixed.len() != n_dofs || nodal.iter().any(|values| values.len() != n_dofs) {
             return Err(ModelRecordError::Length("nodal values"));
         }
-        let frame: Option<Frame> = frame_of_pins(model.rest_positions(), &self.is_fixed);
+        let large = FiniteStrainDescription::of_model(&model)
+            .map(FiniteStrainModel::assemble)
+            .transpose()
+            .map_err(|_| ModelRecordError::Differs)?
+            .map(Arc::new);
+        if ![0, n_dofs].contains(&state.lasting.len()) {
+            return Err(ModelRecordError::Length("nodal values"));
+        }
+        let is_large = large.is_some();
+        let frame: Option<Frame> = frame_of(model.rest_positions(), &self.is_fixed, is_large);
         let frame = frame.ok_or(ModelRecordError::Length("pins"))?;
         Ok(FlexBody {
             arms: Arms::new(&model, frame),
             model,
+            large,
             frame,
             is_fixed: self.is_fixed,
             prescribed: self.prescribed,

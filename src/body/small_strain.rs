@@ -17,7 +17,12 @@ impl FlexBody {
     ///
     /// The lengths of the body are wrong by as much. A bent part that has turned by 0.14 rad against the rest of the body has 0.01; a strip that
     /// is held at both ends carries as a string from `(thickness / length)²` on, which the body does not know of.
+    ///
+    /// Zero for bodies of large strain, which leave nothing out.
     pub fn neglected_strain(&self) -> f64 {
+        if self.large.is_some() {
+            return 0.0;
+        }
         let rest = self.model.mesh().nodes();
         let u = self.local_displacements();
         let mut largest = 0.0f64;
@@ -37,6 +42,9 @@ impl FlexBody {
 
     /// [`Self::neglected_strain`] where it is beyond `limit`: most bodies tell by their largest displacement that it is not.
     pub(crate) fn neglected_beyond(&self, limit: f64) -> Option<f64> {
+        if self.large.is_some() {
+            return None;
+        }
         let all = self.local_displacements().iter();
         let reach = all.fold(0.0f64, |reach, u| reach.max(u.abs()));
         // Two ends, two components each.

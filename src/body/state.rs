@@ -55,6 +55,8 @@ pub struct FlexState {
     pub rate: Vec<f64>,
     /// Its second rate (m/s²), without hard contact forces.
     pub acceleration: Vec<f64>,
+    /// Of a body of large strain the contact forces that act on into the next step (N); empty for others, whose accelerations hold them.
+    pub lasting: Vec<f64>,
     /// Torque of all forces about the centre at the end of the step (N m).
     pub torque: f64,
     /// Kinetic energy (J).
@@ -77,6 +79,7 @@ impl FlexState {
             displacement: zeros.clone(),
             rate: zeros.clone(),
             acceleration: zeros,
+            lasting: Vec::new(),
             torque: 0.0,
             kinetic_energy: 0.0,
             elastic_energy: 0.0,
@@ -98,6 +101,7 @@ impl FlexState {
     /// Forgets all accelerations.
     pub(super) fn clear_accelerations(&mut self) {
         self.acceleration.fill(0.0);
+        self.lasting.fill(0.0);
         self.frame.acceleration = Vec2::zeros();
         self.frame.spin_rate = 0.0;
         self.torque = 0.0;

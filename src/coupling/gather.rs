@@ -208,12 +208,11 @@ impl Gatherer {
             Some(block) => block,
             None => {
                 let (model, fixed) = (Arc::clone(body.model()), body.fixed_dofs().to_vec());
-                let make = if is_explicit {
-                    FlexBlock::explicit
-                } else {
-                    FlexBlock::new
-                };
-                Box::new(make(model, fixed, body.frame()))
+                Box::new(match body.large() {
+                    Some(large) => FlexBlock::large(model, Arc::clone(large), fixed, body.frame()),
+                    None if is_explicit => FlexBlock::explicit(model, fixed, body.frame()),
+                    None => FlexBlock::new(model, fixed, body.frame()),
+                })
             }
         };
         let own: Vec2 = body.body_force().into();

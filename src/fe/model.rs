@@ -277,6 +277,17 @@ impl Model {
     /// # Errors
     /// If an element cannot evaluate its strain.
     pub fn nodal_stress(&self, u: &[f64]) -> Result<Vec<Stress>, ModelError> {
+        self.smooth(|cell| {
+            let found = self.cell_stress(cell, u)?;
+            Ok(found.into_iter().map(|(_, stress)| stress).collect())
+        })
+    }
+
+    /// Smooths stresses (Pa) that are given at the quadrature points of every cell.
+    pub(crate) fn smooth(
+        &self,
+        stresses_of: impl Fn(usize) -> Result<Vec<Stress>, ModelError>,
+    ) -> Result<Vec<Stress>, ModelError> {
         let mut elements = Vec::with_capacity(self.mesh().n_cells());
         let mut stresses = Vec::new();
         let mut spans = Vec::new();
@@ -289,11 +300,7 @@ impl Model {
                 source,
             })?;
             spans.push((stresses.len(), area));
-            stresses.extend(
-                self.cell_stress(index, u)?
-                    .into_iter()
-                    .map(|(_, stress)| stress),
-            );
+            stresses.extend(stresses_of(index)?);
             elements.push(element);
         }
         let cells = self.mesh().cells().zip(&elements).zip(&spans).map(

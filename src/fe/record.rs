@@ -7,7 +7,10 @@
 pub use super::model_record::ModelRecordError;
 
 use super::element::{Element, Quad4, Tri3, Tri6};
-use super::material::{LinearElastic, Material};
+use super::material::hyperelastic::{
+    Corotated, Hyperelastic, HyperelasticSolid, NeoHookean, StVenantKirchhoff, StableNeoHookean,
+};
+use super::material::{LinearElastic, Material, Rayleigh};
 use std::sync::Arc;
 
 /// What a snapshot writes of a material.
@@ -23,8 +26,54 @@ pub enum MaterialRecord {
     Unknown,
     /// Hooke's law, with its parameters.
     LinearElastic(LinearElastic),
+    /// A law of large strain, with density (kg/m³) and damping.
+    Hyperelastic(LawRecord, f64, Rayleigh),
     /// The name of a material in [`KnownLaws`]; two with different parameters need two names.
     Named(String),
+}
+
+impl MaterialRecord {
+    /// That of a solid of large strain: nothing if its law has no record.
+    pub(super) fn hyperelastic(solid: &HyperelasticSolid) -> Self {
+        match solid.law().record() {
+            LawRecord::Unknown => Self::Unknown,
+            law => Self::Hyperelastic(law, solid.density(), solid.rayleigh()),
+        }
+    }
+}
+
+/// What a snapshot writes of a law of large strain.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+#[non_exhaustive]
+pub enum LawRecord {
+    /// Nothing: bodies of this law cannot be saved, unless their material has a name.
+    #[default]
+    Unknown,
+    /// [`Corotated`].
+    Corotated(Corotated),
+    /// [`NeoHookean`].
+    NeoHookean(NeoHookean),
+    /// [`StVenantKirchhoff`].
+    StVenantKirchhoff(StVenantKirchhoff),
+    /// [`StableNeoHookean`].
+    StableNeoHookean(StableNeoHookean),
+}
+
+impl LawRecord {
+    /// The law, `None` if nothing was written of it.
+    fn law(&self) -> Option<Arc<dyn Hyperelastic>> {
+        Some(match self {
+            Self::Unknown => return None,
+            Self::Corotated(law) => Arc::new(*law),
+            Self::NeoHookean(law) => Arc::new(*law),
+            Self::StVenantKirchhoff(law) => Arc::new(*law),
+            Self::StableNeoHookean(law) => Arc::new(*law),
+        })
+    }
 }
 
 /// What a snapshot writes of an element.
@@ -78,6 +127,12 @@ impl KnownLaws {
         match record {
             MaterialRecord::Unknown => None,
             MaterialRecord::LinearElastic(law) => Some(Arc::new(*law)),
+            MaterialRecord::Hyperelastic(law, density, rayleigh) => {
+                let solid = HyperelasticSolid::of(law.law()?);
+                Some(Arc::new(
+                    solid.with_density(*density).with_damping(*rayleigh),
+                ))
+            }
             MaterialRecord::Named(name) => find(&self.materials, name),
         }
     }

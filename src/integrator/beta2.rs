@@ -37,6 +37,11 @@ pub enum IntegratorError {
         "beta0 is 0 and the mass is consistent, so that a step would have to solve for accelerations: choose `MassKind::Lumped`, or beta0 > 0"
     )]
     ConsistentMass,
+    /// The member has `β0 = 0` and the body is one of large strain.
+    #[error(
+        "beta0 is 0 and the material is one of large strain, whose steps are implicit: choose beta0 > 0, or a `LinearElastic` material"
+    )]
+    LargeStrain,
     /// The member has `β0 = 0`, for which the second row of (C.5) vanishes.
     #[error(
         "beta0 is 0: positions at the end of the step do not depend on the contact forces of the step, so (C.5) is singular; choose beta0 > 0, or integrate with multipliers at the forward increment"

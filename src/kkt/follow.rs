@@ -198,11 +198,17 @@ impl Island {
     fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
         if is_eased {
             CLOSE_ENOUGH * self.path.least_margin()
-        } else if self.is_sparse(2 * self.contacts.len() + self.ties.len()) {
+        } else if self.has_large() || self.is_sparse(2 * self.contacts.len() + self.ties.len()) {
             tolerance.max(LARGE_TOLERANCE * self.path.least_margin())
         } else {
             tolerance
         }
+    }
+
+    /// Whether some block is of large strain, whose equilibrium is found to a residual.
+    fn has_large(&self) -> bool {
+        let is_large = |block: &Block| matches!(block, Block::Flex(block) if block.is_large());
+        self.blocks.iter().any(is_large)
     }
 
     /// Keeps the base of the first impact of a step, and the forces that answer it.

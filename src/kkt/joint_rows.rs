@@ -170,6 +170,14 @@ impl Island {
         self.stiffen_turns(settings);
     }
 
+    /// Makes the compliances of all rows' nodes known again, which bodies of large strain forget with their factors.
+    pub(super) fn prepare_joints(&mut self) {
+        for slot in 0..self.ties.len() {
+            let row = self.ties[slot].row;
+            self.prepare_joint(&row);
+        }
+    }
+
     /// Makes the compliances of a row's nodes known; returns whether there are none.
     fn prepare_joint(&mut self, row: &JointRow) -> bool {
         let mut is_hard = true;

@@ -32,6 +32,7 @@ impl Island {
                 prepare(&mut self.blocks, &contact.applied);
             }
         }
+        self.prepare_joints();
         self.position_rows(settings.b0);
         let n_ties = self.ties.iter().filter(|tie| tie.is_movable).count();
         if self.is_sparse(self.rows.len() + n_ties) {

@@ -66,6 +66,7 @@ impl Island {
             self.list_parted();
         }
         if !self.ties.is_empty() {
+            self.prepare_joints();
             self.relax_turns();
         }
         for block in &mut self.blocks {
@@ -75,6 +76,7 @@ impl Island {
             }
         }
         summary.gap_violation = self.gap_violation();
+        summary.slip_violation = self.slip_violation();
     }
 
     /// Empties the working set but for what pressed in the last step.
@@ -242,6 +244,15 @@ impl Island {
             }
         }
         self.contacts.len() > before
+    }
+
+    /// What friction that is wedged against itself has given way by; see `follow::consistent` (m).
+    fn slip_violation(&self) -> f64 {
+        let slips = self
+            .contacts
+            .iter()
+            .map(|contact| contact.yielding[1] * contact.multiplier[1].abs());
+        slips.fold(0.0, f64::max)
     }
 
     pub(super) fn gap_violation(&self) -> f64 {

@@ -29,6 +29,8 @@ pub struct IslandSummary {
     pub is_parting: bool,
     /// Largest overlap left at a candidate (m).
     pub gap_violation: f64,
+    /// Largest slip that friction wedged against itself has given way by (m).
+    pub slip_violation: f64,
     /// Energy at the beginning: kinetic, elastic (J).
     pub start_energy: [f64; 2],
     /// Energy at the end: kinetic, elastic (J).

@@ -5,44 +5,44 @@ use crate::linalg::block_matrix::BlockMatrix;
 
 /// What multiplies the masses.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Inertia {
+pub(crate) struct Inertia {
     /// `c = 2/dt²`, or zero for equilibrium (1/s²).
-    pub(super) acceleration: f64,
+    pub(crate) acceleration: f64,
     /// `α/dt`, of the damping's mass part (1/s²).
-    pub(super) drag: f64,
+    pub(crate) drag: f64,
 }
 
 /// One equation for the positions `x'`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Equation<'a> {
-    pub(super) model: &'a FiniteStrainModel,
-    pub(super) form: Form,
-    pub(super) inertia: Inertia,
+pub(crate) struct Equation<'a> {
+    pub(crate) model: &'a FiniteStrainModel,
+    pub(crate) form: Form,
+    pub(crate) inertia: Inertia,
     /// Nodal loads (N).
-    pub(super) load: &'a [f64],
+    pub(crate) load: &'a [f64],
     /// Positions at the beginning of the step (m).
-    pub(super) start: &'a [f64],
+    pub(crate) start: &'a [f64],
     /// `x + dt v`, where the nodes would be without forces (m).
-    pub(super) coast: &'a [f64],
-    pub(super) is_held: &'a [bool],
+    pub(crate) coast: &'a [f64],
+    pub(crate) is_held: &'a [bool],
     /// The residual may grow by this factor in one iteration: more, and the increment is cut.
-    pub(super) most_growth: f64,
+    pub(crate) most_growth: f64,
 }
 
 /// A residual that was evaluated.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Evaluation {
+pub(crate) struct Evaluation {
     /// The largest entry (N); not finite where an entry is not.
-    pub(super) norm: f64,
+    pub(crate) norm: f64,
     /// Where it is.
-    pub(super) node: usize,
+    pub(crate) node: usize,
     /// The largest load or inertia force, of equilibria also of reactions (N).
-    pub(super) scale: f64,
+    pub(crate) scale: f64,
 }
 
 impl Equation<'_> {
     /// Writes the residual at `end`, zero at held dofs, whose reactions (N) are written instead to `reaction`.
-    pub(super) fn evaluate(
+    pub(crate) fn evaluate(
         &self,
         end: &[f64],
         deformation: &mut Deformation,
@@ -95,7 +95,7 @@ impl Equation<'_> {
     }
 
     /// Writes `-∂r/∂x'` at the end last evaluated, with unit rows for held dofs.
-    pub(super) fn assemble(
+    pub(crate) fn assemble(
         &self,
         kind: Linearization,
         deformation: &Deformation,

@@ -1,7 +1,7 @@
 //! Bodies that bend, stretch and fold: steps and equilibria of a [`FiniteStrainModel`] in world coordinates.
 //!
-//! Such bodies have **no contact yet**, and no part in a [`FlexPipeline`](crate::pipeline::FlexPipeline): they are stepped by
-//! themselves, under nodal loads and with held dofs. For contact there are the bodies of small strain in [`body`](crate::body).
+//! This steps one such body by itself, under nodal loads and with held dofs. In a [`FlexPipeline`](crate::pipeline::FlexPipeline) a
+//! [`FlexBody`](crate::body::FlexBody) of a [`HyperelasticSolid`] takes the same steps, with contact and joints.
 //!
 //! A step is the generalized Beta-m method with m = 1 and `β0 = 1/2`, with the conserving stress between both ends:
 //!
@@ -32,11 +32,13 @@ mod settings;
 mod stepper;
 mod turn;
 
+pub(crate) use equation::{Equation, Evaluation, Inertia};
 pub use equilibrium::{LoadCase, LoadReport, LoadStepper};
 pub use error::LargeError;
 pub use motion::WorldMotion;
+pub(crate) use newton::largest_row_sum;
 pub use settings::LargeSettings;
 pub use stepper::{LargeStepper, StepWork};
 
 #[cfg(doc)]
-use crate::fe::finite_strain::FiniteStrainModel;
+use crate::fe::{finite_strain::FiniteStrainModel, material::hyperelastic::HyperelasticSolid};

@@ -316,7 +316,8 @@ fn diverged(at: Evaluation) -> LargeError {
     }
 }
 
-fn largest_row_sum(matrix: &BlockMatrix) -> f64 {
+/// The largest sum of the sizes of a row.
+pub(crate) fn largest_row_sum(matrix: &BlockMatrix) -> f64 {
     let row_sums = (0..matrix.n_nodes()).map(|node| {
         let blocks = matrix.row_blocks(node).iter();
         let [x, y] = blocks.fold([0.0, 0.0], |[x, y], [xx, xy, yx, yy]| {

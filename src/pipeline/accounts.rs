@@ -58,6 +58,7 @@ impl FlexPipeline {
         ]);
         let report = &mut self.report;
         report.gap_violation = report.gap_violation.max(summary.gap_violation);
+        report.slip_violation = report.slip_violation.max(summary.slip_violation);
         report.solver_residual = report.solver_residual.max(summary.residual);
         report.n_newton = report.n_newton.max(summary.n_newton);
         report.n_failed += counts[0];

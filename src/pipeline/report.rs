@@ -207,6 +207,7 @@ pub struct StepReport {
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pub(super) overbent: Vec<Overbent>,
     pub(super) gap_violation: f64,
+    pub(super) slip_violation: f64,
     pub(super) complementarity_residual: f64,
     pub(super) cone: ConeExcess,
     pub(super) solver_residual: f64,
@@ -280,6 +281,11 @@ impl StepReport {
     /// a flexible body; what was put into each other and is not asked to part in this step is left out. Between flexible bodies the contactor's nodes are kept out, not the target's.
     pub fn gap_violation(&self) -> f64 {
         self.gap_violation
+    }
+
+    /// Largest slip of the step (m) that friction wedged against itself gave way by: no forces within its law hold such a contact.
+    pub fn slip_violation(&self) -> f64 {
+        self.slip_violation
     }
 
     /// Largest `|gap|` of a contact that carries a force (m): complementarity.

@@ -8,14 +8,21 @@ use crate::math::Mat2;
 /// one node soon touches at the next ones.
 const BATCH: usize = 4;
 
+/// The column of one node. Its room is kept when the factor changes.
+#[derive(Clone, Debug, Default)]
+struct Column {
+    is_known: bool,
+    blocks: Vec<Mat2>,
+}
+
 /// Columns of `A⁻¹` restricted to the boundary nodes, in the body's frame (1/kg).
 #[derive(Clone, Debug, Default)]
 pub(super) struct Compliance {
     /// Index among the boundary nodes, `u32::MAX` elsewhere.
     slot: Vec<u32>,
     boundary: Vec<usize>,
-    /// For each boundary node the 2×2 blocks towards all boundary nodes, once known.
-    columns: Vec<Option<Box<[Mat2]>>>,
+    /// For each boundary node the 2×2 blocks towards all boundary nodes, if they are known.
+    columns: Vec<Column>,
     /// The part of the factor that the boundary depends on, once known.
     selection: Option<Selection>,
     scratch: Vec<f64>,
@@ -30,7 +37,7 @@ impl Compliance {
         }
         Self {
             slot,
-            columns: vec![None; boundary.len()],
+            columns: vec![Column::default(); boundary.len()],
             boundary,
             selection: None,
             scratch: vec![0.0; 4 * BATCH * model.n_nodes()],
@@ -39,14 +46,15 @@ impl Compliance {
 
     /// Forgets every column: the factor has changed.
     pub fn clear(&mut self) {
-        self.columns.iter_mut().for_each(|column| *column = None);
+        let columns = self.columns.iter_mut();
+        columns.for_each(|column| column.is_known = false);
     }
 
     /// Computes the columns of `node` and of those of its group along the boundary, if they are not known yet; returns whether
     /// they were new.
     pub fn prepare(&mut self, node: usize, is_fixed: &[bool], factor: &mut BlockCholesky) -> bool {
         let own = self.slot[node] as usize;
-        if self.columns[own].is_some() {
+        if self.columns[own].is_known {
             return false;
         }
         // Groups that do not depend on who was asked for before: a column is the same bits whenever it is computed.
@@ -72,7 +80,10 @@ impl Compliance {
         for (pair, slot) in responses.chunks_exact(2 * n_dofs).zip(batch) {
             let (x, y) = pair.split_at(n_dofs);
             let block = |&at: &usize| Mat2::new(x[2 * at], y[2 * at], x[2 * at + 1], y[2 * at + 1]);
-            self.columns[slot] = Some(boundary.iter().map(block).collect());
+            let column = &mut self.columns[slot];
+            column.is_known = true;
+            column.blocks.clear();
+            column.blocks.extend(boundary.iter().map(block));
         }
         true
     }
@@ -80,10 +91,13 @@ impl Compliance {
     /// Response at `at` to a force at `from`, whose column must be known.
     pub fn get(&self, at: usize, from: usize) -> Mat2 {
         let (at, from) = (self.slot[at] as usize, self.slot[from] as usize);
-        match (&self.columns[from], &self.columns[at]) {
-            (Some(column), _) => column[at],
-            (None, Some(column)) => column[from].transpose(),
-            (None, None) => Mat2::zeros(),
+        let (forth, back) = (&self.columns[from], &self.columns[at]);
+        if forth.is_known {
+            forth.blocks[at]
+        } else if back.is_known {
+            back.blocks[from].transpose()
+        } else {
+            Mat2::zeros()
         }
     }
 }

@@ -7,6 +7,7 @@ use super::compliance::Compliance;
 use super::explicit_block::Explicit;
 use super::flex_impulse::Impulses;
 use super::flex_surface::FollowingSurface;
+use super::large_block::Large;
 use super::step::{FlexLoad, Step};
 use crate::body::{Arms, FlexState, Frame, FrameMotion};
 use crate::fe::model::Model;
@@ -30,7 +31,7 @@ pub struct FlexBlock {
     /// What they follow the others by, once factorized.
     pub(super) surface: Option<FollowingSurface>,
     /// Largest coordinate of the reference placement (m).
-    extent: f64,
+    pub(super) extent: f64,
     /// Largest side of the reference placement's box (m).
     pub(super) size: f64,
     pub(super) effective: BlockMatrix,
@@ -103,6 +104,7 @@ pub struct FlexBlock {
     pub(super) is_linear: bool,
     pub(super) middle_cell: usize,
     pub(super) explicit: Explicit,
+    pub(super) large: Option<Box<Large>>,
 }
 
 impl FlexBlock {
@@ -190,6 +192,7 @@ impl FlexBlock {
             is_linear: false,
             middle_cell: model.mesh().middle_cell(),
             explicit,
+            large: None,
             model,
         }
     }
@@ -247,6 +250,9 @@ impl FlexBlock {
         self.take_over(step, state, load);
         if self.is_explicit() {
             return self.predict_explicitly(state);
+        }
+        if self.is_large() {
+            return self.predict_large(state);
         }
         self.factorize(step.weights)?;
         self.predict_operators(state);
@@ -334,6 +340,10 @@ impl FlexBlock {
     ) -> Result<(), CholeskyError> {
         if self.is_explicit() {
             self.start_explicitly(state);
+            return Ok(());
+        }
+        if self.is_large() {
+            // Their steps need no acceleration to begin with.
             return Ok(());
         }
         self.factorize(step.weights)?;

@@ -84,6 +84,10 @@ impl FlexBlock {
                 next += 1;
             }
         }
+        if self.is_large() {
+            self.finish_large_velocity();
+            return;
+        }
         self.finish_velocity();
         let Self {
             impulses,
@@ -102,6 +106,17 @@ impl FlexBlock {
         }
         let mean = scale * self.mean_response(slot);
         let impulses = &self.impulses[slot];
+        if let Some(large) = &mut self.large
+            && of == Response::Acceleration
+        {
+            let changes = impulses.response.iter().zip(&impulses.nodal);
+            let sums = large.acceleration.iter_mut().zip(&mut large.end_lasting);
+            for ((acceleration, lasting), (response, force)) in sums.zip(changes) {
+                *acceleration += scale * response;
+                *lasting += scale * force;
+            }
+            return;
+        }
         let target = if of == Response::Acceleration {
             self.torque += scale * impulses.moment;
             self.shift += mean;
@@ -114,6 +129,24 @@ impl FlexBlock {
         };
         for (sum, response) in target.iter_mut().zip(&impulses.response) {
             *sum += scale * response;
+        }
+    }
+
+    /// Scales the responses of a body of large strain, and moves that of velocities so that momentum gains exactly what the impulses give.
+    fn finish_large_velocity(&mut self) {
+        let scale = self.velocity_scale();
+        for impulses in self.impulses.iter_mut().filter(|one| one.is_used) {
+            impulses.response.iter_mut().for_each(|x| *x *= scale);
+        }
+        if !self.impulses[0].is_used || self.kind != Frame::Free {
+            return;
+        }
+        let damped = 1.0 + 0.5 * self.model.rayleigh().mass * self.step.dt;
+        let total = self.impulses[0].total / (self.arms.mass * damped);
+        let response = &mut self.impulses[0].response;
+        let missing = total - self.arms.centre(self.kind, response, Vec2::zeros());
+        for node in 0..response.len() / 2 {
+            add_node_vec(response, node, missing);
         }
     }
 

@@ -72,6 +72,9 @@ impl FlexBlock {
             }
         }
         self.finish_velocity();
+        if self.is_large() {
+            return;
+        }
         self.arms.split(self.kind, &mut self.impulses[1].response);
     }
 

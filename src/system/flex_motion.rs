@@ -100,6 +100,9 @@ impl FlexBlock {
         if self.is_explicit() {
             return self.explicit_acceleration(node);
         }
+        if let Some(large) = &self.large {
+            return node_vec(&large.acceleration, node);
+        }
         let own = self.carried(node, |node| {
             node_vec(&self.start_acceleration, node) + node_vec(&self.increment, node)
         });
@@ -139,7 +142,7 @@ impl FlexBlock {
         }
     }
 
-    fn polar_inertia(&self, centre: Vec2) -> f64 {
+    pub(super) fn polar_inertia(&self, centre: Vec2) -> f64 {
         let masses = self.arms.node_mass.iter().enumerate();
         masses
             .map(|(node, mass)| mass * (node_vec(&self.position, node) - centre).norm_squared())
@@ -159,6 +162,10 @@ impl FlexBlock {
         if self.is_explicit() {
             // One product gives this energy and the forces of the end.
             self.finish_explicitly();
+            return;
+        }
+        if let Some(large) = &self.large {
+            self.end_elastic = large.model.elastic_energy(&self.position);
             return;
         }
         let rayleigh = self.model.rayleigh();
@@ -286,6 +293,9 @@ impl FlexBlock {
     }
 
     fn pin_work(&self) -> f64 {
+        if let Some(large) = &self.large {
+            return self.large_pin_work(large);
+        }
         let mut work = 0.0;
         for &dof in &self.fixed_dofs {
             let moved = self.position[dof] - self.start_position[dof];
@@ -301,6 +311,10 @@ impl FlexBlock {
     pub fn commit(&self, state: &mut FlexState) {
         if self.is_explicit() {
             self.commit_explicitly(state);
+            return;
+        }
+        if let Some(large) = &self.large {
+            self.commit_large(large, state);
             return;
         }
         let kinetic_energy = self.kinetic_energy();
@@ -356,6 +370,9 @@ impl FlexBlock {
     pub fn reaction(&self, node: usize) -> Vec2 {
         if !(self.is_fixed[2 * node] || self.is_fixed[2 * node + 1]) {
             return Vec2::zeros();
+        }
+        if let Some(large) = &self.large {
+            return node_vec(&large.reaction, node);
         }
         let rayleigh = self.model.rayleigh();
         let stiffness = self.model.stiffness();

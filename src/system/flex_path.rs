@@ -47,6 +47,10 @@ impl FlexBlock {
     /// Puts the nodes where the step could go (m), with the velocities and accelerations that its forces lead to.
     pub fn stop_at(&mut self, positions: &[f64]) {
         self.position.copy_from_slice(positions);
+        if self.is_large() {
+            self.follow_centre();
+            return;
+        }
         if self.kind == Frame::Fixed {
             let pairs = self.position.iter().zip(self.model.rest_positions());
             for (u, (x, rest)) in self.displacement.iter_mut().zip(pairs) {

@@ -11,6 +11,10 @@ impl FlexBlock {
             self.restart_explicitly();
             return;
         }
+        if self.is_large() {
+            self.restart_large();
+            return;
+        }
         let dt = self.step.dt;
         let half = 0.5 * dt * dt;
         for (dof, acceleration) in self.start_acceleration.iter().enumerate() {
@@ -38,7 +42,7 @@ impl FlexBlock {
     ///
     /// Such a step is first order and stable; it is taken where Newton's iterations do not converge.
     pub fn linearize(&mut self) {
-        if self.is_explicit() {
+        if self.is_explicit() || self.is_large() {
             self.restart();
             return;
         }
@@ -61,6 +65,10 @@ impl FlexBlock {
             self.hold_explicitly();
             return;
         }
+        if self.is_large() {
+            self.move_large_on(Vec2::zeros(), 0.0);
+            return;
+        }
         self.restart();
         let start = self.start_frame;
         self.frame = crate::body::FrameMotion {
@@ -79,6 +87,10 @@ impl FlexBlock {
 
     /// Ends the step where it began, moving as a rigid body with this velocity of its centre (m/s) and spin (rad/s); implicit steps only.
     pub fn move_on(&mut self, velocity: Vec2, spin: f64) {
+        if self.is_large() {
+            self.move_large_on(velocity, spin);
+            return;
+        }
         self.hold();
         (self.frame.velocity, self.frame.spin) = (velocity, spin);
         if self.kind == Frame::Fixed {

@@ -36,6 +36,9 @@ impl FlexBlock {
             self.solve_explicitly();
             return 0.0;
         }
+        if self.is_large() {
+            return self.solve_large();
+        }
         if self.may_add() {
             self.solve_difference();
         } else {
@@ -313,6 +316,11 @@ impl FlexBlock {
         if self.is_explicit() {
             return;
         }
+        if self.is_large() {
+            // They have followed the positions.
+            self.place_large_acceleration();
+            return;
+        }
         self.follow_rates();
         if self.kind == Frame::Fixed {
             self.velocity.copy_from_slice(&self.rate);
@@ -328,7 +336,7 @@ impl FlexBlock {
 
     /// Whether the frame turns, so that the step is non-linear.
     pub fn is_nonlinear(&self) -> bool {
-        self.kind != Frame::Fixed
+        self.kind != Frame::Fixed || self.is_large()
     }
 
     /// Makes [`super::Block::compliance`] known from `node`.
@@ -365,6 +373,12 @@ impl FlexBlock {
             return self.mass_response(at, from);
         }
         let mut local = self.compliance.get(at, from);
+        if self.is_large() {
+            return match of {
+                Response::Position => local,
+                _ => self.velocity_scale() * local,
+            };
+        }
         if let Some(surface) = self
             .surface
             .as_ref()

@@ -18,6 +18,8 @@ mod flex_path;
 mod flex_restart;
 mod flex_solve;
 mod flex_surface;
+mod large_block;
+mod large_motion;
 mod link_response;
 mod massless_surface;
 mod moments;

@@ -70,7 +70,10 @@ impl Block {
                     centre,
                     velocity: block.frame.velocity,
                     spin_momentum: block.angular_momentum(centre),
-                    inertia: block.inertia_of(&block.displacement),
+                    inertia: match block.is_large() {
+                        true => block.inertia,
+                        false => block.inertia_of(&block.displacement),
+                    },
                 }
             }
             Self::Rigid(block) => {

@@ -1,6 +1,8 @@
 //! Saved and restored, a run is the run it was.
 
 use super::support::*;
+use foil2d::fe::material::hyperelastic::{HyperelasticSolid, StableNeoHookean};
+use foil2d::fe::mesh::CellKind;
 use foil2d::kkt::ConstraintFunction;
 
 #[test]
@@ -253,4 +255,19 @@ fn what_waits_to_be_told_of_a_sensor_is_saved_too() {
         assert_eq!(left.count(), 1, "{told:?}");
     }
     compare(&mut straight, &mut resumed, 60);
+}
+
+/// Their factors are of the state that each step begins with, and of nothing before.
+#[test]
+fn bodies_of_large_strain_restored_after_every_step_never_differ() {
+    let mut run = everything();
+    let law = StableNeoHookean::plane_strain(1e5, 0.3);
+    let rope = FlexBodyBuilder::rectangle_of([1.0, 0.1], [8, 1], CellKind::Tri6)
+        .material(HyperelasticSolid::new(law).with_density(1000.0))
+        .translation([0.0, 6.0])
+        .angvel(3.0);
+    run.flex_bodies
+        .insert(rope, &mut run.world)
+        .expect("the description is right");
+    step_by_step(run, 120);
 }

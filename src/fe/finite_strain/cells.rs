@@ -81,6 +81,22 @@ impl CellGroup {
         }
     }
 
+    /// `F` at the points of one cell of the group.
+    pub(super) fn gradients_of<const N: usize>(
+        &self,
+        place: usize,
+        positions: &[f64],
+    ) -> Vec<[f64; 4]> {
+        let mut cells = self.kinematics::<N>();
+        cells.nth(place).map_or_else(Vec::new, |cell| {
+            let differences = gather(cell.nodes, positions);
+            let gradients = cell.gradients.iter();
+            gradients
+                .map(|gradient| deformation_gradient(&differences, gradient))
+                .collect()
+        })
+    }
+
     /// Stored energy (J) of the group at these positions (m).
     pub(super) fn energy<const N: usize>(&self, law: &dyn Hyperelastic, positions: &[f64]) -> f64 {
         let mut energy = 0.0;

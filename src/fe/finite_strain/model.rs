@@ -4,10 +4,11 @@ use super::Inadmissible;
 use super::cells::{CellGroup, with_node_count};
 use super::point::{Form, Linearization};
 use crate::fe::element::{Element, ElementError, MAX_NODES, kinematics::physical_gradient};
-use crate::fe::material::hyperelastic::Hyperelastic;
-use crate::fe::material::{MaterialError, Rayleigh};
+use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
+use crate::fe::material::{Material, MaterialError, Rayleigh};
 use crate::fe::mesh::{Cell, Mesh};
-use crate::fe::model::{ModelError, element_of, placed_nodes};
+use crate::fe::model::{Model, ModelError, element_of, placed_nodes};
+use crate::fe::recovery::Stress;
 use crate::linalg::block_matrix::BlockMatrix;
 use std::sync::Arc;
 use thiserror::Error;
@@ -62,6 +63,37 @@ impl FiniteStrainDescription {
             damping: Rayleigh::NONE,
             thickness: 1.0,
         }
+    }
+
+    /// A body of a material, whose mesh is placed at `rest_positions` (m); `None` if the material has no law for large strains.
+    pub fn of_material(
+        mesh: Arc<Mesh>,
+        rest_positions: Vec<f64>,
+        elements: &[Arc<dyn Element>],
+        material: &dyn Material,
+        thickness: f64,
+    ) -> Option<Self> {
+        Some(Self {
+            law: Arc::clone(material.hyperelastic()?),
+            mesh,
+            rest_positions,
+            elements: elements.to_vec(),
+            density: material.density(),
+            damping: material.rayleigh(),
+            thickness,
+        })
+    }
+
+    /// The body that a model is at rest; `None` if its material has no law for large strains.
+    pub fn of_model(model: &Model) -> Option<Self> {
+        let description = &model.description;
+        Self::of_material(
+            Arc::clone(&description.mesh),
+            description.rest_positions.clone(),
+            &description.elements,
+            description.material.as_ref(),
+            description.thickness,
+        )
     }
 
     fn validate(&self) -> Result<(), FiniteStrainError> {
@@ -346,6 +378,27 @@ impl FiniteStrainModel {
         energies.sum()
     }
 
+    /// Cauchy's stress (Pa) at the quadrature points of a cell at `positions` (m), in the world's axes.
+    ///
+    /// `σ = P Fᵀ / J`; of a point that is turned inside out it is that of the area it covers, `|J|`.
+    ///
+    /// # Panics
+    /// If there is not one entry per dof, or no such cell.
+    pub fn cell_stress(&self, cell: usize, positions: &[f64]) -> Vec<Stress> {
+        self.assert_length(positions);
+        let law = self.law();
+        for group in &self.groups {
+            if let Ok(place) = group.cells.binary_search(&cell) {
+                let gradients = with_node_count!(group, gradients_of(place, positions));
+                return gradients
+                    .into_iter()
+                    .map(|gradient| cauchy(law, gradient))
+                    .collect();
+            }
+        }
+        panic!("there is no cell {cell}")
+    }
+
     fn assert_length(&self, dofs: &[f64]) {
         assert!(
             dofs.len() == self.n_dofs(),
@@ -353,6 +406,27 @@ impl FiniteStrainModel {
             dofs.len(),
             self.n_dofs()
         );
+    }
+}
+
+/// Cauchy's stress of a gradient of deformation (Pa). Out of the plane nothing stretches: `σ_zz` is what Hooke's law gives there for the
+/// mean stress in the plane, exact at small strains.
+fn cauchy(law: &dyn Hyperelastic, gradient: [f64; 4]) -> Stress {
+    let [xx, xy, yx, yy] = gradient;
+    let at = Invariants::of(gradient);
+    let [by_t, by_j] = law.gradient(at);
+    let area = at.j.abs().max(f64::MIN_POSITIVE);
+    // P Fᵀ = 2 W_t F Fᵀ + W_J J I.
+    let spherical = by_j * at.j;
+    let (sxx, syy) = (
+        (2.0 * by_t * (xx * xx + xy * xy) + spherical) / area,
+        (2.0 * by_t * (yx * yx + yy * yy) + spherical) / area,
+    );
+    Stress {
+        xx: sxx,
+        yy: syy,
+        xy: 2.0 * by_t * (xx * yx + xy * yy) / area,
+        zz: law.constants().poisson() * (sxx + syy),
     }
 }
 

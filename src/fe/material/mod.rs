@@ -14,8 +14,10 @@ mod rayleigh;
 pub use linear_elastic::{LinearElastic, Plane};
 pub use rayleigh::{DampingError, Rayleigh};
 
+use self::hyperelastic::Hyperelastic;
 use super::record::MaterialRecord;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// A law from strain to stress, linear or not.
 ///
@@ -47,6 +49,11 @@ pub trait Material: Send + Sync + Debug {
     /// The viscous damping that goes with the material; none unless overridden.
     fn rayleigh(&self) -> Rayleigh {
         Rayleigh::NONE
+    }
+
+    /// The law for large strains, if bodies of the material bend and stretch far; `None` (the default) makes bodies of small strain.
+    fn hyperelastic(&self) -> Option<&Arc<dyn Hyperelastic>> {
+        None
     }
 
     /// Whether the parameters make sense; called once, when a body is built.

@@ -1,6 +1,7 @@
 //! The corotated law: Hooke's law for the strain `U - I` of the polar decomposition `F = R U`.
 
 use super::{ElasticConstants, Hyperelastic, Invariants};
+use crate::fe::record::LawRecord;
 
 /// `W = μ |F - R|² + λ/2 (tr U - 2)²`, with `R` the rotation nearest to `F`.
 ///
@@ -59,6 +60,10 @@ impl Hyperelastic for Corotated {
 
     fn constants(&self) -> ElasticConstants {
         self.constants
+    }
+
+    fn record(&self) -> LawRecord {
+        LawRecord::Corotated(*self)
     }
 
     fn energy_density(&self, at: Invariants) -> f64 {

@@ -36,16 +36,19 @@ mod constants;
 mod corotated;
 mod neo_hookean;
 mod quotient;
+mod solid;
 mod st_venant_kirchhoff;
 mod stable_neo_hookean;
 
 pub use constants::ElasticConstants;
 pub use corotated::Corotated;
 pub use neo_hookean::NeoHookean;
+pub use solid::HyperelasticSolid;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use stable_neo_hookean::StableNeoHookean;
 
 use super::MaterialError;
+use crate::fe::record::LawRecord;
 use std::fmt::Debug;
 
 /// The two invariants of a gradient of deformation in the plane.
@@ -107,6 +110,11 @@ pub trait Hyperelastic: Send + Sync + Debug {
     fn admits(&self, at: Invariants) -> bool {
         let _ = at;
         true
+    }
+
+    /// What a snapshot writes of the law; bodies of one that is [`LawRecord::Unknown`] cannot be saved.
+    fn record(&self) -> LawRecord {
+        LawRecord::Unknown
     }
 
     /// Whether the parameters make sense; called once, when a body is assembled.

@@ -2,6 +2,7 @@
 
 use super::quotient::slope_of_ln;
 use super::{ElasticConstants, Hyperelastic, Invariants};
+use crate::fe::record::LawRecord;
 use crate::math::ln;
 
 /// `W = μ/2 (t - 2) - μ ln J + λ/2 ln² J`, for `J > 0` only.
@@ -33,6 +34,10 @@ impl Hyperelastic for NeoHookean {
 
     fn constants(&self) -> ElasticConstants {
         self.constants
+    }
+
+    fn record(&self) -> LawRecord {
+        LawRecord::NeoHookean(*self)
     }
 
     fn energy_density(&self, Invariants { t, j }: Invariants) -> f64 {

@@ -1,6 +1,7 @@
 //! St. Venant and Kirchhoff's law: Hooke's law for Green's strain, `W = λ/2 (tr E)² + μ |E|²`, `E = (FᵀF - I)/2`.
 
 use super::{ElasticConstants, Hyperelastic, Invariants};
+use crate::fe::record::LawRecord;
 
 /// `W = λ/8 (t - 2)² + μ/4 (t² - 2 t + 2 - 2 J²)`: stress linear in Green's strain.
 ///
@@ -31,6 +32,10 @@ impl Hyperelastic for StVenantKirchhoff {
 
     fn constants(&self) -> ElasticConstants {
         self.constants
+    }
+
+    fn record(&self) -> LawRecord {
+        LawRecord::StVenantKirchhoff(*self)
     }
 
     fn energy_density(&self, Invariants { t, j }: Invariants) -> f64 {

@@ -2,6 +2,7 @@
 
 use super::quotient::slope_of_ln;
 use super::{ElasticConstants, Hyperelastic, Invariants};
+use crate::fe::record::LawRecord;
 use crate::math::ln;
 
 /// `W = m/2 (t - 2) + l/2 (J - α)² - m/2 ln(t + 1)`, less its value at rest.
@@ -51,6 +52,10 @@ impl Hyperelastic for StableNeoHookean {
 
     fn constants(&self) -> ElasticConstants {
         self.constants
+    }
+
+    fn record(&self) -> LawRecord {
+        LawRecord::StableNeoHookean(*self)
     }
 
     fn energy_density(&self, Invariants { t, j }: Invariants) -> f64 {

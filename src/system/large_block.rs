@@ -1,0 +1,359 @@
+//! Bodies of large strain: world coordinates, energy–momentum steps, Newton's iteration on a factor that is renewed where it must be.
+//!
+//! ```text
+//! x' = x + dt/2 (v + v'),    M (v' - v)/dt + α M (x' - x)/dt + f_int(x, x') = f + (1 - β1) g + β1 Gᵀp
+//! ```
+//!
+//! with the conserving stress between both ends (see [`finite_strain`](crate::fe::finite_strain)) and `g` the contact forces that the last
+//! step has left: in Beta-2 a multiplier acts with `β1` in its step and with `1 - β1` in the next, on whatever it presses. The matrix is
+//!
+//! ```text
+//! A = b0/β1 (2/dt² M + α/dt M + ∂f_int/∂x'),    ∂x'/∂p = b0 A⁻¹ Gᵀ,    ∂v'/∂p = 2/dt ∂x'/∂p
+//! ```
+//!
+//! so that positions answer forces as those of other blocks do, `b0 A⁻¹`. With the trapezoidal rule and small strains it is the `A` of a
+//! linear body. Vibrations decay as the member's spectral radius says, see [`decay_of`].
+
+use super::compliance::Compliance;
+use super::explicit_block::Explicit;
+use super::flex_block::FlexBlock;
+use super::step::Step;
+use crate::body::{FlexState, Frame};
+use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Form, Linearization};
+use crate::fe::model::Model;
+use crate::large::{Equation, Evaluation, Inertia, largest_row_sum};
+use crate::linalg::block_matrix::BlockMatrix;
+use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
+use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, rotation};
+use std::sync::Arc;
+
+/// Residual over the largest load or inertia force that ends the iterations (-): momentum is balanced beyond that by a shift of the whole body.
+const TOLERANCE: f64 = 1e-8;
+
+/// A residual of which an iteration leaves more than this asks for a new factor.
+const SLOWEST: f64 = 0.25;
+
+/// A residual that grows by more in one iteration has left the neighbourhood in which the factor means something.
+const MOST_GROWTH: f64 = 4.0;
+
+/// An increment is cut to 1/64 before the iterations are given up.
+const MOST_CUTS: usize = 6;
+
+/// What is told of an end that was not found: further than any that may count.
+const NOT_FOUND: f64 = 1e3;
+
+/// Iterations under given contact forces.
+const MOST_ITERATIONS: usize = 24;
+
+/// What a block of large strain has beside others.
+#[derive(Clone, Debug)]
+pub(super) struct Large {
+    pub(super) model: Arc<FiniteStrainModel>,
+    deformation: Deformation,
+    tangent: BlockMatrix,
+    /// `x + dt v` (m).
+    coast: Vec<f64>,
+    /// Mean force over the step: applied, of contacts, and what these have left of the last step (N).
+    load: Vec<f64>,
+    residual: Vec<f64>,
+    /// Mean force that holds the held dofs (N).
+    pub(super) reaction: Vec<f64>,
+    /// Contact forces that act on from the last step, and from this one (N).
+    pub(super) lasting: Vec<f64>,
+    pub(super) end_lasting: Vec<f64>,
+    /// Acceleration at the end of the step (m/s²).
+    pub(super) acceleration: Vec<f64>,
+    row_sum: f64,
+}
+
+/// `χ` of the stress that makes vibrations decay as a member of Beta-2 does: with `β0 = 2/(1 + ρ)²` it is `(1 - ρ)/(1 + ρ)`.
+fn decay_of(step: &Step) -> f64 {
+    let beta0 = 2.0 * step.weights.b0 / (step.dt * step.dt);
+    ((2.0 * beta0).sqrt() - 1.0).max(0.0)
+}
+
+/// The equation of a step under `load` from `start` by way of `coast`.
+fn equation_of<'a>(
+    model: &'a FiniteStrainModel,
+    step: &Step,
+    [load, start, coast]: [&'a [f64]; 3],
+    is_held: &'a [bool],
+) -> Equation<'a> {
+    let (dt, damping) = (step.dt, model.damping());
+    Equation {
+        model,
+        form: Form::EnergyMomentum {
+            decay: decay_of(step) + 2.0 * damping.stiffness / dt,
+        },
+        inertia: Inertia {
+            acceleration: 2.0 / (dt * dt),
+            drag: damping.mass / dt,
+        },
+        load,
+        start,
+        coast,
+        is_held,
+        most_growth: MOST_GROWTH,
+    }
+}
+
+/// Factorizes the tangent at the deformation last evaluated, or its definite part where it is not definite; returns its largest row sum.
+fn factorize(
+    equation: &Equation<'_>,
+    scale: f64,
+    deformation: &Deformation,
+    (tangent, effective): (&mut BlockMatrix, &mut BlockMatrix),
+    factor: &mut BlockCholesky,
+) -> Result<f64, CholeskyError> {
+    equation.assemble(Linearization::Consistent, deformation, tangent);
+    effective.assign_scaled(scale, tangent);
+    if factor.factorize(effective).is_err() {
+        equation.assemble(Linearization::Definite, deformation, tangent);
+        effective.assign_scaled(scale, tangent);
+        factor.factorize(effective)?;
+    }
+    Ok(largest_row_sum(tangent))
+}
+
+impl FlexBlock {
+    /// A block of a body of large strain.
+    pub fn large(
+        model: Arc<Model>,
+        large: Arc<FiniteStrainModel>,
+        is_fixed: Vec<bool>,
+        kind: Frame,
+    ) -> Self {
+        let tangent = large.new_matrix();
+        let factor = BlockCholesky::analyze(&tangent);
+        let matrix = (tangent.clone(), factor, Compliance::new(&model));
+        let mut block = Self::with_matrix(model, is_fixed, kind, matrix, Explicit::default());
+        let zeros = || vec![0.0; large.n_dofs()];
+        block.large = Some(Box::new(Large {
+            deformation: large.deformation(large.rest_positions()),
+            tangent,
+            coast: zeros(),
+            load: zeros(),
+            residual: zeros(),
+            reaction: zeros(),
+            lasting: zeros(),
+            end_lasting: zeros(),
+            acceleration: zeros(),
+            row_sum: 0.0,
+            model: large,
+        }));
+        block
+    }
+
+    /// Whether the body is one of large strain.
+    pub fn is_large(&self) -> bool {
+        self.large.is_some()
+    }
+
+    /// `β1`, the share of a multiplier that acts within the step.
+    pub(super) fn share(&self) -> f64 {
+        self.step.weights.b1 / self.step.dt
+    }
+
+    /// What velocities answer over `A⁻¹`, `β0/β1`: one for the trapezoidal rule.
+    pub(super) fn velocity_scale(&self) -> f64 {
+        let step = &self.step;
+        2.0 * step.weights.b0 / (step.dt * step.weights.b1)
+    }
+
+    /// Begins a step at the committed state, which has been taken over; the iterate is where the last step's acceleration leads.
+    pub(super) fn predict_large(&mut self, state: &FlexState) -> Result<(), CholeskyError> {
+        let dt = self.step.dt;
+        self.turn = Mat2::identity();
+        self.frame = state.frame;
+        self.frame_q = state.frame;
+        self.is_linear = false;
+        self.clear_contact_force();
+        let rest = self.model.rest_positions();
+        let Some(large) = &mut self.large else {
+            return Ok(());
+        };
+        large.model.begin(&state.position, &mut large.deformation);
+        match state.lasting.is_empty() {
+            true => large.lasting.fill(0.0),
+            false => large.lasting.copy_from_slice(&state.lasting),
+        }
+        let turn = rotation(state.frame.angle);
+        for node in 0..rest.len() / 2 {
+            let guess = 0.5 * dt * dt * (turn * node_vec(&state.acceleration, node));
+            for axis in 0..2 {
+                let dof = 2 * node + axis;
+                large.coast[dof] = state.position[dof] + dt * state.velocity[dof];
+                self.position[dof] = if self.is_fixed[dof] {
+                    rest[dof] + self.prescribed[dof]
+                } else {
+                    large.coast[dof] + guess[axis]
+                };
+            }
+        }
+        self.start_momentum = self.start_spin_momentum();
+        self.follow_positions();
+        let Some(mut large) = self.large.take() else {
+            return Ok(());
+        };
+        let outcome = self.factorize_large(&mut large);
+        self.large = Some(large);
+        outcome
+    }
+
+    /// Factorizes where the step begins: contacts ask how the body answers before it has moved.
+    fn factorize_large(&mut self, large: &mut Large) -> Result<(), CholeskyError> {
+        let equation = equation_of(
+            &large.model,
+            &self.step,
+            [&large.load, &self.start_position, &large.coast],
+            &self.is_fixed,
+        );
+        let scale = self.step.weights.b0 / self.share();
+        let matrices = (&mut large.tangent, &mut self.effective);
+        let deformation = &large.deformation;
+        self.n_factorizations += 1;
+        large.row_sum = factorize(&equation, scale, deformation, matrices, &mut self.factor)?;
+        self.compliance.clear();
+        Ok(())
+    }
+
+    fn start_spin_momentum(&self) -> f64 {
+        let (centre, velocity) = (self.start_frame.centre, self.start_frame.velocity);
+        let masses = self.arms.node_mass.iter().enumerate();
+        masses
+            .map(|(node, mass)| {
+                let arm = node_vec(&self.start_position, node) - centre;
+                mass * cross(arm, node_vec(&self.start_velocity, node) - velocity)
+            })
+            .sum()
+    }
+
+    /// Finds the end of the step under the contact forces given; returns how far it is from there, relative to the body's size.
+    pub(super) fn solve_large(&mut self) -> f64 {
+        let Some(mut large) = self.large.take() else {
+            return 0.0;
+        };
+        let left = self.iterate_large(&mut large);
+        if self.kind == Frame::Free && left.is_finite() {
+            self.balance_momentum(&large);
+        }
+        self.large = Some(large);
+        self.follow_positions();
+        left
+    }
+
+    fn iterate_large(&mut self, large: &mut Large) -> f64 {
+        let share = self.share();
+        let scale = self.step.weights.b0 / share;
+        for (dof, load) in large.load.iter_mut().enumerate() {
+            *load = self.force[dof]
+                + (1.0 - share) * large.lasting[dof]
+                + share * self.contact_force[dof];
+        }
+        let Large {
+            model,
+            deformation,
+            tangent,
+            coast,
+            load,
+            residual,
+            reaction,
+            row_sum,
+            ..
+        } = large;
+        let equation = equation_of(
+            model,
+            &self.step,
+            [load, &self.start_position, coast],
+            &self.is_fixed,
+        );
+        let mut last: Option<Evaluation> = None;
+        let (mut n_cuts, mut n_iterations, mut n_guesses) = (0, 0, 0);
+        loop {
+            let outcome = equation.evaluate(&self.position, deformation, residual, reaction);
+            let bound = last.map_or(f64::INFINITY, |last| MOST_GROWTH * last.norm);
+            let accepted = outcome
+                .ok()
+                .filter(|now| now.norm.is_finite() && now.norm <= bound);
+            let Some(now) = accepted else {
+                if last.is_none() {
+                    // The guess cannot be: nearer to the beginning of the step it can.
+                    n_guesses += 1;
+                    if n_guesses > 2 * MOST_CUTS {
+                        return f64::INFINITY;
+                    }
+                    let part = if n_guesses == 2 * MOST_CUTS { 0.0 } else { 0.5 };
+                    for (dof, x) in self.position.iter_mut().enumerate() {
+                        if !self.is_fixed[dof] {
+                            let start = self.start_position[dof];
+                            *x = start + part * (*x - start);
+                        }
+                    }
+                    continue;
+                }
+                n_cuts += 1;
+                if n_cuts > MOST_CUTS {
+                    return NOT_FOUND;
+                }
+                for (x, increment) in self.position.iter_mut().zip(&mut self.local) {
+                    *increment *= 0.5;
+                    *x -= *increment;
+                }
+                continue;
+            };
+            let is_slow = last.is_some_and(|last| now.norm > SLOWEST * last.norm);
+            let extent = self.extent.max(self.frame.centre.amax());
+            let has_ended = now.norm <= TOLERANCE * now.scale
+                || is_slow && now.norm <= f64::EPSILON * *row_sum * extent;
+            if n_iterations == MOST_ITERATIONS && !has_ended {
+                let moved = self.local.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+                return moved / self.size;
+            }
+            if has_ended {
+                return 0.0;
+            }
+            if is_slow {
+                self.n_factorizations += 1;
+                let matrices = (&mut *tangent, &mut self.effective);
+                let Ok(is_new) =
+                    factorize(&equation, scale, deformation, matrices, &mut self.factor)
+                else {
+                    return NOT_FOUND;
+                };
+                *row_sum = is_new;
+                self.compliance.clear();
+            }
+            self.local.copy_from_slice(residual);
+            self.factor.solve_in_place(&mut self.local);
+            self.n_solves += 1;
+            for (x, increment) in self.position.iter_mut().zip(&mut self.local) {
+                *increment *= scale;
+                *x += *increment;
+            }
+            last = Some(now);
+            n_cuts = 0;
+            n_iterations += 1;
+        }
+    }
+
+    /// Shifts a free body so that its centre of mass is where the forces bring it, beyond the tolerance of the iterations.
+    fn balance_momentum(&mut self, large: &Large) {
+        let dt = self.step.dt;
+        let (inertia, drag) = (2.0 / (dt * dt), large.model.damping().mass / dt);
+        // About where the iterate is, so that no digits are lost far from the origin.
+        let mut missing = Vec2::zeros();
+        for (node, mass) in self.arms.node_mass.iter().enumerate() {
+            let x = node_vec(&self.position, node);
+            let (coast, start) = (
+                node_vec(&large.coast, node),
+                node_vec(&self.start_position, node),
+            );
+            missing +=
+                node_vec(&large.load, node) - *mass * (inertia * (x - coast) + drag * (x - start));
+        }
+        let shift = missing / (self.arms.mass * (inertia + drag));
+        for node in 0..self.arms.node_mass.len() {
+            add_node_vec(&mut self.position, node, shift);
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! The end of a step of a body of large strain: velocities, accelerations, ways back to its beginning, and the state to commit.
+
+use super::flex_block::FlexBlock;
+use super::large_block::Large;
+use crate::body::{FlexState, Frame};
+use crate::math::{Vec2, node_vec, perp, rotation, set_node_vec, sum_over};
+
+impl FlexBlock {
+    /// Writes the velocities and the centre that go with the positions.
+    pub(super) fn follow_positions(&mut self) {
+        let dt = self.step.dt;
+        for (dof, velocity) in self.velocity.iter_mut().enumerate() {
+            let moved = (self.position[dof] - self.start_position[dof]) / dt;
+            *velocity = match self.is_fixed[dof] {
+                true => moved,
+                false => 2.0 * moved - self.start_velocity[dof],
+            };
+        }
+        self.follow_centre();
+    }
+
+    /// Centre, its velocity and the inertia about it, of the positions and velocities at hand.
+    pub(super) fn follow_centre(&mut self) {
+        if self.kind == Frame::Fixed {
+            return;
+        }
+        let near = self.start_frame;
+        self.frame.centre = self.arms.centre(self.kind, &self.position, near.centre);
+        self.frame.velocity = self.arms.centre(self.kind, &self.velocity, near.velocity);
+        self.inertia = self.polar_inertia(self.frame.centre);
+        let moment = self
+            .model
+            .mass()
+            .moment(self.frame.centre, &self.position, &self.velocity);
+        self.frame.spin = moment / self.inertia;
+    }
+
+    /// Writes the acceleration at the end of the step: the mean one, with the forces of its end for the mean ones,
+    /// `ā + β0/β1 (1 - β1) A⁻¹ (Gᵀp - g)`.
+    pub(super) fn place_large_acceleration(&mut self) {
+        let (dt, late) = (self.step.dt, (1.0 - self.share()) * self.velocity_scale());
+        let Some(large) = &mut self.large else {
+            return;
+        };
+        large.end_lasting.copy_from_slice(&self.contact_force);
+        let changes = self.contact_force.iter().zip(&large.lasting);
+        let mut has_changed = false;
+        for ((local, (now, before)), is_fixed) in
+            self.local.iter_mut().zip(changes).zip(&self.is_fixed)
+        {
+            *local = if *is_fixed { 0.0 } else { now - before };
+            has_changed |= *local != 0.0;
+        }
+        if has_changed {
+            self.factor.solve_in_place(&mut self.local);
+            self.n_solves += 1;
+        } else {
+            self.local.fill(0.0);
+        }
+        for (dof, acceleration) in large.acceleration.iter_mut().enumerate() {
+            let mean = (self.velocity[dof] - self.start_velocity[dof]) / dt;
+            *acceleration = mean + late * self.local[dof];
+        }
+    }
+
+    /// Goes back to where the step began.
+    pub(super) fn restart_large(&mut self) {
+        self.position.copy_from_slice(&self.start_position);
+        self.velocity.copy_from_slice(&self.start_velocity);
+        self.clear_contact_force();
+        self.follow_centre();
+    }
+
+    /// Ends the step where it began, moving as a rigid body with this velocity of its centre (m/s) and spin (rad/s).
+    pub(super) fn move_large_on(&mut self, velocity: Vec2, spin: f64) {
+        self.restart_large();
+        let centre = self.frame.centre;
+        for node in 0..self.model.n_nodes() {
+            let arm = node_vec(&self.position, node) - centre;
+            let rigid = velocity + spin * perp(arm);
+            for axis in 0..2 {
+                let dof = 2 * node + axis;
+                self.velocity[dof] = if self.is_fixed[dof] { 0.0 } else { rigid[axis] };
+            }
+        }
+        if let Some(large) = &mut self.large {
+            large.end_lasting.fill(0.0);
+            large.acceleration.fill(0.0);
+        }
+        self.follow_centre();
+    }
+
+    /// Work of the pins that move, by their mean force over the step (J).
+    pub(super) fn large_pin_work(&self, large: &Large) -> f64 {
+        let arrays = [&large.reaction[..], &self.position, &self.start_position];
+        sum_over(arrays, |[force, end, start]| force * (end - start))
+    }
+
+    /// Writes the end of the step over the committed state.
+    pub(super) fn commit_large(&self, large: &Large, state: &mut FlexState) {
+        state.kinetic_energy = self.kinetic_energy();
+        state.elastic_energy = self.end_elastic;
+        state.position.copy_from_slice(&self.position);
+        state.velocity.copy_from_slice(&self.velocity);
+        state.lasting.resize(self.n_dofs(), 0.0);
+        state.lasting.copy_from_slice(&large.end_lasting);
+        state.torque = 0.0;
+        state.frame = self.frame;
+        state.frame.acceleration = Vec2::zeros();
+        state.frame.spin_rate = 0.0;
+        if self.kind == Frame::Fixed {
+            let pairs = self.position.iter().zip(self.model.rest_positions());
+            for (u, (x, rest)) in state.displacement.iter_mut().zip(pairs) {
+                *u = x - rest;
+            }
+        }
+        state.split_position(&self.arms, self.kind);
+        if self.kind != Frame::Fixed {
+            let (centre, inertia) = (self.frame.centre, self.inertia);
+            let mass = self.model.mass();
+            state.frame.spin = mass.moment(centre, &self.position, &self.velocity) / inertia;
+        }
+        let (frame, back) = (state.frame, rotation(-state.frame.angle));
+        for node in 0..self.model.n_nodes() {
+            // No mean turn of the shape is needed for this, which a folded body may not have.
+            let arm = node_vec(&self.position, node) - frame.centre;
+            let own = node_vec(&self.velocity, node) - frame.velocity - frame.spin * perp(arm);
+            set_node_vec(&mut state.rate, node, back * own);
+            let mean = (node_vec(&self.velocity, node) - node_vec(&self.start_velocity, node))
+                / self.step.dt;
+            set_node_vec(&mut state.acceleration, node, back * mean);
+        }
+        for &dof in &self.fixed_dofs {
+            state.acceleration[dof] = 0.0;
+        }
+    }
+}

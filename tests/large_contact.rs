@@ -1,0 +1,306 @@
+//! Bodies of large strain in a pipeline: the steps they take by themselves, contact, what is conserved, and what is refused.
+
+mod common;
+
+use common::*;
+use foil2d::body::BuildError;
+use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+use foil2d::fe::material::Rayleigh;
+use foil2d::fe::material::hyperelastic::{
+    Corotated, Hyperelastic, HyperelasticSolid, NeoHookean, StableNeoHookean,
+};
+use foil2d::fe::mesh::{CellKind, generate::rectangle};
+use foil2d::fe::model::MassKind;
+use foil2d::integrator::IntegratorError;
+use foil2d::large::{LargeSettings, LargeStepper, WorldMotion};
+use foil2d::pipeline::{Quality, StepError};
+
+fn of_law(
+    law: impl Hyperelastic + 'static,
+    size: [f64; 2],
+    divisions: [usize; 2],
+) -> FlexBodyBuilder {
+    FlexBodyBuilder::rectangle_of(size, divisions, CellKind::Tri6)
+        .material(HyperelasticSolid::new(law).with_density(1000.0))
+}
+
+/// Brings bodies of half a metre and 1e5 Pa to rest within seconds.
+fn settling() -> Rayleigh {
+    Rayleigh {
+        mass: 0.0,
+        stiffness: 0.05,
+    }
+}
+
+/// Tip down to -0.9 of the length: turns of more than a right angle.
+#[test]
+fn a_clamped_strip_swings_as_it_does_by_itself() {
+    let (size, divisions) = ([1.0, 0.05], [20, 2]);
+    let law = Corotated::plane_strain(1e6, 0.3);
+    let mesh = rectangle(size, divisions, CellKind::Tri6).expect("a mesh");
+    let model = FiniteStrainModel::assemble(FiniteStrainDescription::new(mesh, law, 1000.0))
+        .expect("a body");
+    let mut motion = WorldMotion::at_rest(&model);
+    let masses = model.masses().iter();
+    let weight: Vec<f64> = masses.flat_map(|mass| [0.0, -G * mass]).collect();
+    let settings = LargeSettings::damped(0.9).with_tolerance(1e-10);
+    let mut stepper = LargeStepper::new(model, settings).expect("sound settings");
+    stepper.pin_where(|[x, _]| x == 0.0, Pin::both());
+
+    let mut scene = Scene::new(1.0 / 60.0);
+    let strip =
+        scene.flexible(of_law(law, size, divisions).pin_where(|[x, _]| x == 0.0, Pin::both()));
+    let mut lowest = 0.0f64;
+    for step in 0..60 {
+        stepper
+            .step(scene.dt(), &weight, &mut motion)
+            .expect("a step");
+        scene.step();
+        let pairs = scene.body(strip).positions().iter().zip(&motion.position);
+        let apart = pairs.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+        assert!(apart < 1e-6, "{apart:e} m apart at step {step}");
+        lowest = lowest.min(motion.position[41]);
+    }
+    assert!(lowest < -0.85, "the tip gets down to {lowest} m only");
+}
+
+fn spinning_plate(integrator: Beta2) -> (Scene, FlexBodyHandle) {
+    let mut scene = Scene::in_free_space(1.0 / 60.0).with_integrator(integrator);
+    let plate = of_law(Corotated::plane_strain(1e7, 0.3), [1.0, 0.5], [4, 2]);
+    let plate = scene.flexible(plate.linvel([0.3, -0.2]).angvel(5.0));
+    (scene, plate)
+}
+
+/// 5 rad/s for 10 s. The plate starts unstretched: it vibrates all the way.
+#[test]
+fn a_free_plate_keeps_its_energy_and_its_momenta() {
+    let (mut scene, plate) = spinning_plate(Beta2::trapezoidal());
+    let before = [
+        energy_of(&scene),
+        scene.body(plate).angular_momentum([0.0; 2]),
+    ];
+    let momentum = scene.body(plate).momentum();
+    for _ in 0..600 {
+        scene.step();
+        let energy = energy_of(&scene);
+        assert!((energy / before[0] - 1.0).abs() < 1e-6, "{energy} J");
+        let spin = scene.body(plate).angular_momentum([0.0; 2]);
+        assert!((spin / before[1] - 1.0).abs() < 1e-6, "{spin} N m s");
+        let now = scene.body(plate).momentum();
+        let lost = (now[0] - momentum[0]).hypot(now[1] - momentum[1]);
+        assert!(lost < 1e-9, "{lost:e} N s lost");
+    }
+}
+
+/// The default integrator takes vibrations, and nothing of the rotation.
+#[test]
+fn damping_by_the_step_does_not_brake_a_rotation() {
+    let (mut scene, plate) = spinning_plate(Beta2::default());
+    let before = scene.body(plate).angular_momentum([0.0; 2]);
+    let mut energy = energy_of(&scene);
+    for _ in 0..600 {
+        scene.step();
+        let now = energy_of(&scene);
+        assert!(now < energy * (1.0 + 1e-6), "{energy} J, then {now} J");
+        energy = now;
+    }
+    let after = scene.body(plate).angular_momentum([0.0; 2]);
+    assert!(
+        (after / before - 1.0).abs() < 1e-5,
+        "{before}, then {after} N m s"
+    );
+    assert!(energy > 0.9 * 0.5 * 5.0 * before.abs(), "{energy} J left");
+}
+
+/// Falls by half its height, is crushed, and rests in the end on the ground that carries its weight.
+#[test]
+fn a_soft_block_falls_and_rests() {
+    let mut findings = Findings::default();
+    for (name, law) in [
+        (
+            "stable",
+            Box::new(StableNeoHookean::plane_strain(1e5, 0.3)) as Box<dyn Hyperelastic>,
+        ),
+        ("logarithmic", Box::new(NeoHookean::plane_strain(1e5, 0.3))),
+    ] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        let ground = scene.ground(0.5);
+        let solid = HyperelasticSolid::of(law.into()).with_density(1000.0);
+        let block = scene.flexible(
+            FlexBodyBuilder::rectangle_of([1.0, 1.0], [5, 5], CellKind::Tri6)
+                .material(solid.with_damping(settling()))
+                .translation([-0.5, 0.5])
+                .rotation(0.1),
+        );
+        let mut onlooker = Onlooker::default();
+        onlooker.watch(&mut scene, 600, |_| {});
+        onlooker.check(&mut findings, name);
+        onlooker.check_energy(&mut findings, name, 1000.0 * G * 0.5);
+        let [x, y] = scene.force_on_collider(ground);
+        let weight = 1000.0 * G;
+        findings.check(
+            (y / weight + 1.0).abs() < 1e-3 && x.abs() < 1e-3 * weight,
+            || {
+                format!(
+                    "{name}: the ground carries {:.5} of the weight, {x:.2e} N aside",
+                    -y / weight
+                )
+            },
+        );
+        let speed = scene.body(block).linvel();
+        findings.check(speed[0].hypot(speed[1]) < 1e-4, || {
+            format!("{name}: {speed:?} m/s")
+        });
+    }
+    findings.report();
+}
+
+/// Two of large strain, one of small strain and a rigid one meet far from everything.
+#[test]
+fn collisions_keep_momentum_and_bring_no_energy() {
+    let mut scene = Scene::in_free_space(1.0 / 120.0);
+    let law = StableNeoHookean::plane_strain(2e5, 0.3);
+    let soft = |x: f64, speed: f64| {
+        of_law(law, [0.6, 0.6], [3, 3])
+            .translation([x, 0.1 * x])
+            .linvel([speed, 0.0])
+            .angvel(-0.3 * speed)
+    };
+    scene.flexible(soft(-1.0, 3.0));
+    scene.flexible(soft(0.0, 0.0));
+    scene.flexible(
+        FlexBodyBuilder::rectangle([0.6, 0.6], [3, 3])
+            .material(elastic(1e7, 1000.0, 0.0))
+            .translation([1.0, 0.2])
+            .linvel([-2.0, 0.0]),
+    );
+    let ball = RigidBodyBuilder::dynamic()
+        .translation(vec2(2.2, 0.4))
+        .linvel(vec2(-4.0, 0.0));
+    scene.rigid(ball, ColliderBuilder::ball(0.2).mass(200.0));
+    let before = momentum_of(&scene);
+    let energy = energy_of(&scene);
+    let mut n_contacts = 0;
+    for step in 0..240 {
+        let report = scene.step();
+        assert_eq!(report.quality(), Quality::Solved, "step {step}");
+        n_contacts = n_contacts.max(report.contacts().len());
+        let now = momentum_of(&scene);
+        let lost = (now[0] - before[0]).hypot(now[1] - before[1]);
+        let moved = before[0].abs().max(1000.0);
+        assert!(
+            lost < by_precision(1e-5, 1e-10) * moved,
+            "{lost:e} N s lost by step {step}"
+        );
+        let rise = energy_of(&scene) / energy;
+        assert!(rise < 1.0 + 1e-3, "{rise} of the energy at step {step}");
+    }
+    assert!(n_contacts > 2, "they met");
+}
+
+/// Stretched to twice its length between two grips that let it shrink: principal stresses are those of the law.
+#[test]
+fn stresses_of_a_stretched_strip_are_cauchys() {
+    let law = StableNeoHookean::plane_strain(1e5, 0.3);
+    let mut scene = Scene::in_free_space(1.0 / 60.0);
+    let left = Pin { x: true, y: false };
+    let solid = HyperelasticSolid::new(law).with_density(1000.0);
+    let body = of_law(law, [1.0, 1.0], [2, 2])
+        .material(solid.with_damping(settling()))
+        .pin_where(|[x, _]| x == 0.0 || x == 1.0, left)
+        .pin_where(|[x, y]| x == 0.0 && y == 0.0, Pin::both());
+    let body = scene.flexible(body);
+    for step in 1..=1200 {
+        let way = (f64::from(step) / 600.0).min(1.0);
+        let ends: Vec<usize> = (0..scene.body(body).n_nodes())
+            .filter(|&node| scene.body(body).mesh().nodes()[node][0] == 1.0)
+            .collect();
+        let flexible = scene.bodies.get_mut(body).expect("it is there");
+        for node in ends {
+            flexible
+                .set_pin_displacement(node, [way, 0.0])
+                .expect("a pin");
+        }
+        scene.step();
+    }
+    // The stretch across is where the stress there vanishes.
+    let across =
+        |stretch: f64| foil2d::fe::material::hyperelastic::principal_stress(&law, [2.0, stretch]);
+    let (mut low, mut high) = (0.3, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if across(middle)[1] < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let height = scene.body(body).position(scene.body(body).n_nodes() - 1)[1];
+    let nominal = across(low)[0];
+    let cauchy = nominal / low;
+    for stress in scene.body(body).stress().expect("stresses") {
+        let error = (stress.xx / cauchy - 1.0).abs();
+        assert!(error < 1e-3, "{} Pa for {cauchy} Pa", stress.xx);
+        assert!(stress.yy.abs() < 1e-3 * cauchy && stress.xy.abs() < 1e-3 * cauchy);
+    }
+    assert!(height < 1.0, "{height}");
+    let pull: f64 = (0..scene.body(body).n_nodes())
+        .filter(|&node| scene.body(body).mesh().nodes()[node][0] == 1.0)
+        .map(|node| scene.body(body).reaction(node)[0])
+        .sum();
+    assert!(
+        (pull / nominal - 1.0).abs() < 1e-3,
+        "{pull} N for {nominal} N"
+    );
+}
+
+#[test]
+fn a_mirrored_impact_is_the_impact_mirrored() {
+    let run = |side: f64| {
+        let mut scene = Scene::new(1.0 / 120.0);
+        scene.ground(0.5);
+        let law = StableNeoHookean::plane_strain(1e5, 0.3);
+        let disc = FlexBodyBuilder::disc(0.4, 0.2)
+            .material(HyperelasticSolid::new(law).with_density(1000.0))
+            .translation([0.0, 0.7])
+            .linvel([side * 2.0, -3.0])
+            .angvel(-side);
+        let disc = scene.flexible(disc);
+        scene.steps(60);
+        scene.body(disc).centre_of_mass()
+    };
+    let ([x, y], [mirrored_x, mirrored_y]) = (run(1.0), run(-1.0));
+    // The mesh of a disc is no mirror image of itself: its discretization shows, nothing else may.
+    assert!((x + mirrored_x).abs() < 0.02, "{x} and {mirrored_x}");
+    assert!((y - mirrored_y).abs() < 0.02, "{y} and {mirrored_y}");
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    let law = Corotated::plane_strain(1e6, 0.3);
+    let body = || of_law(law, [1.0, 0.2], [4, 1]);
+    let refused = body().mass_kind(MassKind::Consistent).build();
+    assert!(
+        matches!(refused, Err(BuildError::LargeConsistent)),
+        "{refused:?}"
+    );
+    let bare = HyperelasticSolid::new(law);
+    let refused = FlexBodyBuilder::rectangle([1.0, 0.2], [4, 1])
+        .material(bare)
+        .build();
+    assert!(
+        matches!(refused, Err(BuildError::Material(_))),
+        "{refused:?}"
+    );
+    let mut scene = Scene::new(1.0 / 60.0).with_integrator(Beta2::central_difference());
+    scene.flexible(body());
+    let refused = scene.try_step().map(|_| ());
+    let is_it = matches!(
+        refused,
+        Err(StepError::Integrator {
+            source: IntegratorError::LargeStrain,
+            ..
+        })
+    );
+    assert!(is_it, "{refused:?}");
+}
