@@ -9,7 +9,7 @@
 //! The rope is a strip one cell thick of a corotated material, 20 MPa: it turns by more than a whole turn, carries the ball, and bends
 //! as stiff as it is. Nothing brings energy but gravity, and what the film's colours show is Cauchy's stress.
 
-mod support;
+pub mod support;
 
 use clap::Parser;
 use foil2d::fe::material::Rayleigh;
@@ -20,7 +20,7 @@ use foil2d::rapier::prelude::*;
 use serde::Serialize;
 use std::error::Error;
 use support::cli::{Options, print_json};
-use support::film::{Film, Legend, View};
+use support::film::{FORCE, Film, Legend, View};
 
 const LENGTH: f64 = 2.4;
 const THICKNESS: f64 = 0.04;
@@ -45,7 +45,7 @@ pub struct Outcome {
     pub wound: f64,
     /// Largest overlap told of in any step (m).
     pub max_penetration_m: f64,
-    /// Largest force of the peg on the rope (N).
+    /// Largest force on the rope while it touches the peg (N).
     pub peg_force_n: f64,
     /// Largest von Mises stress (Pa).
     pub von_mises_pa: f64,
@@ -163,6 +163,9 @@ impl Scene {
             panel.cell(points, mean / corners.len() as f64 / 1e6);
         }
         panel.disc(self.ball_at(), BALL_RADIUS, "fill=\"#b33\"");
+        for node in 0..body.n_nodes() {
+            panel.force(body.position(node), body.contact_force(node), FORCE);
+        }
         Ok(())
     }
 }
@@ -215,14 +218,14 @@ pub fn run(options: &Options, mut film: Option<&mut Film>) -> Result<Outcome, Bo
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
     let view = View {
-        x: [-2.7, 2.7],
-        y: [0.0, 3.4],
+        x: [-1.5, 2.7],
+        y: [0.2, 3.4],
     };
     let legend = Legend {
         colours: "von Mises stress (MPa)".to_owned(),
         full: 2.0,
-        arrow: [0.0, 0.0],
-        longest: 0.0,
+        arrow: [4e-4, 1000.0],
+        longest: 0.4,
     };
     let notes =
         vec!["A rope, 2.4 m by 40 mm, 20 MPa, with a ball of 2 kg; a fixed peg.".to_owned()];

@@ -17,6 +17,8 @@ mod falling_block;
 mod grab;
 #[path = "../examples/gripper.rs"]
 mod gripper;
+#[path = "../examples/rope.rs"]
+mod rope;
 #[path = "../examples/sensor_gate.rs"]
 mod sensor_gate;
 #[path = "../examples/truck.rs"]
@@ -221,5 +223,19 @@ fn every_example_runs_shortened() -> Outcome {
     gripper::run(&gripper::cli::Options { json: true, steps })?;
     truck::run(&truck::cli::Options { json: true, steps })?;
     sensor_gate::run(&sensor_gate::cli::Options { json: true, steps })?;
+    Ok(())
+}
+
+/// The ball goes around the peg by more than half a turn and back; nothing brings energy but gravity.
+#[test]
+fn a_rope_swings_winds_around_a_peg_and_unwinds() -> Outcome {
+    let outcome = rope::run(&rope::support::cli::Options::default(), None)?;
+    assert_eq!(outcome.unsolved, 0);
+    assert!(outcome.energy_gained < 0.01, "{outcome:?}");
+    assert!((1.0..1.05).contains(&outcome.longest), "{outcome:?}");
+    assert!(outcome.wound > 4.0, "{outcome:?}");
+    assert!(outcome.max_penetration_m < 1e-5, "{outcome:?}");
+    // The ball in its circle of a metre carries several times its weight.
+    assert!(outcome.peg_force_n > 2.0 * 20.0, "{outcome:?}");
     Ok(())
 }
