@@ -215,6 +215,7 @@ pub fn run(options: &Options, mut film: Option<&mut Film>) -> Result<Outcome, Bo
     Ok(outcome)
 }
 
+#[allow(dead_code, reason = "tests call `run`")]
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
     let view = View {
