@@ -304,3 +304,81 @@ fn what_cannot_be_is_refused_by_name() {
     );
     assert!(is_it, "{refused:?}");
 }
+
+/// What rests sleeps, and wakes under the forces that it slept with.
+#[test]
+fn a_block_at_rest_falls_asleep_and_wakes_without_a_start() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let ground = scene.ground(0.5);
+    let law = NeoHookean::plane_strain(1e6, 0.3);
+    let solid = HyperelasticSolid::new(law).with_density(1000.0);
+    let block = FlexBodyBuilder::rectangle_of([0.6, 0.4], [3, 2], CellKind::Tri6)
+        .material(solid.with_damping(Rayleigh {
+            mass: 0.0,
+            stiffness: 2e-3,
+        }))
+        .translation([0.0, 0.05]);
+    let block = scene.flexible(block);
+    let mut n_steps = 0;
+    while scene.report().n_asleep() == 0 {
+        scene.step();
+        n_steps += 1;
+        assert!(n_steps < 1200, "awake after 20 s");
+    }
+    scene.steps(10);
+    scene.bodies.get_mut(block).expect("it is there").wake_up();
+    let weight = 0.24 * 1000.0 * G;
+    for step in 0..20 {
+        scene.step();
+        let [_, y] = scene.force_on_collider(ground);
+        assert!(
+            (y / weight + 1.0).abs() < 1e-4,
+            "{y} N of {weight} N in step {step}"
+        );
+    }
+}
+
+/// Pins that move take the body along, in whatever parts the step is taken.
+#[test]
+fn a_strip_is_bent_by_its_pins() {
+    let law = Corotated::plane_strain(1e6, 0.3);
+    let mut scene = Scene::in_free_space(1.0 / 60.0);
+    let strip =
+        of_law(law, [1.0, 0.05], [16, 1]).pin_where(|[x, _]| x == 0.0 || x == 1.0, Pin::both());
+    let strip = scene.flexible(strip);
+    let ends: Vec<(usize, [f64; 2])> = scene
+        .body(strip)
+        .mesh()
+        .nodes()
+        .iter()
+        .copied()
+        .enumerate()
+        .filter(|(_, [x, _])| *x == 1.0)
+        .collect();
+    // The right end goes round by half a turn about the middle of the strip and is turned by as much.
+    for step in 1..=240 {
+        let angle = std::f64::consts::PI * (f64::from(step) / 200.0).min(1.0);
+        for &(node, [x, y]) in &ends {
+            let arm = [x - 0.5, y - 0.025];
+            let to = [
+                0.5 + angle.cos() * arm[0] - angle.sin() * arm[1],
+                0.025 + angle.sin() * arm[0] + angle.cos() * arm[1] + 0.3 * angle.sin(),
+            ];
+            let body = scene.bodies.get_mut(strip).expect("it is there");
+            body.set_pin_displacement(node, [to[0] - x, to[1] - y])
+                .expect("a pin");
+        }
+        let report = scene.step();
+        assert_eq!(report.quality(), Quality::Solved, "step {step}");
+    }
+    let body = scene.body(strip);
+    for &(node, [x, y]) in &ends {
+        let at = body.position(node);
+        let to = [1.0 - x, 0.05 - y];
+        assert!(
+            (at[0] - to[0]).hypot(at[1] - to[1]) < 1e-12,
+            "{at:?} for {to:?}"
+        );
+    }
+    assert!(body.energy().elastic > 0.0 && body.energy().elastic.is_finite());
+}

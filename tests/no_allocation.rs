@@ -221,6 +221,20 @@ fn a_block_that_rests_on_the_floor_with_friction_allocates_nothing() -> Result<(
     Ok(())
 }
 
+/// Its factor is made anew in every step, in the room it has.
+#[test]
+fn a_block_of_large_strain_on_the_floor_allocates_nothing() -> Result<(), BuildError> {
+    let solid = HyperelasticSolid::new(NeoHookean::plane_strain(1e6, 0.3)).with_density(1000.0);
+    let block = FlexBodyBuilder::rectangle_of([1.0, 1.0], [3, 3], CellKind::Tri6)
+        .material(solid)
+        .friction(0.6)
+        .can_sleep(false)
+        .translation([0.0, 0.001]);
+    let warm = Warm::new().with(block)?;
+    warm.assert_quiet("block of large strain on floor", 300, 4);
+    Ok(())
+}
+
 #[test]
 fn events_and_hooks_of_resting_bodies_allocate_nothing() -> Result<(), BuildError> {
     let listening = block()

@@ -152,7 +152,7 @@ impl FlexBodyBuilder {
         self
     }
 
-    /// Whether the contact boundary carries inertia.
+    /// Whether the contact boundary carries inertia; that of a body of large strain always does.
     pub fn contact_inertia(mut self, inertia: ContactInertia) -> Self {
         self.contact_inertia = inertia;
         self

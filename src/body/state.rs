@@ -101,7 +101,6 @@ impl FlexState {
     /// Forgets all accelerations.
     pub(super) fn clear_accelerations(&mut self) {
         self.acceleration.fill(0.0);
-        self.lasting.fill(0.0);
         self.frame.acceleration = Vec2::zeros();
         self.frame.spin_rate = 0.0;
         self.torque = 0.0;

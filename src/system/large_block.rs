@@ -168,7 +168,6 @@ impl FlexBlock {
         self.frame_q = state.frame;
         self.is_linear = false;
         self.clear_contact_force();
-        let rest = self.model.rest_positions();
         let Some(large) = &mut self.large else {
             return Ok(());
         };
@@ -178,16 +177,12 @@ impl FlexBlock {
             false => large.lasting.copy_from_slice(&state.lasting),
         }
         let turn = rotation(state.frame.angle);
-        for node in 0..rest.len() / 2 {
+        for node in 0..self.model.n_nodes() {
             let guess = 0.5 * dt * dt * (turn * node_vec(&state.acceleration, node));
             for axis in 0..2 {
                 let dof = 2 * node + axis;
                 large.coast[dof] = state.position[dof] + dt * state.velocity[dof];
-                self.position[dof] = if self.is_fixed[dof] {
-                    rest[dof] + self.prescribed[dof]
-                } else {
-                    large.coast[dof] + guess[axis]
-                };
+                self.position[dof] = large.coast[dof] + guess[axis];
             }
         }
         self.start_momentum = self.start_spin_momentum();
@@ -243,6 +238,9 @@ impl FlexBlock {
     }
 
     fn iterate_large(&mut self, large: &mut Large) -> f64 {
+        for &dof in &self.fixed_dofs {
+            self.position[dof] = self.model.rest_positions()[dof] + self.prescribed[dof];
+        }
         let share = self.share();
         let scale = self.step.weights.b0 / share;
         for (dof, load) in large.load.iter_mut().enumerate() {
