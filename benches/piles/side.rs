@@ -12,6 +12,8 @@ pub type Outcome<T> = Result<T, Box<dyn std::error::Error>>;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Told {
     pub n_factorizations: u64,
+    pub n_pivots: usize,
+    pub n_newton: usize,
     pub quality: Quality,
 }
 
@@ -51,6 +53,8 @@ impl Side for Flexible {
         let report = self.flex.step(&mut self.world, &mut self.bodies)?;
         Ok(Told {
             n_factorizations: report.n_factorizations(),
+            n_pivots: report.n_pivots(),
+            n_newton: report.n_newton(),
             quality: report.quality(),
         })
     }
@@ -126,14 +130,14 @@ impl Seen {
         [middle(&self.times), worst, at_rest]
     }
 
-    /// Factorizations a step: mean, most, and mean of the last second.
-    pub fn factorizations(&self) -> [f64; 3] {
+    /// A count of every step: mean, most, and mean of the last second.
+    pub fn count(&self, of: impl Fn(&Told) -> u64) -> [f64; 3] {
         let last = self.told.len().saturating_sub(Self::LAST);
         let mean = |told: &[Told]| {
-            let sum: u64 = told.iter().map(|told| told.n_factorizations).sum();
+            let sum: u64 = told.iter().map(&of).sum();
             sum as f64 / told.len().max(1) as f64
         };
-        let most = self.told.iter().map(|told| told.n_factorizations).max();
+        let most = self.told.iter().map(&of).max();
         let most = most.unwrap_or(0) as f64;
         [mean(&self.told), most, mean(&self.told[last..])]
     }

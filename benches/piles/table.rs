@@ -32,10 +32,23 @@ pub fn print(scene: &Scene, n_steps: usize, seen: &[Seen]) {
             digits(ratio(2)),
         );
     }
-    let [mean, most, last] = seen[0].factorizations();
+    let counts = [
+        ("passes", seen[0].count(|told| told.n_newton as u64)),
+        (
+            "factorizations (pivots) of contact problems",
+            seen[0].count(|told| told.n_pivots as u64),
+        ),
+        (
+            "factorizations of bodies",
+            seen[0].count(|told| told.n_factorizations),
+        ),
+    ];
+    for (what, [mean, most, last]) in counts {
+        println!("  {what} a step: {mean:.1}, at most {most:.0}, in the last second {last:.1}");
+    }
     let [cut, unfinished] = seen[0].n_unsolved();
     println!(
-        "  factorizations a step: {mean:.1}, at most {most:.0}, in the last second {last:.1}; of {} steps {cut} cut, {unfinished} unfinished",
+        "  of {} steps {cut} cut, {unfinished} unfinished",
         seen[0].n_steps()
     );
 }
