@@ -313,13 +313,16 @@ impl FlexBlock {
             if is_slow {
                 self.n_factorizations += 1;
                 let matrices = (&mut *tangent, &mut self.effective);
-                let Ok(is_new) =
-                    factorize(&equation, scale, deformation, matrices, &mut self.factor)
-                else {
+                let found = factorize(&equation, scale, deformation, matrices, &mut self.factor);
+                self.compliance.clear();
+                let Ok(sum) = found else {
+                    // What is asked of the body from here on is answered as where the step began.
+                    model.begin(&self.start_position, deformation);
+                    let matrices = (&mut *tangent, &mut self.effective);
+                    let _ = factorize(&equation, scale, deformation, matrices, &mut self.factor);
                     return NOT_FOUND;
                 };
-                *row_sum = is_new;
-                self.compliance.clear();
+                *row_sum = sum;
             }
             self.local.copy_from_slice(residual);
             self.factor.solve_in_place(&mut self.local);
