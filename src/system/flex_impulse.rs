@@ -130,6 +130,11 @@ impl FlexBlock {
             if self.kind == Frame::Free {
                 self.frame.velocity += mean;
             }
+            if let Some(large) = &mut self.large {
+                for (sum, response) in large.resolved.iter_mut().zip(&impulses.response) {
+                    *sum += scale * response;
+                }
+            }
             &mut self.velocity
         };
         for (sum, response) in target.iter_mut().zip(&impulses.response) {

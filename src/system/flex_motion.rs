@@ -42,6 +42,9 @@ impl FlexBlock {
 
     /// Velocity at a node at the beginning of the step (m/s): that of the mass around a massless one, turned on to where it is.
     pub fn start_velocity(&self, node: usize) -> Vec2 {
+        if let Some(large) = &self.large {
+            return node_vec(&large.start_resolved, node);
+        }
         let spin = self.start_frame.spin;
         self.turned_on(node, spin, [&self.start_position, &self.start_velocity])
     }
@@ -54,6 +57,9 @@ impl FlexBlock {
     /// Velocity at a node at the current iterate (m/s): that of the mass around a massless one, whose own is a remainder
     /// without inertia, turned on to where the node is.
     pub fn velocity(&self, node: usize) -> Vec2 {
+        if let Some(large) = &self.large {
+            return node_vec(&large.resolved, node);
+        }
         self.turned_on(node, self.frame.spin, [&self.position, &self.velocity])
     }
 

@@ -20,6 +20,7 @@ use super::flex_block::FlexBlock;
 use super::step::Step;
 use crate::body::{FlexState, Frame};
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Form, Linearization};
+use crate::fe::material::Rayleigh;
 use crate::fe::model::Model;
 use crate::large::{Equation, Evaluation, Inertia, largest_row_sum};
 use crate::linalg::block_matrix::BlockMatrix;
@@ -63,6 +64,9 @@ pub(super) struct Large {
     pub(super) end_lasting: Vec<f64>,
     /// Acceleration at the end of the step (m/s²).
     pub(super) acceleration: Vec<f64>,
+    /// The part of the velocities that the step resolves, at its beginning and at its end (m/s).
+    pub(super) start_resolved: Vec<f64>,
+    pub(super) resolved: Vec<f64>,
     row_sum: f64,
 }
 
@@ -70,6 +74,11 @@ pub(super) struct Large {
 fn decay_of(step: &Step) -> f64 {
     let beta0 = 2.0 * step.weights.b0 / (step.dt * step.dt);
     ((2.0 * beta0).sqrt() - 1.0).max(0.0)
+}
+
+/// The decay of the integrator, and the viscosity of the material as one.
+pub(super) fn total_decay(step: &Step, damping: Rayleigh) -> f64 {
+    decay_of(step) + 2.0 * damping.stiffness / step.dt
 }
 
 /// The equation of a step under `load` from `start` by way of `coast`.
@@ -83,7 +92,7 @@ fn equation_of<'a>(
     Equation {
         model,
         form: Form::EnergyMomentum {
-            decay: decay_of(step) + 2.0 * damping.stiffness / dt,
+            decay: total_decay(step, damping),
         },
         inertia: Inertia {
             acceleration: 2.0 / (dt * dt),
@@ -138,6 +147,8 @@ impl FlexBlock {
             lasting: zeros(),
             end_lasting: zeros(),
             acceleration: zeros(),
+            start_resolved: zeros(),
+            resolved: zeros(),
             row_sum: 0.0,
             model: large,
         }));
@@ -191,6 +202,9 @@ impl FlexBlock {
             return Ok(());
         };
         let outcome = self.factorize_large(&mut large);
+        if outcome.is_ok() {
+            self.resolve(&state.position, &state.velocity, &mut large.start_resolved);
+        }
         self.large = Some(large);
         outcome
     }

@@ -1,9 +1,9 @@
 //! The end of a step of a body of large strain: velocities, accelerations, ways back to its beginning, and the state to commit.
 
 use super::flex_block::FlexBlock;
-use super::large_block::Large;
+use super::large_block::{Large, total_decay};
 use crate::body::{FlexState, Frame};
-use crate::math::{Vec2, node_vec, perp, rotation, set_node_vec, sum_over};
+use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec, sum_over};
 
 impl FlexBlock {
     /// Writes the velocities and the centre that go with the positions.
@@ -16,7 +16,63 @@ impl FlexBlock {
                 false => 2.0 * moved - self.start_velocity[dof],
             };
         }
+        if let Some(large) = &mut self.large {
+            large.resolved.copy_from_slice(&self.velocity);
+        }
         self.follow_centre();
+    }
+
+    /// Writes the part of velocities that the step resolves, `β0/β1 A⁻¹ M v`: what a body of large strain tells a contact.
+    ///
+    /// Rigid motion is all in it, of a vibration of frequency ω the share `1/(1 + ω² dt²/4)`. Vibrations that the step does not resolve change the
+    /// sign of their velocities in every step, and impulses that stopped those by what the whole body answers would throw it away. Impulses
+    /// `P` that bring `G v` so measured to rest change the kinetic energy by at most `-½ v·GᵀW⁻¹G v`, `W = G A⁻¹ Gᵀ`, as `A⁻¹ M A⁻¹ <= A⁻¹`.
+    pub(super) fn resolve(&mut self, position: &[f64], velocity: &[f64], resolved: &mut [f64]) {
+        let scale = self.velocity_scale();
+        resolved.copy_from_slice(velocity);
+        let rigid = self.take_out_rigid(position, resolved);
+        for (dof, value) in resolved.iter_mut().enumerate() {
+            let mass = self.arms.node_mass[dof / 2];
+            *value *= if self.is_fixed[dof] {
+                0.0
+            } else {
+                scale * mass
+            };
+        }
+        self.factor.solve_in_place(resolved);
+        self.n_solves += 1;
+        self.take_out_rigid(position, resolved);
+        if let Some((drift, spin, centre)) = rigid {
+            for node in 0..self.arms.node_mass.len() {
+                let arm = node_vec(position, node) - centre;
+                add_node_vec(resolved, node, drift + spin * perp(arm));
+            }
+        }
+        for &dof in &self.fixed_dofs {
+            resolved[dof] = velocity[dof];
+        }
+    }
+
+    /// Takes the rigid motion that the masses see out of nodal velocities of a free body; returns velocity and spin about the centre.
+    fn take_out_rigid(&self, position: &[f64], velocity: &mut [f64]) -> Option<(Vec2, f64, Vec2)> {
+        if self.kind != Frame::Free {
+            return None;
+        }
+        let near = self.start_frame;
+        let centre = self.arms.centre(self.kind, position, near.centre);
+        let drift = self.arms.centre(self.kind, velocity, Vec2::zeros());
+        let (mut moment, mut inertia) = (0.0, 0.0);
+        for (node, mass) in self.arms.node_mass.iter().enumerate() {
+            let arm = node_vec(position, node) - centre;
+            moment += mass * cross(arm, node_vec(velocity, node) - drift);
+            inertia += mass * arm.norm_squared();
+        }
+        let spin = moment / inertia;
+        for node in 0..self.arms.node_mass.len() {
+            let arm = node_vec(position, node) - centre;
+            add_node_vec(velocity, node, -drift - spin * perp(arm));
+        }
+        Some((drift, spin, centre))
     }
 
     /// Centre, its velocity and the inertia about it, of the positions and velocities at hand.
@@ -39,9 +95,16 @@ impl FlexBlock {
     /// `ā + β0/β1 (1 - β1) A⁻¹ (Gᵀp - g)`.
     pub(super) fn place_large_acceleration(&mut self) {
         let (dt, late) = (self.step.dt, (1.0 - self.share()) * self.velocity_scale());
-        let Some(large) = &mut self.large else {
+        let Some(mut large) = self.large.take() else {
             return;
         };
+        let (position, velocity) = (
+            std::mem::take(&mut self.position),
+            std::mem::take(&mut self.velocity),
+        );
+        self.resolve(&position, &velocity, &mut large.resolved);
+        (self.position, self.velocity) = (position, velocity);
+        self.damp_unresolved(&large);
         large.end_lasting.copy_from_slice(&self.contact_force);
         let changes = self.contact_force.iter().zip(&large.lasting);
         let mut has_changed = false;
@@ -58,8 +121,26 @@ impl FlexBlock {
             self.local.fill(0.0);
         }
         for (dof, acceleration) in large.acceleration.iter_mut().enumerate() {
-            let mean = (self.velocity[dof] - self.start_velocity[dof]) / dt;
+            let mean = (large.resolved[dof] - large.start_resolved[dof]) / dt;
             *acceleration = mean + late * self.local[dof];
+        }
+        self.large = Some(large);
+    }
+
+    /// Takes the share `min(χ, 1)` of the velocities that the step does not resolve, and of neither momentum.
+    ///
+    /// Of the two amplifications of a mode that the step does not resolve, the decay `χ` of the stress damps one; the other goes to -1. What
+    /// is taken of a mode of frequency ω is `χ ω² dt²/4 / (1 + ω² dt²/4)` of its velocity: energy, always, and nothing where `χ` is zero.
+    fn damp_unresolved(&mut self, large: &Large) {
+        let share = total_decay(&self.step, large.model.damping()).min(1.0);
+        if share == 0.0 {
+            return;
+        }
+        for (dof, change) in self.local.iter_mut().enumerate() {
+            *change = share * (large.resolved[dof] - self.velocity[dof]);
+        }
+        for (velocity, change) in self.velocity.iter_mut().zip(&self.local) {
+            *velocity += change;
         }
     }
 
@@ -67,6 +148,9 @@ impl FlexBlock {
     pub(super) fn restart_large(&mut self) {
         self.position.copy_from_slice(&self.start_position);
         self.velocity.copy_from_slice(&self.start_velocity);
+        if let Some(large) = &mut self.large {
+            large.resolved.copy_from_slice(&large.start_resolved);
+        }
         self.clear_contact_force();
         self.follow_centre();
     }
@@ -86,6 +170,7 @@ impl FlexBlock {
         if let Some(large) = &mut self.large {
             large.end_lasting.fill(0.0);
             large.acceleration.fill(0.0);
+            large.resolved.copy_from_slice(&self.velocity);
         }
         self.follow_centre();
     }

@@ -97,7 +97,11 @@ impl Block {
                 block.frame.velocity += velocity;
                 for node in 0..block.model.n_nodes() {
                     let arm = node_vec(&block.position, node) - centre;
-                    add_node_vec(&mut block.velocity, node, velocity + spin * perp(arm));
+                    let rigid = velocity + spin * perp(arm);
+                    add_node_vec(&mut block.velocity, node, rigid);
+                    if let Some(large) = &mut block.large {
+                        add_node_vec(&mut large.resolved, node, rigid);
+                    }
                 }
             }
             Self::Rigid(block) => block.add_velocity(velocity, spin),
