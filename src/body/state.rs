@@ -59,8 +59,6 @@ pub struct FlexState {
     pub lasting: Vec<f64>,
     /// Torque of all forces about the centre at the end of the step (N m).
     pub torque: f64,
-    /// `Σ l·f` over the contact and joint forces among them, `l` their levers about the centre (N m).
-    pub virial: f64,
     /// Kinetic energy (J).
     pub kinetic_energy: f64,
     /// Elastic energy (J).
@@ -83,7 +81,6 @@ impl FlexState {
             acceleration: zeros,
             lasting: Vec::new(),
             torque: 0.0,
-            virial: 0.0,
             kinetic_energy: 0.0,
             elastic_energy: 0.0,
         }
@@ -107,7 +104,6 @@ impl FlexState {
         self.frame.acceleration = Vec2::zeros();
         self.frame.spin_rate = 0.0;
         self.torque = 0.0;
-        self.virial = 0.0;
     }
 
     /// Forgets all velocities and accelerations.

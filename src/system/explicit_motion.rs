@@ -167,7 +167,7 @@ impl FlexBlock {
         state.velocity.copy_from_slice(&self.velocity);
         state.displacement.copy_from_slice(&self.displacement);
         state.frame = self.frame;
-        (state.torque, state.virial) = (0.0, 0.0);
+        state.torque = 0.0;
         let back = self.turn.transpose();
         for node in 0..self.model.n_nodes() {
             let acceleration = back * node_vec(&self.explicit.acceleration, node);

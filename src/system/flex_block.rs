@@ -86,11 +86,6 @@ pub struct FlexBlock {
     pub(super) contact_total: Vec2,
     /// Moment of the contact forces about the centre, by the levers they were given with (N m).
     pub(super) contact_moment: f64,
-    /// `Σ l·f` of the contact forces, by the same levers (N m).
-    pub(super) contact_virial: f64,
-    /// The same, of what is left in the stored accelerations, at the beginning of the step and at its end (N m).
-    pub(super) start_virial: f64,
-    pub(super) virial: f64,
     /// Impulses for the velocity and for the acceleration.
     pub(super) impulses: [Impulses; 2],
     /// Right-hand sides of both.
@@ -184,9 +179,6 @@ impl FlexBlock {
             solved_angle: None,
             contact_total: Vec2::zeros(),
             contact_moment: 0.0,
-            contact_virial: 0.0,
-            start_virial: 0.0,
-            virial: 0.0,
             impulses: [Impulses::new(n), Impulses::new(n)],
             columns: vec![0.0; 2 * n],
             local: zeros(),
@@ -275,8 +267,6 @@ impl FlexBlock {
         self.start_frame = state.frame;
         self.start_torque = state.torque;
         self.torque = state.torque;
-        self.start_virial = state.virial;
-        self.virial = state.virial;
         self.start_energy = [state.kinetic_energy, state.elastic_energy];
         for &dof in &self.fixed_dofs {
             self.prescribed[dof] = load.prescribed[dof];

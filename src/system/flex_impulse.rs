@@ -13,8 +13,6 @@ pub(super) struct Impulses {
     pub(super) total: Vec2,
     /// Moment about the centre, by the levers they came with.
     moment: f64,
-    /// `Σ l·p` by the same levers.
-    virial: f64,
     /// Velocities in world axes, or second rates in the frame without their rigid part.
     pub(super) response: Vec<f64>,
     pub(super) is_used: bool,
@@ -32,8 +30,7 @@ impl Impulses {
     fn clear(&mut self) {
         if self.is_used {
             self.nodal.fill(0.0);
-            (self.moment, self.virial) = (0.0, 0.0);
-            (self.total, self.is_used) = (Vec2::zeros(), false);
+            (self.total, self.moment, self.is_used) = (Vec2::zeros(), 0.0, false);
         }
     }
 }
@@ -54,7 +51,6 @@ impl FlexBlock {
         add_node_vec(&mut gathered.nodal, node, impulse);
         gathered.total += impulse;
         gathered.moment += cross(lever, impulse);
-        gathered.virial += lever.dot(&impulse);
         gathered.is_used = true;
     }
 
@@ -123,7 +119,6 @@ impl FlexBlock {
         }
         let target = if of == Response::Acceleration {
             self.torque += scale * impulses.moment;
-            self.virial += scale * impulses.virial;
             self.shift += mean;
             &mut self.increment
         } else {

@@ -40,10 +40,9 @@ impl FlexBlock {
             torque -= self.hinge_inertia();
         }
         self.torque = torque;
-        self.virial = self.contact_virial;
         let Weights { b1, .. } = self.step.weights;
         let impulse = (self.step.dt - b1) * self.start_torque + b1 * torque;
-        let missing = self.start_momentum + impulse + self.lateness() - momentum;
+        let missing = self.start_momentum + impulse - momentum;
         let damped = 1.0 + self.model.rayleigh().mass * b1;
         self.inertia = self.inertia_of(&self.displacement);
         let change = missing / (self.inertia * damped);
@@ -51,17 +50,6 @@ impl FlexBlock {
         self.frame.angle += 0.5 * self.step.dt * change;
         self.frame.spin_rate += change / self.step.dt;
         self.place();
-    }
-
-    /// What the levers of contact forces turn by between the middle of the step and the time that the weights `1 - β1` and `β1` of both of its
-    /// ends stand for takes from the impulse of their moments (N m s).
-    ///
-    /// The angle follows the mean of both spins, so what a force that holds a point of the body does to its turning and to its centre is no work
-    /// together if it acts by the lever of mid-step. That one turns by `ω (β1 - 1/2) dt` until the weights' time, and `l × f` by `-l·f` times
-    /// that. A body that stands on a corner was driven off it by that share of its weight for as long as it turned.
-    fn lateness(&self) -> f64 {
-        let (dt, Weights { b1, .. }) = (self.step.dt, self.step.weights);
-        (b1 - 0.5 * dt) * dt * self.start_frame.spin * self.start_virial
     }
 
     /// Torque of the frame's own acceleration when the hinge is moved.

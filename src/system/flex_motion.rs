@@ -333,7 +333,6 @@ impl FlexBlock {
             Frame::Fixed => 0.0,
             Frame::Free | Frame::Hinged(_) => self.torque,
         };
-        state.virial = self.virial;
         state.elastic_energy = self.end_elastic;
         state.kinetic_energy = kinetic_energy;
         state.acceleration.copy_from_slice(&self.increment);

@@ -81,7 +81,7 @@ impl FlexBlock {
             *increment = -acceleration;
         }
         self.shift = -start.acceleration;
-        (self.torque, self.virial) = (0.0, 0.0);
+        self.torque = 0.0;
         self.place();
     }
 

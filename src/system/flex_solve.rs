@@ -201,7 +201,6 @@ impl FlexBlock {
         }
         self.contact_total = Vec2::zeros();
         self.contact_moment = 0.0;
-        self.contact_virial = 0.0;
     }
 
     /// Adds a contact force at a node (N) that acts at a lever from the centre (m).
@@ -210,7 +209,6 @@ impl FlexBlock {
         self.has_contact_force = true;
         self.contact_total += force;
         self.contact_moment += cross(lever, force);
-        self.contact_virial += lever.dot(&force);
     }
 
     /// Applies the increments of the iterate; see [`FlexBlock::solve`].
