@@ -106,8 +106,8 @@ fn claim_and_release(findings: &mut Findings, size: [usize; 2]) {
     let gained = energy_of(&scene) - first;
     println!(
         "{name}: before {restless:.1e}, laid on {while_laid:.1e}, at rest {at_rest:.1e}, lifted off {while_released:.1e} m/s, \
-         moved {moved:.1e} m, gained {gained:.2e} J, {:.2} ms a step",
-        1e3 * laid.median_from(60)
+         moved {moved:.1e} m, gained {gained:.2e} J, {:.1} pivots a step",
+        laid.mean_pivots_from(60)
     );
     // 0.05 m/s is a hop of 0.13 mm. Released, they are rapier's again, and may do what they do when they are put there touching.
     let released = settling(size);
@@ -174,8 +174,8 @@ fn boxes_poured_on_a_plank_come_to_rest_on_it() {
         onlooker.check_energy(&mut findings, &name, mass * G * 0.4);
         let speed = fastest(&scene, &boxes);
         println!(
-            "{name}: ends at {speed:.1e} m/s, {:.2} ms a step",
-            1e3 * onlooker.median_from(180)
+            "{name}: ends at {speed:.1e} m/s, {:.1} pivots a step",
+            onlooker.mean_pivots_from(180)
         );
         // They fall for half a second and tumble for one; walls carry part of the weight, so only the plank's own balance is known.
         findings.check(speed < 0.05, || {
@@ -225,9 +225,9 @@ fn nine_soft_blocks_poured_into_a_bin_come_to_rest() {
             .sum::<f64>()
             / (mass * G);
         println!(
-            "{name}: ends at {:.1e} m/s, {carried:.4} of the weight, {:.2} ms a step",
+            "{name}: ends at {:.1e} m/s, {carried:.4} of the weight, {:.1} pivots a step",
             x.hypot(y),
-            1e3 * onlooker.median_from(120)
+            onlooker.mean_pivots_from(120)
         );
         findings.check((carried - 1.0).abs() < 0.02, || {
             format!("{name}: the bin carries {carried:.4} of the weight")

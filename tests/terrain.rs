@@ -27,7 +27,7 @@ fn land(findings: &mut Findings, form: Form, young: f64, (made, relief): (Made, 
             .rotation(0.1),
     );
     let name = format!("{form:?}, E {young:.0e}, {made:?}, {relief:?}");
-    let mut onlooker = Onlooker::default().with_patience(2.0);
+    let mut onlooker = Onlooker::default();
     onlooker.watch(&mut scene, 150, |_| ());
     let before = momentum_of(&scene);
     let mut pushed = 0.0;
@@ -159,7 +159,7 @@ fn boxes_and_soft_bodies_gather_in_a_valley() {
         onlooker.check(&mut findings, &name);
         // From 2 m above the ground on average; the valley is deeper by some decimetres.
         onlooker.check_energy(&mut findings, &name, mass * G * 2.2);
-        println!("{name}: {:.2} ms a step", 1e3 * onlooker.median_from(0));
+        println!("{name}: {:.1} pivots a step", onlooker.mean_pivots_from(0));
     }
     findings.report();
 }

@@ -78,8 +78,8 @@ fn begin(findings: &mut Findings, foot: Foot, n: usize, gap: f64) {
     let closing = closing.fold(0.0, f64::max);
     let fastest = speeds.iter().copied().fold(0.0, f64::min);
     println!(
-        "{name}: {:.1} ms, fastest {fastest:.2e} m/s, closing at {closing:.2e} m/s",
-        1e3 * onlooker.times[0]
+        "{name}: {:?}, fastest {fastest:.2e} m/s, closing at {closing:.2e} m/s",
+        onlooker.work[0]
     );
     // None comes closer to the one below than the gap between them, but for the rounding of places (1e-6 m at 30 m) and what a
     // contact's tolerance may be: 1 % of a step's fall.
@@ -171,8 +171,8 @@ fn towers_stand_and_press_with_their_weight() {
         let lifted = body.total_contact_force()[1] / (body.mass() * G);
         let tower = n as f64 * BOX[2] / body.mass();
         println!(
-            "{name}: {:.1} ms a step, beside {beside:.1e} m, lift {lifted:.5}",
-            1e3 * onlooker.median_from(60)
+            "{name}: at most {:?} a step, beside {beside:.1e} m, lift {lifted:.5}",
+            onlooker.most_from(60)
         );
         findings.check((lifted - 1.0).abs() < 1e-3 * (1.0 + tower), || {
             format!("{name}: ground and tower lift {lifted:.4} of the foot's weight")
@@ -253,9 +253,9 @@ fn an_arch_a_little_thicker_than_the_limit_stands() {
         onlooker.check(&mut findings, &name);
         let sunk = sink(&scene, &stones, first);
         println!(
-            "{name}: sinks {sunk:.2e} m in {} steps, {:.1} ms a step",
-            onlooker.times.len(),
-            1e3 * onlooker.median_from(0)
+            "{name}: sinks {sunk:.2e} m in {} steps, at most {:?} a step",
+            onlooker.work.len(),
+            onlooker.most_from(0)
         );
         // A line of thrust in an arch 2 % thicker than it must be has 2 mm to either side at its hinges: it does not move by more.
         findings.check(sunk.abs() < 2e-3, || {
@@ -290,9 +290,9 @@ fn fall(n: usize, n_flexible: usize) {
     onlooker.check(&mut findings, &name);
     let sunk = sink(&scene, &stones, first);
     println!(
-        "{name}: sinks {sunk:.2e} m in {} steps, {:.1} ms a step",
-        onlooker.times.len(),
-        1e3 * onlooker.median_from(0)
+        "{name}: sinks {sunk:.2e} m in {} steps, at most {:?} a step",
+        onlooker.work.len(),
+        onlooker.most_from(0)
     );
     // A hundredth of gravity at the crown, growing with the square root of gravity by radius, 2.2 / s: decimetres in 3 s.
     findings.check(sunk >= 0.1, || {

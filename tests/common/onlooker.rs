@@ -3,8 +3,6 @@
 use super::*;
 use foil2d::body::AttachmentTarget;
 use std::collections::HashMap;
-use std::sync::LazyLock;
-use std::time::Instant;
 
 /// The deepest that something was in something else.
 #[derive(Clone, Debug, Default)]
@@ -17,11 +15,15 @@ pub struct Overlap {
     pub what: String,
 }
 
+/// What a step took, told in numbers that are the same on every machine.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Work {
+    pub n_factorizations: u64,
+    pub n_pivots: usize,
+}
+
 /// What was seen.
 pub struct Onlooker {
-    /// Time that the steps may take (s): a scene that takes longer is stopped, and told of.
-    patience: f64,
-    spent: f64,
     thickness: HashMap<FlexBodyHandle, f64>,
     n_steps: usize,
     stopped: Option<[usize; 2]>,
@@ -32,8 +34,8 @@ pub struct Onlooker {
     pub told: f64,
     /// Energy of the scene before the first step and after every one (J).
     pub energy: Vec<f64>,
-    /// Time of every step (s), without what the thread waited for a processor.
-    pub times: Vec<f64>,
+    /// Work of every step.
+    pub work: Vec<Work>,
 }
 
 /// A flexible body as it stands.
@@ -54,8 +56,6 @@ struct Rigid {
 impl Default for Onlooker {
     fn default() -> Self {
         Self {
-            patience: 10.0,
-            spent: 0.0,
             thickness: HashMap::new(),
             n_steps: 0,
             stopped: None,
@@ -64,7 +64,7 @@ impl Default for Onlooker {
             overlap: Overlap::default(),
             told: 0.0,
             energy: Vec::new(),
-            times: Vec::new(),
+            work: Vec::new(),
         }
     }
 }
@@ -77,11 +77,8 @@ impl Onlooker {
     /// boxes that fall on polylines and height fields dip by 6 to 9 % of their thickness for a step.
     const RIGID: f64 = 10.0;
 
-    /// Stops after this long (s).
-    pub fn with_patience(mut self, patience: f64) -> Self {
-        self.patience = patience;
-        self
-    }
+    /// Factorizations after which a scene is stopped, and told of: a hundred times what the hardest of these scenes needs.
+    const PATIENCE: u64 = 1_000_000;
 
     /// Takes up to `n` steps and looks after each; `each` sees the scene then.
     pub fn watch(&mut self, scene: &mut Scene, n: usize, mut each: impl FnMut(&Scene)) {
@@ -89,7 +86,8 @@ impl Onlooker {
             if self.error.is_some() || self.stopped.is_some() {
                 return;
             }
-            if self.spent > self.patience {
+            let spent: u64 = self.work.iter().map(|work| work.n_factorizations).sum();
+            if spent > Self::PATIENCE {
                 self.stopped = Some([step, n]);
                 return;
             }
@@ -103,12 +101,12 @@ impl Onlooker {
         if self.energy.is_empty() {
             self.energy.push(energy_of(scene));
         }
-        let begin = now();
         match scene.try_step() {
             Ok(report) => {
-                let time = now() - begin;
-                self.spent += time;
-                self.times.push(time);
+                self.work.push(Work {
+                    n_factorizations: report.n_factorizations(),
+                    n_pivots: report.n_pivots(),
+                });
                 if !is_solved(report) {
                     self.unsolved.push(self.n_steps);
                 }
@@ -242,17 +240,21 @@ impl Onlooker {
         rises.fold(0.0, f64::max)
     }
 
-    /// Middle time of the steps from `first` on (s).
-    pub fn median_from(&self, first: usize) -> f64 {
-        let mut times = self.times.get(first..).unwrap_or_default().to_vec();
-        times.sort_by(f64::total_cmp);
-        times.get(times.len() / 2).copied().unwrap_or(f64::INFINITY)
+    /// The most of the steps from `first` on, each number for itself.
+    pub fn most_from(&self, first: usize) -> Work {
+        let mut most = Work::default();
+        for work in self.work.iter().skip(first) {
+            most.n_factorizations = most.n_factorizations.max(work.n_factorizations);
+            most.n_pivots = most.n_pivots.max(work.n_pivots);
+        }
+        most
     }
 
-    /// Least time of a step from `first` on (s): what other work on the machine adds to most of them, it adds not to all.
-    pub fn least_from(&self, first: usize) -> f64 {
-        let times = self.times.get(first..).unwrap_or_default().iter();
-        times.copied().fold(f64::INFINITY, f64::min)
+    /// Mean pivots of the steps from `first` on.
+    pub fn mean_pivots_from(&self, first: usize) -> f64 {
+        let steps = self.work.get(first..).unwrap_or_default();
+        let sum: usize = steps.iter().map(|work| work.n_pivots).sum();
+        sum as f64 / steps.len() as f64
     }
 
     /// What holds of every scene: all steps were taken and solved, and nothing was in anything.
@@ -293,18 +295,6 @@ impl Onlooker {
             format!("{scene}: {rise:.3e} J gained, {scale:.3e} J were brought")
         });
     }
-}
-
-/// A clock that stands still while the thread waits for a processor, where the system tells (s).
-fn now() -> f64 {
-    static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
-    let wall = BEGIN.elapsed().as_secs_f64();
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let waited = told
-        .split_whitespace()
-        .nth(1)
-        .and_then(|nanoseconds| nanoseconds.parse::<f64>().ok());
-    wall - 1e-9 * waited.unwrap_or(0.0)
 }
 
 /// Twice the area by the length of the outline (m): the thickness of a strip or a ring, half the side of a square.
