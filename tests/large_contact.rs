@@ -420,3 +420,32 @@ fn impulses_do_not_answer_what_the_step_does_not_resolve() {
     );
     findings.report();
 }
+
+/// Crushed to half its height a surface folds (Biot, at a stretch of .54): there are more ends than one to a step then, and Newton's iterations go
+/// from the one to the other. Such a step is cut before they are tried.
+#[test]
+fn a_crushed_block_costs_some_factorizations_a_step() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    let law = NeoHookean::plane_strain(1.6e5, 0.15);
+    scene.flexible(of_law(law, [0.55, 0.55], [5, 5]).friction(0.5));
+    let (slab, _) = scene.rigid(
+        RigidBodyBuilder::dynamic().translation(vec2(0.275, 0.65)),
+        ColliderBuilder::cuboid(0.3, 0.099).density(44_000.0),
+    );
+    let mut findings = Findings::default();
+    let mut onlooker = Onlooker::default();
+    let mut lowest = f64::INFINITY;
+    onlooker.watch(&mut scene, 40, |scene| {
+        lowest = lowest.min(place_of(&scene.world.bodies[slab])[1] - 0.099);
+    });
+    onlooker.check(&mut findings, "block");
+    println!("lowest {lowest:.3} m, {:?}", onlooker.most_from(0));
+    findings.check(lowest < 0.55 * 0.55, || {
+        format!("it is crushed to {lowest:.3} m only")
+    });
+    // Some ten for each of up to eight parts; 24 for each pass of each part without.
+    let most = onlooker.most_from(0).n_factorizations;
+    findings.check(most < 150, || format!("{most} factorizations in a step"));
+    findings.report();
+}

@@ -206,7 +206,7 @@ impl Island {
     }
 
     /// Whether some block is of large strain, whose equilibrium is found to a residual.
-    fn has_large(&self) -> bool {
+    pub fn has_large(&self) -> bool {
         let is_large = |block: &Block| matches!(block, Block::Flex(block) if block.is_large());
         self.blocks.iter().any(is_large)
     }

@@ -68,6 +68,8 @@ pub struct SolveSettings {
     pub restitution_threshold: f64,
     /// Most Newton iterations.
     pub max_newton: usize,
+    /// Whether what is not solved is cut into halves, so that where it ends does not matter.
+    pub may_be_cut: bool,
     /// What counts as one unit of length in the scene (m).
     pub length_unit: f64,
 }
@@ -293,7 +295,14 @@ impl Island {
     ) -> Result<IslandSummary, KktError> {
         let mut summary = IslandSummary::default();
         self.solver.set_first(settings.solver);
+        if self.gives_up(settings) {
+            summary.is_stopped = true;
+            return Ok(summary);
+        }
         self.solve_positions(settings, memory, &mut summary);
+        if settings.may_be_cut && (summary.is_cut || summary.is_stopped) {
+            return Ok(summary);
+        }
         let before = self.start_energy();
         let loads = self.external_work();
         let treatment = settings.treatment();
@@ -339,6 +348,18 @@ impl Island {
         self.count_late_forces(settings);
         self.publish_forces(settings.dt);
         Ok(summary)
+    }
+
+    /// Whether the step is too long for one of its blocks, and may be cut.
+    fn gives_up(&mut self, settings: &SolveSettings) -> bool {
+        let mut is_ambiguous = false;
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.let_give_up(settings.may_be_cut);
+                is_ambiguous |= block.is_ambiguous();
+            }
+        }
+        settings.may_be_cut && is_ambiguous
     }
 
     /// Counts what lasting forces do beyond their time in a part of a step. `1 - β1` of a force acts in the part that follows, as long as that

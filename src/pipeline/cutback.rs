@@ -34,7 +34,7 @@ impl FlexPipeline {
             self.joint_impulses.len(),
         ];
         self.gatherer.under_way.begin(firsts);
-        let whole = (component, Span::WHOLE, self.parameters.max_cutbacks);
+        let whole = (component, Span::WHOLE, 0);
         let outcome = self.solve_parts(whole, step, sets, flex_bodies, clock);
         let under_way = &mut self.gatherer.under_way;
         under_way.end(flex_bodies);
@@ -42,7 +42,18 @@ impl FlexPipeline {
         outcome
     }
 
-    /// Solves a part of the step, in halves if it is not solved in one piece and may be cut `n_cuts` times more.
+    /// Whether a part of the step of the island that was gathered, which has been cut `n_cuts` times, may be solved in halves. Links of
+    /// multibodies move as rapier moves them, in one piece.
+    pub(super) fn may_be_cut(&self, step: Step, n_cuts: usize) -> bool {
+        let most = match self.island.has_large() {
+            true => self.parameters.max_cutbacks_large,
+            false => self.parameters.max_cutbacks,
+        };
+        let is_long = 0.5 * step.dt >= SHORTEST;
+        n_cuts < most && is_long && !step.is_explicit() && self.gatherer.links.is_empty()
+    }
+
+    /// Solves a part of the step that has been cut `n_cuts` times, in halves if it is not solved in one piece.
     fn solve_parts(
         &mut self,
         (component, span, n_cuts): (usize, Span, usize),
@@ -52,11 +63,7 @@ impl FlexPipeline {
         clock: &mut Clock,
     ) -> Result<(), StepError> {
         let (summary, [before, reserve]) =
-            self.solve_span((component, span), step, sets, flex_bodies, clock)?;
-        let dt = 0.5 * step.dt;
-        // Links of multibodies move as rapier moves them, in one piece.
-        let may_be_cut =
-            n_cuts > 0 && dt >= SHORTEST && !step.is_explicit() && self.gatherer.links.is_empty();
+            self.solve_span((component, span, n_cuts), step, sets, flex_bodies, clock)?;
         // What contact adds and cannot take back is the error of a step that is longer than the impact; what is parted costs energy at any pace.
         // What joints leave in stored accelerations swings, and a change of the step's length makes it swing more: with joints it must be as
         // much as there was, on a path.
@@ -67,7 +74,8 @@ impl FlexPipeline {
         };
         let owes_more = -reserve > share * summary.brought() + (-before).max(0.0);
         let is_coarse = owes_more && !summary.is_parting;
-        if may_be_cut && (is_coarse || summary.quality() != Quality::Solved) {
+        if self.may_be_cut(step, n_cuts) && (is_coarse || summary.quality() != Quality::Solved) {
+            let dt = 0.5 * step.dt;
             let half = Step {
                 dt,
                 weights: self.integrator().weights(dt),
@@ -75,7 +83,7 @@ impl FlexPipeline {
             self.gatherer.under_way.keep(&self.island, flex_bodies);
             for part in span.halves() {
                 self.gatherer.give_back(&mut self.island);
-                let part = (component, part, n_cuts - 1);
+                let part = (component, part, n_cuts + 1);
                 self.solve_parts(part, half, sets, flex_bodies, clock)?;
             }
             return Ok(());

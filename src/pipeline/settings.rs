@@ -42,6 +42,9 @@ pub struct FlexParameters {
     /// How many times the step of an island that is not solved may be cut in halves; 3 by default, so that it is taken in 8 parts at most.
     /// See [`StepReport::n_parts`](super::StepReport::n_parts). Islands with links of multibodies and explicit steps are not cut.
     pub max_cutbacks: usize,
+    /// The same of an island with bodies of large strain, whose equations get easier with every cut; 5 by default. A step after which such a
+    /// body might be in more places than one is cut at once.
+    pub max_cutbacks_large: usize,
     /// Whether implicit steps with Lagrange multipliers lead the surfaces of bodies along a *feasible path*; yes by default.
     ///
     /// A step goes from placement to placement and stops where surfaces would meet, whatever the forces are. What is not solved within the
@@ -64,6 +67,7 @@ impl Default for FlexParameters {
             restitution_threshold: 0.5,
             max_newton: 20,
             max_cutbacks: 3,
+            max_cutbacks_large: 5,
             feasible_path: true,
             insists: false,
             refuses_unsolved: false,
@@ -89,12 +93,18 @@ impl FlexParameters {
                 cure: "set it to one or more",
             });
         }
-        if self.max_cutbacks > MOST_CUTBACKS {
-            return Err(StepError::Parameter {
-                name: "max_cutbacks",
-                value: self.max_cutbacks as f64,
-                cure: "set it to ten or less: that is a step in a thousand parts",
-            });
+        let cutbacks = [
+            ("max_cutbacks", self.max_cutbacks),
+            ("max_cutbacks_large", self.max_cutbacks_large),
+        ];
+        for (name, value) in cutbacks {
+            if value > MOST_CUTBACKS {
+                return Err(StepError::Parameter {
+                    name,
+                    value: value as f64,
+                    cure: "set it to ten or less: that is a step in a thousand parts",
+                });
+            }
         }
         Ok(())
     }

@@ -109,7 +109,7 @@ impl FlexPipeline {
     /// return before and after it (J).
     pub(super) fn solve_span(
         &mut self,
-        (component, span): (usize, Span),
+        (component, span, n_cuts): (usize, Span, usize),
         step: Step,
         sets: &RapierSets<'_>,
         flex_bodies: &mut FlexBodySet,
@@ -144,6 +144,7 @@ impl FlexPipeline {
             solver: self.parameters.contact_solver,
             restitution_threshold: self.parameters.restitution_threshold,
             max_newton: self.parameters.max_newton,
+            may_be_cut: self.may_be_cut(step, n_cuts),
             length_unit: f64::from(sets.integration_parameters.length_unit).abs(),
         };
         let before = self.reserve(flex_bodies);

@@ -25,7 +25,7 @@ use crate::fe::model::Model;
 use crate::large::{Equation, Evaluation, Inertia, largest_row_sum};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
-use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, rotation};
+use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, rotation, set_node_vec};
 use std::sync::Arc;
 
 /// Residual over the largest load or inertia force that ends the iterations (-): momentum is balanced beyond that by a shift of the whole body.
@@ -68,6 +68,17 @@ pub(super) struct Large {
     pub(super) start_resolved: Vec<f64>,
     pub(super) resolved: Vec<f64>,
     row_sum: f64,
+    /// Whether the tangent is indefinite where the step begins: under the same forces the body may end it in more ways than one.
+    is_ambiguous: bool,
+    /// Whether what is not found without detours need not be found: the step is cut then.
+    may_give_up: bool,
+}
+
+/// What a factorization has found.
+struct Factored {
+    row_sum: f64,
+    /// Whether the tangent itself was definite.
+    is_definite: bool,
 }
 
 /// `χ` of the stress that makes vibrations decay as a member of Beta-2 does: with `β0 = 2/(1 + ρ)²` it is `(1 - ρ)/(1 + ρ)`.
@@ -106,22 +117,26 @@ fn equation_of<'a>(
     }
 }
 
-/// Factorizes the tangent at the deformation last evaluated, or its definite part where it is not definite; returns its largest row sum.
+/// Factorizes the tangent at the deformation last evaluated, or its definite part where it is not definite.
 fn factorize(
     equation: &Equation<'_>,
     scale: f64,
     deformation: &Deformation,
     (tangent, effective): (&mut BlockMatrix, &mut BlockMatrix),
     factor: &mut BlockCholesky,
-) -> Result<f64, CholeskyError> {
+) -> Result<Factored, CholeskyError> {
     equation.assemble(Linearization::Consistent, deformation, tangent);
     effective.assign_scaled(scale, tangent);
-    if factor.factorize(effective).is_err() {
+    let is_definite = factor.factorize(effective).is_ok();
+    if !is_definite {
         equation.assemble(Linearization::Definite, deformation, tangent);
         effective.assign_scaled(scale, tangent);
         factor.factorize(effective)?;
     }
-    Ok(largest_row_sum(tangent))
+    Ok(Factored {
+        row_sum: largest_row_sum(tangent),
+        is_definite,
+    })
 }
 
 impl FlexBlock {
@@ -150,6 +165,8 @@ impl FlexBlock {
             start_resolved: zeros(),
             resolved: zeros(),
             row_sum: 0.0,
+            is_ambiguous: false,
+            may_give_up: false,
             model: large,
         }));
         block
@@ -158,6 +175,18 @@ impl FlexBlock {
     /// Whether the body is one of large strain.
     pub fn is_large(&self) -> bool {
         self.large.is_some()
+    }
+
+    /// Whether a body of large strain may end the step in more ways than one under the same forces: the step is too long for it.
+    pub fn is_ambiguous(&self) -> bool {
+        self.large.as_ref().is_some_and(|large| large.is_ambiguous)
+    }
+
+    /// Whether the end of a step under given forces may be told not to be found once it is not found without detours.
+    pub fn let_give_up(&mut self, may: bool) {
+        if let Some(large) = &mut self.large {
+            large.may_give_up = may;
+        }
     }
 
     /// `β1`, the share of a multiplier that acts within the step.
@@ -187,26 +216,33 @@ impl FlexBlock {
             true => large.lasting.fill(0.0),
             false => large.lasting.copy_from_slice(&state.lasting),
         }
-        let turn = rotation(state.frame.angle);
-        for node in 0..self.model.n_nodes() {
-            let guess = 0.5 * dt * dt * (turn * node_vec(&state.acceleration, node));
-            for axis in 0..2 {
-                let dof = 2 * node + axis;
-                large.coast[dof] = state.position[dof] + dt * state.velocity[dof];
-                self.position[dof] = large.coast[dof] + guess[axis];
-            }
+        for (dof, coast) in large.coast.iter_mut().enumerate() {
+            *coast = state.position[dof] + dt * state.velocity[dof];
         }
         self.start_momentum = self.start_spin_momentum();
-        self.follow_positions();
         let Some(mut large) = self.large.take() else {
             return Ok(());
         };
         let outcome = self.factorize_large(&mut large);
         if outcome.is_ok() {
             self.resolve(&state.position, &state.velocity, &mut large.start_resolved);
+            self.guess_large(state, &large);
         }
         self.large = Some(large);
+        self.follow_positions();
         outcome
+    }
+
+    /// Begins the iterations where the velocities that the step resolves lead, with the last step's acceleration: without forces and at small
+    /// strains that is where the step ends.
+    fn guess_large(&mut self, state: &FlexState, large: &Large) {
+        let (dt, turn) = (self.step.dt, rotation(state.frame.angle));
+        for node in 0..self.model.n_nodes() {
+            let sped = turn * node_vec(&state.acceleration, node);
+            let moved = dt * node_vec(&large.start_resolved, node) + 0.5 * dt * dt * sped;
+            let start = node_vec(&state.position, node);
+            set_node_vec(&mut self.position, node, start + moved);
+        }
     }
 
     /// Factorizes where the step begins: contacts ask how the body answers before it has moved.
@@ -221,7 +257,9 @@ impl FlexBlock {
         let matrices = (&mut large.tangent, &mut self.effective);
         let deformation = &large.deformation;
         self.n_factorizations += 1;
-        large.row_sum = factorize(&equation, scale, deformation, matrices, &mut self.factor)?;
+        let found = factorize(&equation, scale, deformation, matrices, &mut self.factor)?;
+        large.row_sum = found.row_sum;
+        large.is_ambiguous = !found.is_definite;
         self.compliance.clear();
         Ok(())
     }
@@ -271,8 +309,13 @@ impl FlexBlock {
             residual,
             reaction,
             row_sum,
+            may_give_up,
             ..
         } = large;
+        let not_found = match may_give_up {
+            true => f64::INFINITY,
+            false => NOT_FOUND,
+        };
         let equation = equation_of(
             model,
             &self.step,
@@ -305,7 +348,7 @@ impl FlexBlock {
                 }
                 n_cuts += 1;
                 if n_cuts > MOST_CUTS {
-                    return NOT_FOUND;
+                    return not_found;
                 }
                 for (x, increment) in self.position.iter_mut().zip(&mut self.local) {
                     *increment *= 0.5;
@@ -329,14 +372,17 @@ impl FlexBlock {
                 let matrices = (&mut *tangent, &mut self.effective);
                 let found = factorize(&equation, scale, deformation, matrices, &mut self.factor);
                 self.compliance.clear();
-                let Ok(sum) = found else {
+                let Ok(found) = found else {
                     // What is asked of the body from here on is answered as where the step began.
                     model.begin(&self.start_position, deformation);
                     let matrices = (&mut *tangent, &mut self.effective);
                     let _ = factorize(&equation, scale, deformation, matrices, &mut self.factor);
-                    return NOT_FOUND;
+                    return not_found;
                 };
-                *row_sum = sum;
+                *row_sum = found.row_sum;
+                if *may_give_up && !found.is_definite {
+                    return not_found;
+                }
             }
             self.local.copy_from_slice(residual);
             self.factor.solve_in_place(&mut self.local);

@@ -211,7 +211,7 @@ impl FlexBlock {
             let arm = node_vec(&self.position, node) - frame.centre;
             let own = node_vec(&self.velocity, node) - frame.velocity - frame.spin * perp(arm);
             set_node_vec(&mut state.rate, node, back * own);
-            let mean = (node_vec(&self.velocity, node) - node_vec(&self.start_velocity, node))
+            let mean = (node_vec(&large.resolved, node) - node_vec(&large.start_resolved, node))
                 / self.step.dt;
             set_node_vec(&mut state.acceleration, node, back * mean);
         }
