@@ -3,6 +3,7 @@
 use super::support::{KINDS, deformed, describe, dot, largest, laws, warped_plate};
 use foil2d::fe::finite_strain::{FiniteStrainModel, Form, Linearization};
 use foil2d::fe::mesh::CellKind;
+use foil2d::fe::model::{MassKind, Model, ModelDescription};
 use std::sync::Arc;
 
 const STRETCHED: [f64; 4] = [1.3, 0.4, -0.2, 0.8];
@@ -101,6 +102,67 @@ fn error_of_tangent(model: &FiniteStrainModel, form: Form, state: &[f64]) -> f64
         worst /= largest(&product).max(1.0);
     }
     worst
+}
+
+/// At rest a parallelogram is the QM6 element, turned or not.
+#[test]
+fn a_quadrilateral_at_rest_answers_as_with_its_inner_modes() {
+    for law in laws(1e5, 0.3) {
+        let mut description = describe([1.0, 0.5], [3, 2], CellKind::Quad4, law);
+        for pair in description.rest_positions.chunks_exact_mut(2) {
+            let [x, y] = [pair[0], pair[1]];
+            pair[0] = 0.8 * x - 0.3 * y;
+            pair[1] = 0.6 * x + 1.1 * y;
+        }
+        let constants = description.law.constants();
+        let small = Model::assemble(ModelDescription {
+            mesh: Arc::clone(&description.mesh),
+            rest_positions: description.rest_positions.clone(),
+            elements: Vec::new(),
+            material: Arc::new(constants.linear(1000.0)),
+            thickness: 1.0,
+            mass_kind: MassKind::Lumped,
+            massless: Vec::new(),
+            held: Vec::new(),
+        })
+        .expect("a body");
+        let model = FiniteStrainModel::assemble(description).expect("the same at large strain");
+        let mut matrix = model.new_matrix();
+        let deformation = model.deformation(model.rest_positions());
+        let form = Form::Equilibrium;
+        model.add_tangent(form, Linearization::Consistent, &deformation, &mut matrix);
+        let ways = (0..model.n_dofs()).map(|dof| (1.0 + dof as f64).sin());
+        let way: Vec<f64> = ways.collect();
+        let [mut own, mut due] = [0, 1].map(|_| vec![0.0; model.n_dofs()]);
+        matrix.multiply(&way, &mut own);
+        small.stiffness().multiply(&way, &mut due);
+        let pairs = own.iter().zip(&due);
+        let difference: Vec<f64> = pairs.map(|(own, due)| own - due).collect();
+        let error = largest(&difference) / largest(&due);
+        assert!(error < 1e-13, "{}: {error:e}", model.law().name());
+
+        // Stresses of small displacements, of bending too, at the same points.
+        let (u, rest) = (way.iter().map(|way| 1e-7 * way), model.rest_positions());
+        let u: Vec<f64> = u.collect();
+        let at: Vec<f64> = rest.iter().zip(&u).map(|(x, u)| x + u).collect();
+        for cell in 0..6 {
+            let found = model.cell_stress(cell, &at);
+            let due = small.cell_stress(cell, &u).expect("a cell");
+            assert_eq!(found.len(), due.len());
+            for (found, (_, due)) in found.iter().zip(due) {
+                let pairs = [
+                    [found.xx, due.xx],
+                    [found.yy, due.yy],
+                    [found.xy, due.xy],
+                    [found.zz, due.zz],
+                ];
+                for [found, due] in pairs {
+                    // Strains of 1e-6, with what they are to the second order.
+                    assert!((found - due).abs() < 1e-5, "{found} Pa, not {due} Pa");
+                }
+            }
+        }
+    }
 }
 
 /// Patch test: under one and the same `F` in irregular and curved cells no node inside feels a force.

@@ -28,8 +28,12 @@ const BENDING: f64 = YOUNG * HEIGHT * HEIGHT * HEIGHT / 12.0;
 impl Strip {
     /// T6, 50 x 1, of one of the four laws.
     fn new(law: usize) -> Self {
+        Self::of_cells(law, CellKind::Tri6, [50, 1])
+    }
+
+    fn of_cells(law: usize, kind: CellKind, divisions: [usize; 2]) -> Self {
         let law = Arc::clone(&laws(YOUNG, 0.0)[law]);
-        let model = plate([1.0, HEIGHT], [50, 1], CellKind::Tri6, law);
+        let model = plate([1.0, HEIGHT], divisions, kind, law);
         let clamped = nodes_where(&model, |[x, _]| x == 0.0);
         let is_held = flags(&model, clamped.into_iter().flat_map(|n| [2 * n, 2 * n + 1]));
         let middle = |[x, y]: [f64; 2]| x == 1.0 && (y - 0.5 * HEIGHT).abs() < 1e-12;
@@ -103,6 +107,31 @@ fn a_clamped_strip_bends_like_the_elastica() {
                 assert!(error.abs() < 5e-4, "law {law}, alpha {alpha}: {error:e}");
             }
         }
+    }
+}
+
+/// The same of quadrilaterals, whose hourglass modes bend: chords of 50 and 100 cells to a curve, some (L/n)² short of it.
+#[test]
+fn a_strip_of_quadrilaterals_bends_like_the_elastica() {
+    let known = [
+        (1.0, [0.301720774, 0.056433236]),
+        (10.0, [0.810609025, 0.554995598]),
+    ];
+    for (alpha, expected) in known {
+        let errors = [50, 100].map(|n| {
+            let strip = Strip::of_cells(2, CellKind::Quad4, [n, 2]);
+            let mut load = vec![0.0; strip.model.n_dofs()];
+            load[2 * strip.tip + 1] = -alpha * BENDING;
+            let (found, _) = strip.bend(&load, 8);
+            let pairs = found.into_iter().zip(expected);
+            let errors = pairs.map(|(found, expected)| (found / expected - 1.0).abs());
+            errors.fold(0.0, f64::max)
+        });
+        println!("alpha {alpha}: {errors:?}");
+        assert!(
+            errors[0] < 2e-3 && errors[1] < 0.5 * errors[0],
+            "{errors:?}"
+        );
     }
 }
 

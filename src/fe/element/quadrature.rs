@@ -49,6 +49,9 @@ pub const TRIANGLE_7: [QuadraturePoint; 7] = [
 
 const GAUSS: f64 = 0.577_350_269_189_625_8; // 1 / sqrt 3
 
+/// The centre of the square: exact to degree 1 in each direction.
+pub const SQUARE_1: [QuadraturePoint; 1] = [point(0.0, 0.0, 4.0)];
+
 /// Two by two Gauss points of the square, nearest to corners 0, 1, 2, 3: exact to degree 3 in each direction.
 pub const SQUARE_4: [QuadraturePoint; 4] = [
     point(-GAUSS, -GAUSS, 1.0),

@@ -1,6 +1,7 @@
 //! Cells of one node count, in flat arrays: gradients of the shape functions, volumes, places in the matrix.
 
 use super::Inadmissible;
+use super::hourglass::{Hourglass, Shape};
 use super::point::{self, Form, Linearization};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::linalg::block_matrix::BlockMatrix;
@@ -22,10 +23,32 @@ pub(super) struct CellGroup {
     pub(super) places: Vec<u32>,
     /// Where its points begin among those of the body.
     pub(super) first_point: usize,
+    /// Of every cell the modes that its one point does not see, or none of any.
+    pub(super) hourglass: Vec<Hourglass>,
 }
 
-/// Gradients of deformation at the beginning and at the end of a step, one each per quadrature point.
-pub(super) type Pair<'a> = (&'a [[f64; 4]], &'a [[f64; 4]]);
+/// A deformation: gradients, one per quadrature point, and amplitudes of the hourglass modes (m) where cells have such.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Deformed {
+    pub(super) gradients: Vec<[f64; 4]>,
+    pub(super) amplitudes: Vec<[f64; 2]>,
+}
+
+impl Deformed {
+    pub(super) fn new(n_points: usize) -> Self {
+        Self {
+            gradients: vec![[0.0; 4]; n_points],
+            amplitudes: vec![[0.0; 2]; n_points],
+        }
+    }
+
+    fn shape(&self, point: usize) -> Shape {
+        Shape {
+            gradient: self.gradients[point],
+            amplitude: self.amplitudes[point],
+        }
+    }
+}
 
 /// One cell: its nodes, and the gradients of its shape functions and the volume at each of its points.
 struct Kinematics<'a, const N: usize> {
@@ -46,12 +69,106 @@ macro_rules! with_node_count {
         }
     };
 }
-pub(super) use with_node_count;
 
 impl CellGroup {
     /// The points of this group among those of the body.
     pub(super) fn points(&self) -> std::ops::Range<usize> {
         self.first_point..self.first_point + self.volumes.len()
+    }
+
+    /// Writes the deformation at these positions (m).
+    pub(super) fn deform(&self, positions: &[f64], out: &mut Deformed) {
+        let gradients = &mut out.gradients[self.points()];
+        with_node_count!(self, deform_points(positions, gradients));
+        for (place, point) in self.stiffened() {
+            let (nodes, _) = self.quad(place);
+            out.amplitudes[point] = self.hourglass[place].amplitude(&gather(nodes, positions));
+        }
+    }
+
+    /// Stored energy (J) of the group at these positions (m).
+    pub(super) fn energy(&self, law: &dyn Hyperelastic, positions: &[f64]) -> f64 {
+        let energy: f64 = with_node_count!(self, point_energy(law, positions));
+        let stiffened = self.stiffened();
+        energy
+            + stiffened
+                .map(|(place, _)| self.hourglass[place].energy(&self.shape(place, positions)))
+                .sum::<f64>()
+    }
+
+    /// `F` and the amplitudes of a cell with hourglass modes.
+    pub(super) fn shape(&self, place: usize, positions: &[f64]) -> Shape {
+        let (nodes, gradients) = self.quad(place);
+        let differences = gather(nodes, positions);
+        Shape {
+            gradient: deformation_gradient(&differences, gradients),
+            amplitude: self.hourglass[place].amplitude(&differences),
+        }
+    }
+
+    /// `F` at the points of one cell.
+    pub(super) fn gradients_of(&self, place: usize, positions: &[f64]) -> Vec<[f64; 4]> {
+        with_node_count!(self, point_gradients(place, positions))
+    }
+
+    /// Subtracts the internal force of the group, after writing the deformation of the end.
+    pub(super) fn subtract_force(
+        &self,
+        law: &dyn Hyperelastic,
+        form: Form,
+        positions: &[f64],
+        (start, end): (&Deformed, &mut Deformed),
+        residual: &mut [f64],
+    ) -> Result<(), Inadmissible> {
+        let points = self.points();
+        let pair = (&start.gradients[points.clone()], &mut end.gradients[points]);
+        with_node_count!(
+            self,
+            subtract_point_forces(law, form, positions, pair, residual)
+        )?;
+        for (place, point) in self.stiffened() {
+            let (nodes, gradients) = self.quad(place);
+            let hourglass = &self.hourglass[place];
+            end.amplitudes[point] = hourglass.amplitude(&gather(nodes, positions));
+            let mut force = [[0.0; 2]; 4];
+            let pair = (&start.shape(point), &end.shape(point));
+            hourglass.add_force(form, gradients, pair, &mut force);
+            subtract(nodes, force, residual);
+        }
+        Ok(())
+    }
+
+    /// Adds the tangent of the group between two states.
+    pub(super) fn add_tangent(
+        &self,
+        law: &dyn Hyperelastic,
+        (form, kind): (Form, Linearization),
+        (start, end): (&Deformed, &Deformed),
+        matrix: &mut BlockMatrix,
+    ) {
+        let points = self.points();
+        let pair = (&start.gradients[points.clone()], &end.gradients[points]);
+        with_node_count!(self, add_point_tangent(law, form, kind, pair, matrix));
+        for (place, point) in self.stiffened() {
+            let (_, gradients) = self.quad(place);
+            let mut blocks = [[[0.0; 4]; 4]; 4];
+            let pair = (&start.shape(point), &end.shape(point));
+            self.hourglass[place].add_tangent((form, kind), gradients, pair, &mut blocks);
+            let places = &self.places.as_chunks::<4>().0[4 * place..][..4];
+            scatter(&blocks, places, matrix);
+        }
+    }
+
+    /// Cells with hourglass modes, and their points.
+    fn stiffened(&self) -> impl Iterator<Item = (usize, usize)> {
+        let first = self.first_point;
+        (0..self.hourglass.len()).map(move |place| (place, first + place))
+    }
+
+    /// Nodes of a cell of four, and the gradients of their shape functions at its one point.
+    fn quad(&self, place: usize) -> (&[u32; 4], &[[f64; 2]; 4]) {
+        let nodes = &self.nodes.as_chunks::<4>().0[place];
+        (nodes, &self.gradients.as_chunks::<4>().0[place])
     }
 
     fn kinematics<const N: usize>(&self) -> impl Iterator<Item = Kinematics<'_, N>> {
@@ -69,7 +186,7 @@ impl CellGroup {
     }
 
     /// Writes `F` at every point of the group.
-    pub(super) fn deform<const N: usize>(&self, positions: &[f64], out: &mut [[f64; 4]]) {
+    fn deform_points<const N: usize>(&self, positions: &[f64], out: &mut [[f64; 4]]) {
         let cells = self
             .kinematics::<N>()
             .zip(out.chunks_exact_mut(self.n_points));
@@ -82,11 +199,7 @@ impl CellGroup {
     }
 
     /// `F` at the points of one cell of the group.
-    pub(super) fn gradients_of<const N: usize>(
-        &self,
-        place: usize,
-        positions: &[f64],
-    ) -> Vec<[f64; 4]> {
+    fn point_gradients<const N: usize>(&self, place: usize, positions: &[f64]) -> Vec<[f64; 4]> {
         let mut cells = self.kinematics::<N>();
         cells.nth(place).map_or_else(Vec::new, |cell| {
             let differences = gather(cell.nodes, positions);
@@ -97,8 +210,7 @@ impl CellGroup {
         })
     }
 
-    /// Stored energy (J) of the group at these positions (m).
-    pub(super) fn energy<const N: usize>(&self, law: &dyn Hyperelastic, positions: &[f64]) -> f64 {
+    fn point_energy<const N: usize>(&self, law: &dyn Hyperelastic, positions: &[f64]) -> f64 {
         let mut energy = 0.0;
         for cell in self.kinematics::<N>() {
             let differences = gather(cell.nodes, positions);
@@ -110,8 +222,7 @@ impl CellGroup {
         energy
     }
 
-    /// Subtracts the internal force of the group, after writing `F` of the end.
-    pub(super) fn subtract_force<const N: usize>(
+    fn subtract_point_forces<const N: usize>(
         &self,
         law: &dyn Hyperelastic,
         form: Form,
@@ -144,22 +255,17 @@ impl CellGroup {
                     force[1] += stress[2] * x + stress[3] * y;
                 }
             }
-            for (&node, force) in cell.nodes.iter().zip(force) {
-                let residual = &mut residual[2 * node as usize..][..2];
-                residual[0] -= force[0];
-                residual[1] -= force[1];
-            }
+            subtract(cell.nodes, force, residual);
         }
         Ok(())
     }
 
-    /// Adds the tangent of the group between two states.
-    pub(super) fn add_tangent<const N: usize>(
+    fn add_point_tangent<const N: usize>(
         &self,
         law: &dyn Hyperelastic,
         form: Form,
         kind: Linearization,
-        (start, end): Pair<'_>,
+        (start, end): (&[[f64; 4]], &[[f64; 4]]),
         matrix: &mut BlockMatrix,
     ) {
         let cells = self
@@ -176,6 +282,15 @@ impl CellGroup {
             }
             scatter(&blocks, places, matrix);
         }
+    }
+}
+
+#[inline]
+fn subtract<const N: usize>(nodes: &[u32; N], force: [[f64; 2]; N], residual: &mut [f64]) {
+    for (&node, force) in nodes.iter().zip(force) {
+        let residual = &mut residual[2 * node as usize..][..2];
+        residual[0] -= force[0];
+        residual[1] -= force[1];
     }
 }
 

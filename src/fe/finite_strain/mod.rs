@@ -17,14 +17,18 @@
 //! |---|---|
 //! | `point` | stress and moduli at one quadrature point |
 //! | `cells` | cells of one node count, and their kernels |
+//! | `hourglass` | the modes that the one point of a four-node cell does not see |
 //! | `model` | the assembled body |
+//! | `stress` | Cauchy's stress |
 //!
-//! Tri3 and Tri6 take their usual fields. Cells of four nodes take the plain bilinear one, without the inner modes that
-//! [`Quad4`](crate::fe::element::Quad4) has at small strain, and lock in bending: prefer Tri6.
+//! Tri3 and Tri6 take their usual fields, so does an element of the user's own. [`Quad4`](crate::fe::element::Quad4) takes its mean gradient, and its hourglass
+//! modes resist as its inner modes let them at small strain.
 
 mod cells;
+mod hourglass;
 mod model;
 mod point;
+mod stress;
 
 pub use model::{Deformation, FiniteStrainDescription, FiniteStrainError, FiniteStrainModel};
 pub use point::{Form, Linearization};

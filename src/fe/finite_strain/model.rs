@@ -1,14 +1,16 @@
 //! The assembled body: cells in groups, nodal masses, the pattern of the matrix.
 
 use super::Inadmissible;
-use super::cells::{CellGroup, with_node_count};
+use super::cells::{CellGroup, Deformed};
+use super::hourglass::Hourglass;
 use super::point::{Form, Linearization};
+use crate::fe::element::quadrature::SQUARE_1;
 use crate::fe::element::{Element, ElementError, MAX_NODES, kinematics::physical_gradient};
-use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
+use crate::fe::material::hyperelastic::Hyperelastic;
 use crate::fe::material::{Material, MaterialError, Rayleigh};
 use crate::fe::mesh::{Cell, Mesh};
 use crate::fe::model::{Model, ModelError, element_of, placed_nodes};
-use crate::fe::recovery::Stress;
+use crate::fe::record::ElementRecord;
 use crate::linalg::block_matrix::BlockMatrix;
 use std::sync::Arc;
 use thiserror::Error;
@@ -124,8 +126,8 @@ impl FiniteStrainDescription {
 /// Gradients of deformation at the quadrature points: at the beginning of a step, and at the end last asked for.
 #[derive(Clone, Debug)]
 pub struct Deformation {
-    start: Vec<[f64; 4]>,
-    end: Vec<[f64; 4]>,
+    start: Deformed,
+    end: Deformed,
 }
 
 impl Deformation {
@@ -137,7 +139,7 @@ impl Deformation {
     /// Quadrature points that are turned inside out at the beginning of the step.
     pub fn n_inverted(&self) -> usize {
         let is_inverted = |[xx, xy, yx, yy]: &&[f64; 4]| xx * yy - xy * yx <= 0.0;
-        self.start.iter().filter(is_inverted).count()
+        self.start.gradients.iter().filter(is_inverted).count()
     }
 }
 
@@ -163,8 +165,8 @@ impl Deformation {
 /// ```
 #[derive(Clone, Debug)]
 pub struct FiniteStrainModel {
-    description: FiniteStrainDescription,
-    groups: Vec<CellGroup>,
+    pub(super) description: FiniteStrainDescription,
+    pub(super) groups: Vec<CellGroup>,
     n_points: usize,
     masses: Vec<f64>,
     /// The zero matrix with the pattern of the tangent.
@@ -225,16 +227,26 @@ impl FiniteStrainModel {
         for (&node, mass) in cell.nodes.iter().zip(lumped) {
             self.masses[node] += mass;
         }
-        let n_points = element.quadrature().len();
-        let group = group_of(&mut self.groups, [n, n_points]);
+        // The element whose inner modes are left out has stiffened hourglass modes in their place.
+        let is_stiffened = element.record() == ElementRecord::Quad4;
+        let quadrature = match is_stiffened {
+            true => &SQUARE_1,
+            false => element.quadrature(),
+        };
+        let group = group_of(&mut self.groups, [n, quadrature.len()], is_stiffened);
         group.cells.push(index);
-        for point in element.quadrature() {
+        for point in quadrature {
             let mut gradient = [[0.0; 2]; MAX_NODES];
             let gradient = &mut gradient[..n];
             let determinant =
                 physical_gradient(element, corners, point.at, gradient).map_err(wrap)?;
             group.gradients.extend_from_slice(gradient);
             group.volumes.push(determinant * point.weight * thickness);
+            if is_stiffened {
+                let at_rest = description.law.constants().linear(description.density);
+                let hourglass = Hourglass::new(element, corners, gradient, &at_rest, thickness);
+                group.hourglass.push(hourglass.map_err(wrap)?);
+            }
         }
         for &row in cell.nodes {
             // The pattern was built from these cells; numbers of nodes fit into 32 bits.
@@ -294,8 +306,8 @@ impl FiniteStrainModel {
     /// If there is not one entry per dof.
     pub fn deformation(&self, positions: &[f64]) -> Deformation {
         let mut deformation = Deformation {
-            start: vec![[0.0; 4]; self.n_points],
-            end: vec![[0.0; 4]; self.n_points],
+            start: Deformed::new(self.n_points),
+            end: Deformed::new(self.n_points),
         };
         self.begin(positions, &mut deformation);
         deformation
@@ -308,10 +320,11 @@ impl FiniteStrainModel {
     pub fn begin(&self, positions: &[f64], deformation: &mut Deformation) {
         self.assert_length(positions);
         for group in &self.groups {
-            let out = &mut deformation.start[group.points()];
-            with_node_count!(group, deform(positions, out));
+            group.deform(positions, &mut deformation.start);
         }
-        deformation.end.copy_from_slice(&deformation.start);
+        let Deformation { start, end } = deformation;
+        end.gradients.copy_from_slice(&start.gradients);
+        end.amplitudes.copy_from_slice(&start.amplitudes);
     }
 
     /// Subtracts the internal force (N) from `residual`, for a step that ends at `positions` (m), and keeps its deformation for
@@ -333,10 +346,8 @@ impl FiniteStrainModel {
         self.assert_length(residual);
         let law = self.law();
         for group in &self.groups {
-            let start = &deformation.start[group.points()];
-            let end = &mut deformation.end[group.points()];
-            let pair = (start, end);
-            with_node_count!(group, subtract_force(law, form, positions, pair, residual))?;
+            let pair = (&deformation.start, &mut deformation.end);
+            group.subtract_force(law, form, positions, pair, residual)?;
         }
         Ok(())
     }
@@ -358,9 +369,8 @@ impl FiniteStrainModel {
         );
         let law = self.law();
         for group in &self.groups {
-            let points = group.points();
-            let pair = (&deformation.start[points.clone()], &deformation.end[points]);
-            with_node_count!(group, add_tangent(law, form, kind, pair, matrix));
+            let pair = (&deformation.start, &deformation.end);
+            group.add_tangent(law, (form, kind), pair, matrix);
         }
     }
 
@@ -371,35 +381,11 @@ impl FiniteStrainModel {
     pub fn elastic_energy(&self, positions: &[f64]) -> f64 {
         self.assert_length(positions);
         let law = self.law();
-        let energies = self
-            .groups
-            .iter()
-            .map(|group| with_node_count!(group, energy(law, positions)));
+        let energies = self.groups.iter().map(|group| group.energy(law, positions));
         energies.sum()
     }
 
-    /// Cauchy's stress (Pa) at the quadrature points of a cell at `positions` (m), in the world's axes.
-    ///
-    /// `σ = P Fᵀ / J`; of a point that is turned inside out it is that of the area it covers, `|J|`.
-    ///
-    /// # Panics
-    /// If there is not one entry per dof, or no such cell.
-    pub fn cell_stress(&self, cell: usize, positions: &[f64]) -> Vec<Stress> {
-        self.assert_length(positions);
-        let law = self.law();
-        for group in &self.groups {
-            if let Ok(place) = group.cells.binary_search(&cell) {
-                let gradients = with_node_count!(group, gradients_of(place, positions));
-                return gradients
-                    .into_iter()
-                    .map(|gradient| cauchy(law, gradient))
-                    .collect();
-            }
-        }
-        panic!("there is no cell {cell}")
-    }
-
-    fn assert_length(&self, dofs: &[f64]) {
+    pub(super) fn assert_length(&self, dofs: &[f64]) {
         assert!(
             dofs.len() == self.n_dofs(),
             "{} numbers were given for {} dofs",
@@ -409,29 +395,16 @@ impl FiniteStrainModel {
     }
 }
 
-/// Cauchy's stress of a gradient of deformation (Pa). Out of the plane nothing stretches: `σ_zz` is what Hooke's law gives there for the
-/// mean stress in the plane, exact at small strains.
-fn cauchy(law: &dyn Hyperelastic, gradient: [f64; 4]) -> Stress {
-    let [xx, xy, yx, yy] = gradient;
-    let at = Invariants::of(gradient);
-    let [by_t, by_j] = law.gradient(at);
-    let area = at.j.abs().max(f64::MIN_POSITIVE);
-    // P Fᵀ = 2 W_t F Fᵀ + W_J J I.
-    let spherical = by_j * at.j;
-    let (sxx, syy) = (
-        (2.0 * by_t * (xx * xx + xy * xy) + spherical) / area,
-        (2.0 * by_t * (yx * yx + yy * yy) + spherical) / area,
-    );
-    Stress {
-        xx: sxx,
-        yy: syy,
-        xy: 2.0 * by_t * (xx * yx + xy * yy) / area,
-        zz: law.constants().poisson() * (sxx + syy),
-    }
-}
-
-fn group_of(groups: &mut Vec<CellGroup>, [n_nodes, n_points]: [usize; 2]) -> &mut CellGroup {
-    let is_it = |group: &CellGroup| group.n_nodes == n_nodes && group.n_points == n_points;
+fn group_of(
+    groups: &mut Vec<CellGroup>,
+    [n_nodes, n_points]: [usize; 2],
+    is_stiffened: bool,
+) -> &mut CellGroup {
+    let is_it = |group: &CellGroup| {
+        group.n_nodes == n_nodes
+            && group.n_points == n_points
+            && group.hourglass.is_empty() != is_stiffened
+    };
     let at = groups.iter().position(is_it).unwrap_or(groups.len());
     if at == groups.len() {
         groups.push(CellGroup {
@@ -443,6 +416,7 @@ fn group_of(groups: &mut Vec<CellGroup>, [n_nodes, n_points]: [usize; 2]) -> &mu
             volumes: Vec::new(),
             places: Vec::new(),
             first_point: 0,
+            hourglass: Vec::new(),
         });
     }
     &mut groups[at]

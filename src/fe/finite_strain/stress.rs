@@ -1,0 +1,88 @@
+//! Cauchy's stress at the quadrature points of the elements.
+
+use super::hourglass::{PATTERN, Shape};
+use super::model::FiniteStrainModel;
+use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
+use crate::fe::model::{element_of, placed_nodes};
+use crate::fe::recovery::Stress;
+
+impl FiniteStrainModel {
+    /// Cauchy's stress (Pa) at the quadrature points of a cell at `positions` (m), in the world's axes.
+    ///
+    /// `σ = P Fᵀ / J`; of a point that is turned inside out it is that of the area it covers, `|J|`.
+    ///
+    /// # Panics
+    /// If there is not one entry per dof, or no such cell.
+    pub fn cell_stress(&self, cell: usize, positions: &[f64]) -> Vec<Stress> {
+        self.assert_length(positions);
+        let law = self.law();
+        for group in &self.groups {
+            if let Ok(place) = group.cells.binary_search(&cell) {
+                let gradients = match group.hourglass.is_empty() {
+                    true => group.gradients_of(place, positions),
+                    false => self.bent(cell, &group.shape(place, positions)),
+                };
+                let stresses = gradients.into_iter().map(|at| cauchy(law, at));
+                return stresses.collect();
+            }
+        }
+        panic!("there is no cell {cell}")
+    }
+
+    /// `F` at the quadrature points of a cell with hourglass modes: the mean one, after the strains that the element with inner modes has
+    /// when it is bent by as much.
+    fn bent(&self, cell: usize, shape: &Shape) -> Vec<[f64; 4]> {
+        let description = &self.description;
+        let [xx, xy, yx, yy] = shape.gradient;
+        let cells = description.mesh.cells().nth(cell);
+        let found = cells.and_then(|cell| {
+            let element = element_of(&description.elements, 0, &cell).ok()?;
+            let corners = placed_nodes(&description.rest_positions, &cell);
+            let area = xx * yy - xy * yx;
+            let [x, y] = shape.amplitude;
+            let own = [(yy * x - xy * y) / area, (xx * y - yx * x) / area];
+            let bent: Vec<f64> = PATTERN
+                .iter()
+                .flat_map(|sign| own.map(|amplitude| sign * amplitude))
+                .collect();
+            let at_rest = description.law.constants().linear(description.density);
+            let mut strains = vec![[0.0; 3]; element.quadrature().len()];
+            let corners = &corners[..cell.nodes.len()];
+            let outcome = element.point_strains(corners, &at_rest, &bent, &mut strains);
+            outcome.ok().map(|()| strains)
+        });
+        let strains = found.unwrap_or_default().into_iter();
+        strains
+            .map(|[along, across, shear]| {
+                let [a, b, c] = [1.0 + along, 0.5 * shear, 1.0 + across];
+                [
+                    xx * a + xy * b,
+                    xx * b + xy * c,
+                    yx * a + yy * b,
+                    yx * b + yy * c,
+                ]
+            })
+            .collect()
+    }
+}
+
+/// Cauchy's stress of a gradient of deformation (Pa). Out of the plane nothing stretches: `σ_zz` is what Hooke's law gives there for the
+/// mean stress in the plane, exact at small strains.
+fn cauchy(law: &dyn Hyperelastic, gradient: [f64; 4]) -> Stress {
+    let [xx, xy, yx, yy] = gradient;
+    let at = Invariants::of(gradient);
+    let [by_t, by_j] = law.gradient(at);
+    let area = at.j.abs().max(f64::MIN_POSITIVE);
+    // P Fᵀ = 2 W_t F Fᵀ + W_J J I.
+    let spherical = by_j * at.j;
+    let (sxx, syy) = (
+        (2.0 * by_t * (xx * xx + xy * xy) + spherical) / area,
+        (2.0 * by_t * (yx * yx + yy * yy) + spherical) / area,
+    );
+    Stress {
+        xx: sxx,
+        yy: syy,
+        xy: 2.0 * by_t * (xx * yx + xy * yy) / area,
+        zz: law.constants().poisson() * (sxx + syy),
+    }
+}
