@@ -5,10 +5,10 @@ mod common;
 use common::*;
 use foil2d::body::BuildError;
 use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
-use foil2d::fe::material::Rayleigh;
 use foil2d::fe::material::hyperelastic::{
     Corotated, Hyperelastic, HyperelasticSolid, NeoHookean, StableNeoHookean,
 };
+use foil2d::fe::material::{Material, Rayleigh};
 use foil2d::fe::mesh::{CellKind, generate::rectangle};
 use foil2d::fe::model::MassKind;
 use foil2d::integrator::IntegratorError;
@@ -275,6 +275,40 @@ fn a_mirrored_impact_is_the_impact_mirrored() {
     assert!((y - mirrored_y).abs() < 0.02, "{y} and {mirrored_y}");
 }
 
+/// A material of which nobody has said what it does at large strain.
+#[derive(Debug)]
+struct Stranger;
+
+impl Material for Stranger {
+    fn density(&self) -> f64 {
+        1000.0
+    }
+
+    fn stress(&self, strain: [f64; 3]) -> [f64; 3] {
+        strain.map(|strain| 1e6 * strain)
+    }
+
+    fn tangent(&self, _: [f64; 3]) -> [[f64; 3]; 3] {
+        [[1e6, 0.0, 0.0], [0.0, 1e6, 0.0], [0.0, 0.0, 1e6]]
+    }
+
+    fn energy_density(&self, strain: [f64; 3]) -> f64 {
+        strain.iter().map(|strain| 0.5e6 * strain * strain).sum()
+    }
+
+    fn out_of_plane_stress(&self, _: [f64; 3]) -> f64 {
+        0.0
+    }
+
+    fn wave_speed(&self) -> f64 {
+        40.0
+    }
+
+    fn is_linear(&self) -> bool {
+        true
+    }
+}
+
 #[test]
 fn what_cannot_be_is_refused_by_name() {
     let law = Corotated::plane_strain(1e6, 0.3);
@@ -282,6 +316,14 @@ fn what_cannot_be_is_refused_by_name() {
     let refused = body().mass_kind(MassKind::Consistent).build();
     assert!(
         matches!(refused, Err(BuildError::LargeConsistent)),
+        "{refused:?}"
+    );
+    let refused = FlexBodyBuilder::rectangle([1.0, 0.2], [4, 1])
+        .material(Stranger)
+        .large_strain()
+        .build();
+    assert!(
+        matches!(refused, Err(BuildError::NoLargeLaw)),
         "{refused:?}"
     );
     let bare = HyperelasticSolid::new(law);
@@ -448,4 +490,44 @@ fn a_crushed_block_costs_some_factorizations_a_step() {
     let most = onlooker.most_from(0).n_factorizations;
     findings.check(most < 150, || format!("{most} factorizations in a step"));
     findings.report();
+}
+
+/// A sheet of Hooke's law that sags by a hundredth of its length under its own weight: the two bodies are one. In quadrilaterals, and in plane stress.
+#[test]
+fn where_strains_are_small_a_body_of_large_strain_is_the_other_one() {
+    let sheet = || {
+        FlexBodyBuilder::rectangle([2.0, 0.1], [40, 2])
+            .material(elastic(2e9, 1000.0, 0.02))
+            .pin_where(|[x, _]| x == 0.0, Pin::both())
+    };
+    let [small, large] = [sheet().small_strain(), sheet().large_strain()].map(|builder| {
+        let mut scene = Scene::new(1.0 / 60.0);
+        let body = scene.flexible(builder);
+        (0..600).for_each(|_| {
+            scene.step();
+        });
+        let body = scene.body(body);
+        let n_nodes = body.n_nodes();
+        let tip = (0..n_nodes).map(|node| body.position(node)[1]);
+        let stress = body.stress().expect("stresses");
+        let bent = stress.iter().map(|stress| stress.xx.abs());
+        let out = stress.iter().map(|stress| stress.zz.abs());
+        let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        (
+            tip.fold(f64::INFINITY, f64::min),
+            most(&mut bent.into_iter()),
+            most(&mut out.into_iter()),
+        )
+    });
+    // q L⁴/8EI under 981 N/m: 1.18e-2 m.
+    assert!((small.0 + 1.18e-2).abs() < 2e-4, "{small:?}");
+    assert!(
+        (large.0 - small.0).abs() < 1e-3 * small.0.abs(),
+        "{large:?}, {small:?}"
+    );
+    assert!(
+        (large.1 - small.1).abs() < 5e-3 * small.1,
+        "{large:?}, {small:?}"
+    );
+    assert_eq!([small.2, large.2], [0.0; 2]);
 }

@@ -67,14 +67,18 @@ impl FlexBodyBuilder {
         Ok(body)
     }
 
-    /// The body of large strain, if the material has a law for that.
+    /// The body of large strain, if it is to be one.
     fn large_model(
         &self,
         mesh: &Arc<Mesh>,
         rest: &[f64],
         material: &Arc<dyn Material>,
     ) -> Result<Option<Arc<FiniteStrainModel>>, BuildError> {
-        if material.hyperelastic().is_some() && self.mass_kind == MassKind::Consistent {
+        let is_large = self.is_large.unwrap_or(material.hyperelastic().is_some());
+        if !is_large {
+            return Ok(None);
+        }
+        if self.mass_kind == MassKind::Consistent {
             return Err(BuildError::LargeConsistent);
         }
         let description = FiniteStrainDescription::of_material(
@@ -84,8 +88,8 @@ impl FlexBodyBuilder {
             material.as_ref(),
             self.thickness,
         );
-        let assemble = |description| FiniteStrainModel::assemble(description).map(Arc::new);
-        Ok(description.map(assemble).transpose()?)
+        let description = description.ok_or(BuildError::NoLargeLaw)?;
+        Ok(Some(Arc::new(FiniteStrainModel::assemble(description)?)))
     }
 
     fn check_numbers(&self) -> Result<(), BuildError> {

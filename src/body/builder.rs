@@ -46,6 +46,8 @@ pub struct FlexBodyBuilder {
     pub(super) mesh: Result<Arc<Mesh>, MeshError>,
     pub(super) elements: Vec<Arc<dyn Element>>,
     pub(super) material: Option<Arc<dyn Material>>,
+    /// Whether the body is one of large strain, if the user has said so.
+    pub(super) is_large: Option<bool>,
     pub(super) thickness: f64,
     pub(super) mass_kind: MassKind,
     pub(super) contact_inertia: ContactInertia,
@@ -109,6 +111,7 @@ impl FlexBodyBuilder {
             mesh,
             elements: Vec::new(),
             material: None,
+            is_large: None,
             thickness: 1.0,
             mass_kind: MassKind::default(),
             contact_inertia: ContactInertia::default(),
@@ -131,6 +134,23 @@ impl FlexBodyBuilder {
     /// The constitutive law; required.
     pub fn material(mut self, material: impl Material + 'static) -> Self {
         self.material = Some(Arc::new(material));
+        self
+    }
+
+    /// Makes a body that bends, stretches and folds as far as it likes, of the material's [law for large strains](Material::large_law). Of
+    /// [`LinearElastic`](crate::fe::material::LinearElastic) that is the neo-Hookean law which is Hooke's at rest.
+    ///
+    /// A [`HyperelasticSolid`](crate::fe::material::hyperelastic::HyperelasticSolid) asks for it by itself. Such a body costs some factorizations a step; its surface
+    /// always carries its mass, and explicit steps refuse it.
+    pub fn large_strain(mut self) -> Self {
+        self.is_large = Some(true);
+        self
+    }
+
+    /// Makes a body that turns as far as it likes but bends and stretches little, by a hundredth of its lengths or so: the fastest.
+    /// [`StepReport::overbent`](crate::pipeline::StepReport::overbent) tells where it is taken beyond that.
+    pub fn small_strain(mut self) -> Self {
+        self.is_large = Some(false);
         self
     }
 

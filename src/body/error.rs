@@ -23,9 +23,14 @@ pub enum BuildError {
     /// The body of large strain cannot be assembled.
     #[error(transparent)]
     Large(#[from] FiniteStrainError),
+    /// A body of large strain whose material has no law for that.
+    #[error(
+        "the material has no law for large strains: leave `.large_strain()` out, or take a `HyperelasticSolid` or `LinearElastic`"
+    )]
+    NoLargeLaw,
     /// A body of large strain with a consistent mass.
     #[error(
-        "the material is one of large strain, for which masses are lumped: leave `.mass_kind` at `MassKind::Lumped`"
+        "the masses of a body of large strain are lumped: leave `.mass_kind` at `MassKind::Lumped`, or choose `.small_strain()`"
     )]
     LargeConsistent,
     /// No material was given.

@@ -39,6 +39,7 @@ struct BodyRecord {
     is_quarantined: bool,
     is_new: bool,
     n_idle_pins: usize,
+    is_large: bool,
 }
 
 impl BodyRecord {
@@ -64,6 +65,7 @@ impl BodyRecord {
             is_quarantined: body.is_quarantined,
             is_new: body.is_new,
             n_idle_pins: body.n_idle_pins,
+            is_large: body.large.is_some(),
         })
     }
 
@@ -85,11 +87,14 @@ impl BodyRecord {
         if self.is_fixed.len() != n_dofs || nodal.iter().any(|values| values.len() != n_dofs) {
             return Err(ModelRecordError::Length("nodal values"));
         }
-        let large = FiniteStrainDescription::of_model(&model)
-            .map(FiniteStrainModel::assemble)
-            .transpose()
-            .map_err(|_| ModelRecordError::Differs)?
-            .map(Arc::new);
+        let large = match self.is_large {
+            true => {
+                let description = FiniteStrainDescription::of_model(&model);
+                let found = description.and_then(|one| FiniteStrainModel::assemble(one).ok());
+                Some(Arc::new(found.ok_or(ModelRecordError::Differs)?))
+            }
+            false => None,
+        };
         if ![0, n_dofs].contains(&state.lasting.len()) {
             return Err(ModelRecordError::Length("nodal values"));
         }

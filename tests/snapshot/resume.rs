@@ -269,5 +269,12 @@ fn bodies_of_large_strain_restored_after_every_step_never_differ() {
     run.flex_bodies
         .insert(rope, &mut run.world)
         .expect("the description is right");
+    let jelly = FlexBodyBuilder::rectangle([0.4, 0.4], [3, 3])
+        .material(LinearElastic::plane_stress(1e5, 0.3).density(1000.0))
+        .large_strain()
+        .translation([0.3, 6.5]);
+    run.flex_bodies
+        .insert(jelly, &mut run.world)
+        .expect("the description is right");
     step_by_step(run, 120);
 }

@@ -51,12 +51,15 @@ pub struct FiniteStrainDescription {
     pub damping: Rayleigh,
     /// Thickness out of the plane (m).
     pub thickness: f64,
+    /// What `σ_zz` is of `σ_xx + σ_yy` (-): Poisson's ratio in plane strain, zero in plane stress.
+    pub lateral: f64,
 }
 
 impl FiniteStrainDescription {
     /// A body 1 m thick where its mesh is, of a density (kg/m^3), without damping.
     pub fn new(mesh: Mesh, law: impl Hyperelastic + 'static, density: f64) -> Self {
         Self {
+            lateral: law.constants().poisson(),
             rest_positions: mesh.nodes().iter().flatten().copied().collect(),
             mesh: Arc::new(mesh),
             elements: Vec::new(),
@@ -75,8 +78,10 @@ impl FiniteStrainDescription {
         material: &dyn Material,
         thickness: f64,
     ) -> Option<Self> {
+        let [xx, yy, _] = material.stress([1.0, 1.0, 0.0]);
         Some(Self {
-            law: Arc::clone(material.hyperelastic()?),
+            lateral: material.out_of_plane_stress([1.0, 1.0, 0.0]) / (xx + yy),
+            law: material.large_law()?,
             mesh,
             rest_positions,
             elements: elements.to_vec(),

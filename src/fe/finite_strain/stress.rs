@@ -22,7 +22,8 @@ impl FiniteStrainModel {
                     true => group.gradients_of(place, positions),
                     false => self.bent(cell, &group.shape(place, positions)),
                 };
-                let stresses = gradients.into_iter().map(|at| cauchy(law, at));
+                let lateral = self.description.lateral;
+                let stresses = gradients.into_iter().map(|at| cauchy(law, lateral, at));
                 return stresses.collect();
             }
         }
@@ -66,9 +67,8 @@ impl FiniteStrainModel {
     }
 }
 
-/// Cauchy's stress of a gradient of deformation (Pa). Out of the plane nothing stretches: `σ_zz` is what Hooke's law gives there for the
-/// mean stress in the plane, exact at small strains.
-fn cauchy(law: &dyn Hyperelastic, gradient: [f64; 4]) -> Stress {
+/// Cauchy's stress of a gradient of deformation (Pa). `σ_zz` is the share `lateral` of the sum in the plane, as in Hooke's law: exact at small strains.
+fn cauchy(law: &dyn Hyperelastic, lateral: f64, gradient: [f64; 4]) -> Stress {
     let [xx, xy, yx, yy] = gradient;
     let at = Invariants::of(gradient);
     let [by_t, by_j] = law.gradient(at);
@@ -83,6 +83,6 @@ fn cauchy(law: &dyn Hyperelastic, gradient: [f64; 4]) -> Stress {
         xx: sxx,
         yy: syy,
         xy: 2.0 * by_t * (xx * yx + xy * yy) / area,
-        zz: law.constants().poisson() * (sxx + syy),
+        zz: lateral * (sxx + syy),
     }
 }

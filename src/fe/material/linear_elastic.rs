@@ -1,7 +1,9 @@
 //! Isotropic linear elasticity: `sigma = D eps`, `W = eps . D eps / 2`.
 
+use super::hyperelastic::{Hyperelastic, NeoHookean};
 use super::{Material, MaterialError, Rayleigh};
 use crate::fe::record::MaterialRecord;
+use std::sync::Arc;
 
 /// What happens in the direction normal to the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,6 +120,11 @@ impl LinearElastic {
 }
 
 impl Material for LinearElastic {
+    /// The neo-Hookean law that is this one at rest.
+    fn large_law(&self) -> Option<Arc<dyn Hyperelastic>> {
+        Some(Arc::new(NeoHookean::at_rest(self)))
+    }
+
     fn record(&self) -> MaterialRecord {
         MaterialRecord::LinearElastic(*self)
     }

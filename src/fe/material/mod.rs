@@ -56,6 +56,12 @@ pub trait Material: Send + Sync + Debug {
         None
     }
 
+    /// The law that a body of the material has if it is asked to be one of large strain; that of [`hyperelastic`](Self::hyperelastic) unless
+    /// overridden. At rest it must be this material in the plane.
+    fn large_law(&self) -> Option<Arc<dyn Hyperelastic>> {
+        self.hyperelastic().cloned()
+    }
+
     /// Whether the parameters make sense; called once, when a body is built.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! The constants of isotropic elasticity: `λ = E ν / ((1 + ν)(1 - 2 ν))`, `μ = E / (2 (1 + ν))`.
 
-use crate::fe::material::{LinearElastic, Material, MaterialError};
+use crate::fe::material::{LinearElastic, Material, MaterialError, Plane};
 
 /// Young's modulus and Poisson's ratio, with Lamé's constants computed once.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,19 @@ impl ElasticConstants {
             poisson,
             lambda: young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
             mu: 0.5 * young / (1.0 + poisson),
+        }
+    }
+
+    /// The constants with which a slice of a long body has the moduli in the plane that `material` has: its own in plane strain, and in plane stress
+    /// `E (1 + 2 ν)/(1 + ν)²` and `ν/(1 + ν)`.
+    pub fn in_plane(material: &LinearElastic) -> Self {
+        let (young, poisson) = (material.young(), material.poisson());
+        match material.plane() {
+            Plane::Strain => Self::new(young, poisson),
+            Plane::Stress => {
+                let sum = 1.0 + poisson;
+                Self::new(young * (1.0 + 2.0 * poisson) / (sum * sum), poisson / sum)
+            }
         }
     }
 

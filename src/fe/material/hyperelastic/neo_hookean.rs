@@ -2,6 +2,7 @@
 
 use super::quotient::slope_of_ln;
 use super::{ElasticConstants, Hyperelastic, Invariants};
+use crate::fe::material::LinearElastic;
 use crate::fe::record::LawRecord;
 use crate::math::ln;
 
@@ -23,6 +24,13 @@ impl NeoHookean {
     pub fn plane_strain(young: f64, poisson: f64) -> Self {
         Self {
             constants: ElasticConstants::new(young, poisson),
+        }
+    }
+
+    /// The law that is Hooke's at rest: in plane stress one in the plane, which does not follow the thickness.
+    pub fn at_rest(material: &LinearElastic) -> Self {
+        Self {
+            constants: ElasticConstants::in_plane(material),
         }
     }
 }
