@@ -347,12 +347,14 @@ impl FlexBlock {
                     continue;
                 }
                 n_cuts += 1;
+                // What is left of the increment is taken back at last: no place counts that was not looked at.
+                let part = if n_cuts > MOST_CUTS { 1.0 } else { 0.5 };
+                for (x, increment) in self.position.iter_mut().zip(&mut self.local) {
+                    *increment *= part;
+                    *x -= *increment;
+                }
                 if n_cuts > MOST_CUTS {
                     return not_found;
-                }
-                for (x, increment) in self.position.iter_mut().zip(&mut self.local) {
-                    *increment *= 0.5;
-                    *x -= *increment;
                 }
                 continue;
             };
