@@ -300,7 +300,7 @@ impl Island {
             return Ok(summary);
         }
         self.solve_positions(settings, memory, &mut summary);
-        if settings.may_be_cut && (summary.is_cut || summary.is_stopped) {
+        if settings.may_be_cut && summary.is_unsolved() {
             return Ok(summary);
         }
         let before = self.start_energy();
@@ -311,7 +311,7 @@ impl Island {
         summary.load_energy = self.load_energy();
         summary.is_parting = contacts.any(|contact| contact.allowance < 0.0);
         let finished = treatment.finish(self, settings, &mut summary);
-        let is_unsolved = summary.is_cut || summary.is_stopped;
+        let is_unsolved = summary.is_unsolved();
         if finished.is_err() && is_unsolved {
             // Forces that are no numbers count no more than those that are too large.
             self.end_gently(settings, memory, &mut summary)?;
@@ -334,7 +334,7 @@ impl Island {
         }
         if treatment.limits_energy() {
             let stored = reserve.max(0.0);
-            let is_unsolved = summary.is_cut || summary.is_stopped;
+            let is_unsolved = summary.is_unsolved();
             let allowance = if is_unsolved { summary.work } else { allowance };
             self.limit_energy(settings, allowance, reserve, &mut summary);
             if is_unsolved {

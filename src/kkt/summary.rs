@@ -46,6 +46,11 @@ pub struct IslandSummary {
 }
 
 impl IslandSummary {
+    /// Whether the step ended short of its laws.
+    pub fn is_unsolved(&self) -> bool {
+        self.is_cut || self.is_stopped
+    }
+
     /// Kinetic and elastic energy that there was, with what loads and driven bodies have added or taken, or might have (J).
     pub fn brought(&self) -> f64 {
         self.start_energy[0] + self.start_energy[1] + self.work.abs() + self.load_energy

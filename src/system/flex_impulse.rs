@@ -146,8 +146,7 @@ impl FlexBlock {
         if !self.impulses[0].is_used || self.kind != Frame::Free {
             return;
         }
-        let damped = 1.0 + 0.5 * self.model.rayleigh().mass * self.step.dt;
-        let total = self.impulses[0].total / (self.arms.mass * damped);
+        let total = self.mean_response(0);
         let response = &mut self.impulses[0].response;
         let missing = total - self.arms.centre(self.kind, response, Vec2::zeros());
         for node in 0..response.len() / 2 {
@@ -155,9 +154,18 @@ impl FlexBlock {
         }
     }
 
+    /// What the drag of the masses makes of a mass (-): bodies of large strain take it at the middle of the step, whatever the member.
+    fn drag_share(&self) -> f64 {
+        let late = match self.is_large() {
+            true => 0.5 * self.step.dt,
+            false => self.step.weights.b1,
+        };
+        1.0 + self.model.rayleigh().mass * late
+    }
+
     /// Change of the centre's velocity or acceleration that the gathered impulses make.
     fn mean_response(&self, slot: usize) -> Vec2 {
-        let damped = 1.0 + self.model.rayleigh().mass * self.step.weights.b1;
+        let damped = self.drag_share();
         self.impulses[slot].total / (self.arms.mass * damped)
     }
 
