@@ -7,7 +7,7 @@ use super::point::{Form, Linearization};
 use crate::fe::element::quadrature::SQUARE_1;
 use crate::fe::element::{Element, ElementError, MAX_NODES, kinematics::physical_gradient};
 use crate::fe::material::hyperelastic::Hyperelastic;
-use crate::fe::material::{Material, MaterialError, Rayleigh};
+use crate::fe::material::{Material, MaterialError, Plane, Rayleigh};
 use crate::fe::mesh::{Cell, Mesh};
 use crate::fe::model::{Model, ModelError, element_of, placed_nodes};
 use crate::fe::record::ElementRecord;
@@ -51,15 +51,15 @@ pub struct FiniteStrainDescription {
     pub damping: Rayleigh,
     /// Thickness out of the plane (m).
     pub thickness: f64,
-    /// What `σ_zz` is of `σ_xx + σ_yy` (-): Poisson's ratio in plane strain, zero in plane stress.
-    pub lateral: f64,
+    /// What the stress out of the plane is told by; the law knows the plane alone.
+    pub plane: Plane,
 }
 
 impl FiniteStrainDescription {
     /// A body 1 m thick where its mesh is, of a density (kg/m^3), without damping.
     pub fn new(mesh: Mesh, law: impl Hyperelastic + 'static, density: f64) -> Self {
         Self {
-            lateral: law.constants().poisson(),
+            plane: Plane::Strain,
             rest_positions: mesh.nodes().iter().flatten().copied().collect(),
             mesh: Arc::new(mesh),
             elements: Vec::new(),
@@ -78,9 +78,13 @@ impl FiniteStrainDescription {
         material: &dyn Material,
         thickness: f64,
     ) -> Option<Self> {
-        let [xx, yy, _] = material.stress([1.0, 1.0, 0.0]);
+        let is_free = material.out_of_plane_stress([1.0, 1.0, 0.0]) == 0.0;
         Some(Self {
-            lateral: material.out_of_plane_stress([1.0, 1.0, 0.0]) / (xx + yy),
+            plane: if is_free {
+                Plane::Stress
+            } else {
+                Plane::Strain
+            },
             law: material.large_law()?,
             mesh,
             rest_positions,

@@ -2,6 +2,7 @@
 
 use super::hourglass::{PATTERN, Shape};
 use super::model::FiniteStrainModel;
+use crate::fe::material::Plane;
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::fe::model::{element_of, placed_nodes};
 use crate::fe::recovery::Stress;
@@ -22,7 +23,10 @@ impl FiniteStrainModel {
                     true => group.gradients_of(place, positions),
                     false => self.bent(cell, &group.shape(place, positions)),
                 };
-                let lateral = self.description.lateral;
+                let lateral = match self.description.plane {
+                    Plane::Stress => 0.0,
+                    Plane::Strain => law.constants().poisson(),
+                };
                 let stresses = gradients.into_iter().map(|at| cauchy(law, lateral, at));
                 return stresses.collect();
             }
