@@ -31,6 +31,7 @@ fn step(side: usize) -> Result<(usize, f64), Box<dyn Error>> {
     let mut bodies = FlexBodySet::new();
     let body = bodies.insert(
         FlexBodyBuilder::rectangle([1.0, 1.0], [side, side])
+            .small_strain()
             .material(LinearElastic::plane_stress(1e6, 0.3).density(1000.0)),
         &mut world,
     )?;

@@ -83,6 +83,7 @@ fn separate(n: usize) -> Result<Scene, Box<dyn Error>> {
     scene.ground();
     for i in 0..n {
         let block = FlexBodyBuilder::rectangle([0.4, 0.4], [3, 3])
+            .small_strain()
             .material(elastic(1e6, 500.0))
             .can_sleep(false)
             .translation([i as f64 - 0.5 * n as f64, 0.0]);
@@ -95,6 +96,7 @@ fn separate(n: usize) -> Result<Scene, Box<dyn Error>> {
 fn slab(n: usize) -> Result<Scene, Box<dyn Error>> {
     let mut scene = Scene::new(format!("{n} boxes on a flexible slab"));
     let slab = FlexBodyBuilder::rectangle([8.0, 0.4], [64, 4])
+        .small_strain()
         .material(elastic(1e8, 1000.0))
         .translation([-4.0, -0.4])
         .pin_where(|[x, _]| (x - 4.0).abs() > 4.0 - 1e-9, Pin::both())
@@ -116,6 +118,7 @@ fn pile(has_block: bool) -> Result<Scene, Box<dyn Error>> {
     scene.boxes(60, 10, 0.31, -1.5);
     if has_block {
         let block = FlexBodyBuilder::rectangle([0.3, 0.3], [4, 4])
+            .small_strain()
             .material(elastic(1e6, 500.0))
             .can_sleep(false)
             .translation([0.0, 0.302 * 6.0 + 0.3]);

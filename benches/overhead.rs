@@ -37,6 +37,7 @@ fn measure(can_sleep: bool, n: usize) -> Result<[f64; 2], Box<dyn Error>> {
     let (mut alone, mut beside) = (boxes(can_sleep), boxes(can_sleep));
     let mut flex_bodies = FlexBodySet::new();
     let block = FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4])
+        .small_strain()
         .material(
             LinearElastic::plane_stress(1e6, 0.3)
                 .density(1000.0)

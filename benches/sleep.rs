@@ -61,6 +61,7 @@ impl Pile {
                 .density(1000.0)
                 .rayleigh(1e-2);
             let block = FlexBodyBuilder::rectangle([0.5, 0.3], [5, 3])
+                .small_strain()
                 .material(material)
                 .translation([x - 0.25, y]);
             self.flex_bodies.insert(block, &mut self.world)?;

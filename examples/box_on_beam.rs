@@ -69,6 +69,7 @@ fn beam(ratio: f64) -> FlexBodyBuilder {
         .density(BEAM_MASS / (SPAN * DEPTH))
         .rayleigh(0.01);
     FlexBodyBuilder::rectangle([SPAN, DEPTH], DIVISIONS)
+        .small_strain()
         .material(material)
         .pin_where(|[x, y]| y == 0.0 && (x == 0.0 || x == SPAN), Pin::both())
 }

@@ -165,6 +165,7 @@ impl Scene {
         let mut flex_bodies = FlexBodySet::new();
         // Nothing touches this beam: its boundary keeps its mass.
         let builder = FlexBodyBuilder::rectangle_of([LENGTH, HEIGHT], DIVISIONS, kind)
+            .small_strain()
             .material(material)
             .contact_inertia(ContactInertia::Kept)
             .pin_where(|[x, _]| x == 0.0, Pin::both());

@@ -85,12 +85,12 @@ pub fn run(options: &Options) -> Result<Vec<Outcome>, Box<dyn Error>> {
 
 /// A block of square cells, whose whole boundary is without inertia: the default.
 pub fn block() -> FlexBodyBuilder {
-    falling(FlexBodyBuilder::rectangle([2.0, LENGTH], [30, 150]))
+    falling(FlexBodyBuilder::rectangle([2.0, LENGTH], [30, 150]).small_strain())
 }
 
 /// The impacting bar: 100 cells, one thick, guided.
 pub fn bar() -> FlexBodyBuilder {
-    falling(FlexBodyBuilder::rectangle([0.1, LENGTH], [1, 100]))
+    falling(FlexBodyBuilder::rectangle([0.1, LENGTH], [1, 100]).small_strain())
         .contact_inertia(ContactInertia::RedistributedAt(vec![0, 1]))
         .pin_where(|_| true, Pin::x())
 }

@@ -17,6 +17,7 @@ const CELLS: usize = 100;
 /// A guided bar of 100 cells, E = 900 Pa, rho = 1 kg/m³: c = 30 m/s.
 fn bar() -> FlexBodyBuilder {
     FlexBodyBuilder::rectangle([WIDTH, LENGTH], [1, CELLS])
+        .small_strain()
         .material(LinearElastic::plane_stress(900.0, 0.0).density(1.0))
         .pin_where(|_| true, Pin::x())
         .friction(0.0)
@@ -199,6 +200,7 @@ fn plate(is_fixed: bool, inertia: ContactInertia) -> FlexBodyBuilder {
         })
         .collect();
     let plate = FlexBodyBuilder::rectangle([1.0, 0.5], [12, 8])
+        .small_strain()
         .material(LinearElastic::plane_stress(1e4, 0.3).density(10.0))
         .contact_inertia(inertia)
         .velocities(velocities);
@@ -322,6 +324,7 @@ fn a_body_and_a_rigid_box_that_collide_keep_momentum() {
 
 fn rubber(side: usize) -> FlexBodyBuilder {
     FlexBodyBuilder::rectangle([1.0, 1.0], [side, side])
+        .small_strain()
         .material(elastic(1e5, 1000.0, 2e-4).rayleigh_mass(10.0))
 }
 
@@ -367,6 +370,7 @@ fn a_sliding_block_stops_where_friction_stops_it() {
         scene.ground(0.3);
         let body = scene.flexible(
             FlexBodyBuilder::rectangle([1.0, 0.5], [12, 6])
+                .small_strain()
                 .material(elastic(1e7, 1000.0, 5e-5))
                 .contact_inertia(inertia)
                 .friction(0.3)
@@ -488,6 +492,7 @@ fn a_hinged_body_swings_with_its_energy() {
         let mut scene = explicit(Scene::new(1.0 / 8192.0));
         let body = scene.flexible(
             FlexBodyBuilder::rectangle([1.0, 0.5], [12, 8])
+                .small_strain()
                 .material(LinearElastic::plane_stress(1e5, 0.3).density(10.0))
                 .contact_inertia(inertia)
                 .pin_where(|at| at == [0.0, 0.5], Pin::both()),
@@ -538,6 +543,7 @@ fn two_explicit_bodies_that_collide_keep_momentum() {
         let mut scene = explicit(Scene::in_free_space(1.0 / 4096.0));
         let block = |inertia| {
             FlexBodyBuilder::rectangle([1.0, 0.5], [12, 8])
+                .small_strain()
                 .material(LinearElastic::plane_stress(1e4, 0.3).density(10.0))
                 .contact_inertia(inertia)
                 .friction(0.4)
@@ -600,6 +606,7 @@ fn an_explicit_step_that_fails_begins_again_or_is_held_and_the_next_one_goes_on(
         scene.ground(0.5);
         scene.fixed(ColliderBuilder::cuboid(0.1, 3.0).translation(vec2(1.5, 3.0)));
         let body = FlexBodyBuilder::rectangle([1.0, 0.5], [6, 3])
+            .small_strain()
             .material(LinearElastic::plane_stress(1e5, 0.3).density(1000.0))
             .angvel(dice.between(-900.0, 900.0))
             .rotation(dice.between(0.0, 6.0))

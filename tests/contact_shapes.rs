@@ -7,7 +7,7 @@ use foil2d::pipeline::Participant;
 
 /// Overlap that rounding of rapier's poses explains, and none of ours (m).
 fn gap_tolerance() -> f64 {
-    by_precision(1e-6, 1e-9)
+    by_precision(1e-6, 2e-9)
 }
 
 /// All shapes that can offer a level top at height zero from -3 to 3 m, with their names.

@@ -173,7 +173,7 @@ fn what_a_sudden_force_throws_beyond_where_it_was_looked_for_is_seen() {
         let lowest = scene.body(block).positions().chunks_exact(2);
         let lowest = lowest.map(|at| at[1]).fold(f64::INFINITY, f64::min);
         assert!(
-            lowest > -1e-12,
+            lowest > -1e-9,
             "thrown by {thrown} m: at {lowest} m, {quality:?}"
         );
     }
@@ -310,6 +310,7 @@ fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
     ];
     scene.flexible(
         FlexBodyBuilder::rectangle_of(size, [17, 3], CellKind::Tri6)
+            .small_strain()
             .material(
                 LinearElastic::plane_stress(424_616.582_375_624_2, 0.3)
                     .density(1_707.992_355_726_982_9),

@@ -20,6 +20,7 @@ fn impact(treatment: ImpactTreatment) -> [f64; 3] {
     scene.ground(0.0);
     let body = scene.flexible(
         FlexBodyBuilder::rectangle([0.1, length], [1, cells])
+            .small_strain()
             .material(LinearElastic::plane_stress(900.0, 0.0).density(1.0))
             .contact_inertia(ContactInertia::Kept)
             .pin_where(|_| true, Pin::x())

@@ -64,9 +64,9 @@ fn a_clamped_strip_swings_as_it_does_by_itself() {
     assert!(lowest < -0.85, "the tip gets down to {lowest} m only");
 }
 
-fn spinning_plate(integrator: Beta2) -> (Scene, FlexBodyHandle) {
+fn spinning_plate(integrator: Beta2, young: f64) -> (Scene, FlexBodyHandle) {
     let mut scene = Scene::in_free_space(1.0 / 60.0).with_integrator(integrator);
-    let plate = of_law(Corotated::plane_strain(1e7, 0.3), [1.0, 0.5], [4, 2]);
+    let plate = of_law(Corotated::plane_strain(young, 0.3), [1.0, 0.5], [4, 2]);
     let plate = scene.flexible(plate.linvel([0.3, -0.2]).angvel(5.0));
     (scene, plate)
 }
@@ -74,28 +74,31 @@ fn spinning_plate(integrator: Beta2) -> (Scene, FlexBodyHandle) {
 /// 5 rad/s for 10 s. The plate starts unstretched: it vibrates all the way.
 #[test]
 fn a_free_plate_keeps_its_energy_and_its_momenta() {
-    let (mut scene, plate) = spinning_plate(Beta2::trapezoidal());
-    let before = [
-        energy_of(&scene),
-        scene.body(plate).angular_momentum([0.0; 2]),
-    ];
-    let momentum = scene.body(plate).momentum();
-    for _ in 0..600 {
-        scene.step();
-        let energy = energy_of(&scene);
-        assert!((energy / before[0] - 1.0).abs() < 1e-6, "{energy} J");
-        let spin = scene.body(plate).angular_momentum([0.0; 2]);
-        assert!((spin / before[1] - 1.0).abs() < 1e-6, "{spin} N m s");
-        let now = scene.body(plate).momentum();
-        let lost = (now[0] - momentum[0]).hypot(now[1] - momentum[1]);
-        assert!(lost < 1e-9, "{lost:e} N s lost");
+    for young in [1e7, 1e5] {
+        let (mut scene, plate) = spinning_plate(Beta2::trapezoidal(), young);
+        let before = [
+            energy_of(&scene),
+            scene.body(plate).angular_momentum([0.0; 2]),
+        ];
+        let momentum = scene.body(plate).momentum();
+        for _ in 0..600 {
+            scene.step();
+            let energy = energy_of(&scene);
+            assert!((energy / before[0] - 1.0).abs() < 1e-6, "{energy} J");
+            let spin = scene.body(plate).angular_momentum([0.0; 2]);
+            // Without the turn that balances it the tolerance of the iterations leaves 1e-8.
+            assert!((spin / before[1] - 1.0).abs() < 1e-11, "{spin} N m s");
+            let now = scene.body(plate).momentum();
+            let lost = (now[0] - momentum[0]).hypot(now[1] - momentum[1]);
+            assert!(lost < 1e-9, "{lost:e} N s lost");
+        }
     }
 }
 
 /// The default integrator takes vibrations, and nothing of the rotation.
 #[test]
 fn damping_by_the_step_does_not_brake_a_rotation() {
-    let (mut scene, plate) = spinning_plate(Beta2::default());
+    let (mut scene, plate) = spinning_plate(Beta2::default(), 1e7);
     let before = scene.body(plate).angular_momentum([0.0; 2]);
     let mut energy = energy_of(&scene);
     for _ in 0..600 {
@@ -486,9 +489,9 @@ fn a_crushed_block_costs_some_factorizations_a_step() {
     findings.check(lowest < 0.55 * 0.55, || {
         format!("it is crushed to {lowest:.3} m only")
     });
-    // Some ten for each of up to eight parts; 24 for each pass of each part without.
+    // Some ten for each of up to thirty-two parts, with the folds held open by their guards; 24 for each pass of each part without.
     let most = onlooker.most_from(0).n_factorizations;
-    findings.check(most < 150, || format!("{most} factorizations in a step"));
+    findings.check(most < 500, || format!("{most} factorizations in a step"));
     findings.report();
 }
 

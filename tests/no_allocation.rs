@@ -328,7 +328,10 @@ fn explicit_steps_allocate_nothing() -> Result<(), BuildError> {
             .density(1000.0)
             .rayleigh(1e-4)
             .rayleigh_mass(5.0);
-        let body = block().material(soft).contact_inertia(inertia);
+        let body = block()
+            .small_strain()
+            .material(soft)
+            .contact_inertia(inertia);
         warm.with(body)?
             .with_box([0.2, 0.1], [0.5, 1.101])
             .assert_quiet("explicit", 6000, 5);

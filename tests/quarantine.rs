@@ -24,6 +24,36 @@ fn assert_all_finite(scene: &Scene) {
 }
 
 #[test]
+fn what_is_overloaded_is_sick_though_pins_and_contacts_hold_it() {
+    for is_pinned in [false, true] {
+        for is_large in [false, true] {
+            let mut scene = Scene::new(1.0 / 60.0);
+            scene.ground(0.5);
+            let sick = block(0.0, 0.0);
+            let sick = match is_large {
+                true => sick.large_strain(),
+                false => sick.small_strain(),
+            };
+            let sick = scene.flexible(match is_pinned {
+                true => sick.pin_where(|[_, y]| y < 1e-9, Pin::both()),
+                false => sick,
+            });
+            let ball = RigidBodyBuilder::dynamic().translation(vec2(0.5, 1.25));
+            scene.rigid(ball, ColliderBuilder::ball(real(0.25)).density(real(500.0)));
+            scene.steps(10);
+            let top = scene.body(sick).n_nodes() - 2;
+            scene.bodies[sick]
+                .set_nodal_force(top, [f64::MAX, 0.0])
+                .expect("a finite force");
+            scene.try_step().expect("the world goes on");
+            let gone = scene.report().quarantined_flex_bodies();
+            assert_eq!(gone, [sick], "pinned {is_pinned}, large {is_large}");
+            assert_all_finite(&scene);
+        }
+    }
+}
+
+#[test]
 fn what_rested_on_a_sick_body_falls_and_what_is_far_away_moves_as_if_nothing_had_been() {
     let mut scenes = [Scene::new(1.0 / 60.0), Scene::new(1.0 / 60.0)];
     let mut handles = Vec::new();

@@ -10,6 +10,7 @@ const WIDTH: f64 = 0.04;
 
 fn strip(young: f64) -> FlexBodyBuilder {
     FlexBodyBuilder::rectangle([LENGTH, WIDTH], [80, 1])
+        .small_strain()
         .material(LinearElastic::plane_stress(young, 0.0).density(1000.0))
         .thickness(WIDTH)
 }
@@ -108,6 +109,7 @@ fn what_a_bent_beam_leaves_out_is_half_the_square_of_its_turn() {
         let force = turn * 2.0 * young * width.powi(3) / 12.0 / (length * length);
         let beam = scene.flexible(
             FlexBodyBuilder::rectangle([length, width], [40, 4])
+                .small_strain()
                 .material(
                     LinearElastic::plane_stress(young, 0.0)
                         .density(1000.0)
@@ -175,6 +177,7 @@ fn a_stiff_body_that_turns_round_and_round_is_not_told_of() {
     let mut scene = Scene::in_free_space(1.0 / 60.0);
     let plate = scene.flexible(
         FlexBodyBuilder::rectangle([1.0, 0.5], [8, 4])
+            .small_strain()
             .material(elastic(1e9, 1000.0, 0.0))
             .angvel(5.0),
     );

@@ -9,13 +9,16 @@ use foil2d::pipeline::{Participant, Quality};
 const FACE: f64 = 0.2;
 
 /// A plank of two metres without gravity, on which nothing lies.
-fn plank() -> (Scene, FlexBodyHandle) {
+fn plank(is_large: bool) -> (Scene, FlexBodyHandle) {
     let mut scene = Scene::in_free_space(1.0 / 60.0);
     let body = FlexBodyBuilder::rectangle([2.0, FACE], [20, 2])
         .material(elastic(1e7, 1000.0, 0.0))
         .translation([-1.0, 0.0])
         .pin_where(|[x, _]| !(0.01..1.99).contains(&x), Pin::both());
-    let handle = scene.flexible(body);
+    let handle = scene.flexible(match is_large {
+        true => body.large_strain(),
+        false => body.small_strain(),
+    });
     (scene, handle)
 }
 
@@ -30,8 +33,8 @@ fn depth(scene: &Scene, plank: FlexBodyHandle, colliders: &[ColliderHandle]) -> 
 
 /// A ball of 100 kg at 10 m/s strikes a box of 1 kg that is at rest this far above the plank (m), and touches `n_between` others of its kind
 /// before it; returns the deepest overlap of 30 steps.
-fn deepest_of_blow(above: f64, n_between: usize, sleeps: bool) -> f64 {
-    let (mut scene, plank) = plank();
+fn deepest_of_blow(above: f64, n_between: usize, sleeps: bool, is_large: bool) -> f64 {
+    let (mut scene, plank) = plank(is_large);
     let mut colliders = Vec::new();
     let box_of = |place: f64| {
         let body = RigidBodyBuilder::dynamic().translation(vec2(0.0, place));
@@ -71,11 +74,14 @@ fn deepest_of_blow(above: f64, n_between: usize, sleeps: bool) -> f64 {
 fn what_rests_above_a_plank_is_not_struck_into_it() {
     for above in [0.02, 0.1, 0.2] {
         for n_between in [0, 2] {
-            let deepest = deepest_of_blow(above, n_between, false);
-            assert!(
-                deepest < 1e-5,
-                "{above} m above, {n_between} between: {deepest} m"
-            );
+            // The corners of the box are right over nodes, which a plank that bends moves along it.
+            for (is_large, bound) in [(false, 1e-5), (true, 1e-4)] {
+                let deepest = deepest_of_blow(above, n_between, false, is_large);
+                assert!(
+                    deepest < bound,
+                    "{above} m above, {n_between} between, large {is_large}: {deepest} m"
+                );
+            }
         }
     }
 }
@@ -83,14 +89,14 @@ fn what_rests_above_a_plank_is_not_struck_into_it() {
 /// As above, and all that is struck sleeps.
 #[test]
 fn what_sleeps_above_a_plank_is_not_struck_into_it() {
-    let deepest = deepest_of_blow(0.1, 1, true);
+    let deepest = deepest_of_blow(0.1, 1, true, true);
     assert!(deepest < 1e-5, "{deepest} m");
 }
 
 /// A force of the user's drives a body that is at rest by 0.3 m in a step.
 #[test]
 fn what_a_force_drives_is_met_in_the_same_step() {
-    let (mut scene, plank) = plank();
+    let (mut scene, plank) = plank(true);
     let body = RigidBodyBuilder::dynamic().translation(vec2(0.0, FACE + 0.3));
     let (body, collider) = scene.rigid(body, ColliderBuilder::cuboid(0.1, 0.1).density(25.0));
     scene.try_step().expect("the step can be taken");
@@ -137,7 +143,7 @@ fn what_is_struck_awake_does_not_fall_into_the_sleeper_under_it() {
 /// The motor of a joint gives a body that is at rest all of its speed in one step of rapier's: nobody foresees it, and the report tells of it.
 #[test]
 fn what_a_motor_flings_into_a_plank_is_told() {
-    let (mut scene, plank) = plank();
+    let (mut scene, plank) = plank(true);
     let body = RigidBodyBuilder::dynamic().translation(vec2(0.0, FACE + 0.4));
     let (body, collider) = scene.rigid(body, ColliderBuilder::cuboid(0.1, 0.1).density(25.0));
     let anchor = scene.world.insert_body(RigidBodyBuilder::fixed());

@@ -110,6 +110,7 @@ fn builder(scene: &Scene, kind: CellKind) -> Outcome<FlexBodyBuilder> {
         .density(DENSITY)
         .rayleigh(damping);
     let builder = FlexBodyBuilder::mesh(scene.mesh(kind)?)
+        .small_strain()
         .material(material)
         .translation(scene.origin())
         // Asleep it would cost next to nothing; rapier's soft bodies are timed awake.

@@ -163,6 +163,7 @@ impl Scene {
         let length = self.width() - 0.02;
         let n_cells = (length / (PLANK / 3.0)).round() as usize;
         let plank = FlexBodyBuilder::rectangle([length, PLANK], [n_cells, 3])
+            .small_strain()
             .material(elastic(2e9))
             .friction(0.5)
             .translation([-0.5 * length, -PLANK])
@@ -194,6 +195,7 @@ impl Scene {
         let mut bodies = FlexBodySet::new();
         for (at, turn) in self.places() {
             let block = FlexBodyBuilder::mesh(Self::block()?)
+                .small_strain()
                 .material(elastic(young))
                 .friction(0.5)
                 .rotation(turn)

@@ -55,6 +55,7 @@ fn drag(
         .with_contact(contact);
     scene.ground(FRICTION);
     let block = FlexBodyBuilder::rectangle([1.0, 0.5], [8, 4])
+        .small_strain()
         .material(material().rayleigh(2e-3))
         .friction(FRICTION);
     let block = scene.add(block)?;
@@ -190,6 +191,7 @@ fn drop_disc(way: &Way, speed: f64, sheet: &Sheet) -> Result<Impact, Box<dyn Err
         .with_contact(way.contact);
     scene.ground(FRICTION);
     let disc = FlexBodyBuilder::disc(0.5, 0.0625)
+        .small_strain()
         .material(material())
         .contact_inertia(way.inertia.clone())
         .friction(FRICTION)

@@ -117,6 +117,7 @@ fn cylinder(n: usize, sheet: &Sheet) -> Result<Contact, Box<dyn Error + Send + S
     let material = |young| LinearElastic::plane_strain(young, NU).density(2700.0);
     let is_core = |[x, y]: [f64; 2]| x.hypot(y - RADIUS) < CORE * (1.0 + 1e-9);
     let cylinder = FlexBodyBuilder::mesh(half)
+        .small_strain()
         .material(material(YOUNG[0]))
         .friction(0.0)
         .pin_where(is_core, Pin::both());
@@ -127,6 +128,7 @@ fn cylinder(n: usize, sheet: &Sheet) -> Result<Contact, Box<dyn Error + Send + S
         [graded_both(size, cells, s), -graded(size, cells, 1.0 - t)]
     })?;
     let block = FlexBodyBuilder::mesh(block)
+        .small_strain()
         .material(material(YOUNG[1]))
         .friction(0.0)
         .pin_where(|[_, y]| y < -SIZE * (1.0 - 1e-9), Pin::both());

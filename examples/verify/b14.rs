@@ -131,6 +131,7 @@ fn punch(
         ]
     })?;
     let block = FlexBodyBuilder::mesh(mesh)
+        .small_strain()
         .material(LinearElastic::plane_strain(1e9, 0.3).density(1000.0))
         .friction(0.0)
         .pin_where(|[_, y]| y < -SIZE * (1.0 - 1e-9), Pin::both());

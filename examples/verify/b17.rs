@@ -28,6 +28,7 @@ fn block(
     let mut scene = Scene::new(1.0 / rate, Beta2::default()).with_gravity(0.0, -G * angle.cos());
     scene.ground(mu);
     let builder = FlexBodyBuilder::rectangle([1.0, 0.5], [4, 2])
+        .small_strain()
         .material(
             LinearElastic::plane_stress(1e8, 0.3)
                 .density(1000.0)

@@ -63,6 +63,7 @@ fn accelerations(
 ) -> Result<[f64; 2], Box<dyn Error + Send + Sync>> {
     let mut scene = Scene::new(1.0 / rate, Beta2::default()).with_gravity(0.0, -G * angle.cos());
     let slab = FlexBodyBuilder::rectangle([10.0, 0.5], [100, 3])
+        .small_strain()
         .material(
             LinearElastic::plane_stress(2e11, 0.3)
                 .density(7800.0)

@@ -128,6 +128,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let half = 0.5 * height;
     let nodes = vec![[0.0, 0.0], [1.0, half], [1.0, half + height], [0.0, height]];
     let builder = FlexBodyBuilder::cells(nodes, CellKind::Tri3, &[[0, 1, 2], [0, 2, 3]])
+        .small_strain()
         .material(LinearElastic::plane_stress(SPRING / height, 0.0).density(2.0 * MASS / height))
         .contact_inertia(ContactInertia::Kept)
         .friction(0.3)

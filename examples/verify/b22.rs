@@ -25,11 +25,13 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     for rate in [60.0, 500.0] {
         let mut scene = Scene::new(1.0 / rate, Beta2::default()).with_gravity(0.0, -G);
         let ground = scene.ground(0.5);
-        let block = FlexBodyBuilder::rectangle([1.0, 1.0], [8, 8]).material(
-            LinearElastic::plane_stress(1e11, 0.3)
-                .density(1000.0)
-                .rayleigh(5e-3),
-        );
+        let block = FlexBodyBuilder::rectangle([1.0, 1.0], [8, 8])
+            .small_strain()
+            .material(
+                LinearElastic::plane_stress(1e11, 0.3)
+                    .density(1000.0)
+                    .rayleigh(5e-3),
+            );
         let block = scene.add(block)?;
         let boxes = [(1.1, 0.1, 1.0), (1.5, 0.3, 1e6)].map(|(y, half_height, mass)| {
             let body = RigidBodyBuilder::dynamic()

@@ -23,8 +23,10 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let steel = LinearElastic::plane_strain(2e11, 0.3)
         .density(7800.0)
         .rayleigh(1e-4);
-    let block = |kind| FlexBodyBuilder::rectangle_of([1.0, 0.5], [8, 4], kind);
-    let disc = FlexBodyBuilder::disc(0.3, 0.06).translation([0.0, 0.3]);
+    let block = |kind| FlexBodyBuilder::rectangle_of([1.0, 0.5], [8, 4], kind).small_strain();
+    let disc = FlexBodyBuilder::disc(0.3, 0.06)
+        .small_strain()
+        .translation([0.0, 0.3]);
     let [quads, six_nodes, triangles] =
         [CellKind::Quad4, CellKind::Tri6, CellKind::Tri3].map(block);
     let cases = [

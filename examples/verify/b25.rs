@@ -43,6 +43,7 @@ fn rise(
     // Tip load over deflection, against a quarter of the mass of density 1.
     let mut scene = still((material.young() / (24.0 * 360.0)).sqrt())?;
     let builder = FlexBodyBuilder::mesh(mesh)
+        .small_strain()
         .material(material)
         .contact_inertia(ContactInertia::Kept)
         .pin_where(|[x, _]| x == 0.0, Pin::both());

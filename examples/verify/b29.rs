@@ -49,6 +49,7 @@ fn tip(
     let forces = traction(&mesh, kind, pull.map(|f| f / 0.2), |[x, _]| x > 6.0 - 1e-9);
     let mut scene = still(17.8)?;
     let builder = FlexBodyBuilder::mesh(mesh)
+        .small_strain()
         .material(LinearElastic::plane_stress(1e7, 0.3).density(1.0))
         .thickness(0.1)
         .contact_inertia(ContactInertia::Kept)

@@ -61,6 +61,7 @@ fn bar(
         Mass::Consistent => (MassKind::Consistent, ContactInertia::Kept),
     };
     FlexBodyBuilder::rectangle([LENGTH, height], [n, 1])
+        .small_strain()
         .material(LinearElastic::plane_stress(YOUNG, 0.0).density(DENSITY))
         .thickness(SIDE * SIDE / height)
         .mass_kind(kind)

@@ -37,6 +37,7 @@ fn beam(
 ) -> Result<(FlexBodyBuilder, Mesh), Box<dyn Error + Send + Sync>> {
     let mesh = grid(n, kind, |[s, t]| [s, HEIGHT * t])?;
     let builder = FlexBodyBuilder::mesh(mesh.clone())
+        .small_strain()
         .material(LinearElastic::plane_stress(YOUNG, NU).density(DENSITY))
         .contact_inertia(ContactInertia::Kept)
         .pin_where(|[x, _]| x == 0.0, Pin::both());

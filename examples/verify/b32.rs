@@ -36,6 +36,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
     let mut scene = Scene::new(STEP, Beta2::trapezoidal()).with_gravity(0.0, -G);
     let (width, length) = (0.1, 1.0);
     let builder = FlexBodyBuilder::rectangle([width, length], [2, 10])
+        .small_strain()
         .material(LinearElastic::plane_stress(1e11, 0.3).density(1000.0))
         .mass_kind(MassKind::Consistent)
         .pin_where(|[x, y]| x == 0.5 * width && y == length, Pin::both())

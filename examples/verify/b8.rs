@@ -81,6 +81,7 @@ fn drop_disc(n: usize, sheet: &Sheet) -> Result<Impact, Box<dyn Error + Send + S
         .friction(0.0);
     scene.world.insert_collider(floor, None);
     let disc = FlexBodyBuilder::disc(RADIUS, RADIUS / n as f64)
+        .small_strain()
         .material(LinearElastic::plane_stress(1e6, 0.3).density(1000.0))
         .friction(0.0)
         // A node of every mesh is lowest; it touches at the end of a step.

@@ -55,8 +55,9 @@ fn patch(sheet: &mut Sheet, name: &str, n_lower: usize, n_upper: usize) -> Outco
     })?;
     let is_beside = |[x, y]: [f64; 2]| y == 1.0 && !(1e-6..=1.0 - 1e-6).contains(&x);
     let beside = traction(&mesh, CellKind::Quad4, [0.0, -PRESSURE], is_beside);
-    let lower = block(FlexBodyBuilder::mesh(mesh)).pin_where(|[_, y]| y == 0.0, Pin::both());
-    let upper = block(FlexBodyBuilder::rectangle([1.0, 1.0], [n_upper, n_upper]))
+    let lower =
+        block(FlexBodyBuilder::mesh(mesh).small_strain()).pin_where(|[_, y]| y == 0.0, Pin::both());
+    let upper = block(FlexBodyBuilder::rectangle([1.0, 1.0], [n_upper, n_upper]).small_strain())
         .translation([0.0, 1.0])
         .pin_where(|[_, y]| y == 1.0, Pin::both());
     scene.add(loaded(lower, beside))?;

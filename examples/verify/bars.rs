@@ -127,6 +127,7 @@ pub fn drop_bar(scheme: &Scheme, drop: &Drop) -> Result<Record, Box<dyn Error + 
     };
     let width = LENGTH / drop.n_cells as f64;
     let builder = FlexBodyBuilder::rectangle([width, LENGTH], [1, drop.n_cells])
+        .small_strain()
         .material(LinearElastic::plane_stress(YOUNG, 0.0).density(DENSITY))
         .thickness(SECTION / width)
         .mass_kind(kind)

@@ -117,6 +117,7 @@ fn multiplier_errors(
     let mut scene = Scene::new(0.01, integrator).with_impact(ImpactTreatment::Plain);
     scene.ground(0.0);
     let builder = FlexBodyBuilder::rectangle([1.0, 1.0], [1, 1])
+        .small_strain()
         .material(LinearElastic::plane_stress(1e3, 0.0).density(1.0))
         .contact_inertia(ContactInertia::Kept)
         .pin_where(|[_, y]| y == 1.0, Pin::both())

@@ -33,7 +33,7 @@ impl FlexBodyBuilder {
             })
             .collect();
         check_places(&rest)?;
-        let large = self.large_model(&mesh, &rest, &material)?;
+        let large = self.large_description(&mesh, &rest, &material)?;
         let frame = frame_of(&rest, &is_fixed, large.is_some()).ok_or(BuildError::RotatingPins)?;
         let massless = match large {
             // What the two ends of a step share of its stress lets nodes without mass swing for ever.
@@ -53,9 +53,10 @@ impl FlexBodyBuilder {
                 .collect(),
         })?;
         check_range(&model)?;
+        let large = large.map(FiniteStrainModel::assemble).transpose()?;
         let nodal_force = self.gather_nodal_forces(n_nodes)?;
         let mut body = FlexBody::new(
-            (Arc::new(model), large),
+            (Arc::new(model), large.map(Arc::new)),
             is_fixed,
             frame,
             self.contact,
@@ -67,20 +68,18 @@ impl FlexBodyBuilder {
         Ok(body)
     }
 
-    /// The body of large strain, if it is to be one.
-    fn large_model(
+    /// The body of large strain: unless the user has said otherwise, wherever there is a law and nothing is asked for that such bodies have
+    /// not.
+    fn large_description(
         &self,
         mesh: &Arc<Mesh>,
         rest: &[f64],
         material: &Arc<dyn Material>,
-    ) -> Result<Option<Arc<FiniteStrainModel>>, BuildError> {
-        let is_large = self.is_large.unwrap_or(material.hyperelastic().is_some());
-        if !is_large {
+    ) -> Result<Option<FiniteStrainDescription>, BuildError> {
+        if self.is_large == Some(false) {
             return Ok(None);
         }
-        if self.mass_kind == MassKind::Consistent {
-            return Err(BuildError::LargeConsistent);
-        }
+        let is_asked = self.is_large == Some(true) || material.hyperelastic().is_some();
         let description = FiniteStrainDescription::of_material(
             Arc::clone(mesh),
             rest.to_vec(),
@@ -88,8 +87,16 @@ impl FlexBodyBuilder {
             material.as_ref(),
             self.thickness,
         );
-        let description = description.ok_or(BuildError::NoLargeLaw)?;
-        Ok(Some(Arc::new(FiniteStrainModel::assemble(description)?)))
+        let outcome = match (self.mass_kind, &self.contact_inertia, description) {
+            (MassKind::Consistent, ..) => Err(BuildError::LargeConsistent),
+            (_, ContactInertia::RedistributedAt(_), _) => Err(BuildError::LargeMassless),
+            (.., None) => Err(BuildError::NoLargeLaw),
+            (.., Some(description)) => Ok(Some(description)),
+        };
+        match outcome {
+            Err(_) if !is_asked => Ok(None),
+            outcome => outcome,
+        }
     }
 
     fn check_numbers(&self) -> Result<(), BuildError> {

@@ -140,14 +140,16 @@ impl FlexBodyBuilder {
     /// Makes a body that bends, stretches and folds as far as it likes, of the material's [law for large strains](Material::large_law). Of
     /// [`LinearElastic`](crate::fe::material::LinearElastic) that is the neo-Hookean law which is Hooke's at rest.
     ///
-    /// A [`HyperelasticSolid`](crate::fe::material::hyperelastic::HyperelasticSolid) asks for it by itself. Such a body costs some factorizations a step; its surface
-    /// always carries its mass, and explicit steps refuse it.
+    /// That is the default wherever the material has such a law and neither a consistent mass nor [`ContactInertia::RedistributedAt`] is asked for;
+    /// said, what stands against it is an error. Such a body costs a factorization or some in every step; its surface always carries its mass, and
+    /// explicit steps refuse it.
     pub fn large_strain(mut self) -> Self {
         self.is_large = Some(true);
         self
     }
 
-    /// Makes a body that turns as far as it likes but bends and stretches little, by a hundredth of its lengths or so: the fastest.
+    /// Makes a body that turns as far as it likes but bends and stretches little, by a hundredth of its lengths or so: the fastest, as one
+    /// factorization serves for ever, and the only one of explicit steps, of a consistent mass and of surfaces without mass.
     /// [`StepReport::overbent`](crate::pipeline::StepReport::overbent) tells where it is taken beyond that.
     pub fn small_strain(mut self) -> Self {
         self.is_large = Some(false);

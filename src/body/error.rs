@@ -33,6 +33,11 @@ pub enum BuildError {
         "the masses of a body of large strain are lumped: leave `.mass_kind` at `MassKind::Lumped`, or choose `.small_strain()`"
     )]
     LargeConsistent,
+    /// A body of large strain with nodes that are to have no mass.
+    #[error(
+        "the surface of a body of large strain carries its mass: leave `ContactInertia::RedistributedAt` out, or choose `.small_strain()`"
+    )]
+    LargeMassless,
     /// No material was given.
     #[error(
         "the body has no material: call `.material(LinearElastic::plane_stress(E, nu).density(rho))`"

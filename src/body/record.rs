@@ -95,9 +95,6 @@ impl BodyRecord {
             }
             false => None,
         };
-        if ![0, n_dofs].contains(&state.lasting.len()) {
-            return Err(ModelRecordError::Length("nodal values"));
-        }
         let is_large = large.is_some();
         let frame: Option<Frame> = frame_of(model.rest_positions(), &self.is_fixed, is_large);
         let frame = frame.ok_or(ModelRecordError::Length("pins"))?;

@@ -55,8 +55,6 @@ pub struct FlexState {
     pub rate: Vec<f64>,
     /// Its second rate (m/s²), without hard contact forces.
     pub acceleration: Vec<f64>,
-    /// Of a body of large strain the contact forces that act on into the next step (N); empty for others, whose accelerations hold them.
-    pub lasting: Vec<f64>,
     /// Torque of all forces about the centre at the end of the step (N m).
     pub torque: f64,
     /// Kinetic energy (J).
@@ -79,7 +77,6 @@ impl FlexState {
             displacement: zeros.clone(),
             rate: zeros.clone(),
             acceleration: zeros,
-            lasting: Vec::new(),
             torque: 0.0,
             kinetic_energy: 0.0,
             elastic_energy: 0.0,

@@ -273,8 +273,7 @@ impl Gatherer {
         if !is_held_motion(&motion) || !is_held_load(&load) {
             return Err(GatherError::RigidBody(handle));
         }
-        let Step { dt, weights } = settings.step;
-        let block = RigidBlock::free(motion, acceleration, &load, weights, dt);
+        let block = RigidBlock::free(motion, acceleration, &load, &settings.step);
         self.push_rigid(block, Some(handle), island);
         self.bodies.push((island.blocks.len() - 1, handle));
         Ok(())

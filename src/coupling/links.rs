@@ -86,7 +86,7 @@ impl LinkBook {
         }
         self.borrowed.take(claims, &self.pushes, sets);
         self.push_left_ones(sets);
-        let late = step.dt - step.weights.b1;
+        let late = step.late;
         for push in &self.pushes {
             let before = self.last.get(&push.handle).copied().unwrap_or_default();
             let force: [f64; 3] =
@@ -154,7 +154,7 @@ impl Gatherer {
         settings: &GatherSettings,
         sets: &RapierSets<'_>,
     ) -> Option<RigidBlock> {
-        let Step { dt, weights } = settings.step;
+        let Step { dt, weights, .. } = settings.step;
         let block = prescribed_block(sets.bodies.get(handle)?, dt, settings.span);
         if is_moving_link(sets, handle) {
             let start = link_motion(handle, *block.start(), sets);
@@ -304,8 +304,10 @@ struct Foreseen {
 
 impl Foreseen {
     fn write(&self, block: &mut RigidBlock, step: Step, pace: Pace) {
-        let Step { dt, weights } = step;
-        let gained = dt * self.acceleration + (dt - weights.b1) * self.own;
+        let Step {
+            dt, weights, late, ..
+        } = step;
+        let gained = dt * self.acceleration + late * self.own;
         let moved = dt * (self.start + pace.share * gained);
         let end = self.start + gained;
         let start = block.start();

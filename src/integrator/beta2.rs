@@ -39,7 +39,7 @@ pub enum IntegratorError {
     ConsistentMass,
     /// The member has `β0 = 0` and the body is one of large strain.
     #[error(
-        "beta0 is 0 and the material is one of large strain, whose steps are implicit: choose beta0 > 0, or a `LinearElastic` material"
+        "beta0 is 0 and the body is one of large strain, whose steps are implicit: choose beta0 > 0, or `FlexBodyBuilder::small_strain()` and a `LinearElastic` material"
     )]
     LargeStrain,
     /// The member has `β0 = 0`, for which the second row of (C.5) vanishes.
@@ -56,6 +56,16 @@ pub struct Weights {
     pub b0: f64,
     /// `dt β1`, the velocity reached per unit increment of acceleration (s).
     pub b1: f64,
+}
+
+impl Weights {
+    /// Those of the member `β0 = β1 = 1`: forces act wholly, and evenly, within the step that finds them, and stored accelerations cancel out.
+    pub fn within(dt: f64) -> Self {
+        Self {
+            b0: 0.5 * dt * dt,
+            b1: dt,
+        }
+    }
 }
 
 /// A member of the Beta-2 family: implicit with `β0 > 0`, explicit with `β0 = 0`.
@@ -174,6 +184,12 @@ impl Beta2 {
     /// The parameter β1.
     pub const fn beta1(&self) -> f64 {
         self.beta1
+    }
+
+    /// `χ` of the stress that makes vibrations of large strain decay as this member does those of small strain: with `β0 = 2/(1 + ρ)²` it is
+    /// `(1 - ρ)/(1 + ρ)`.
+    pub fn decay(&self) -> f64 {
+        ((2.0 * self.beta0).sqrt() - 1.0).max(0.0)
     }
 
     /// Whether `b0 = 0`: no effective stiffness, and no position that contact forces of the step could correct.

@@ -52,10 +52,10 @@ impl Island {
         works.sum()
     }
 
-    /// Kinetic energy that the loads would give to the blocks at rest if nothing held them (J).
+    /// Kinetic energy that the loads would give to the blocks at rest if nothing held them, and what energies are not known by (J).
     pub(super) fn load_energy(&self) -> f64 {
         let energies = self.blocks.iter().map(|block| match block {
-            Block::Flex(block) => block.load_energy(),
+            Block::Flex(block) => block.load_energy() + block.rounding_energy(),
             Block::Rigid(block) => block.load_energy(),
         });
         energies.sum()

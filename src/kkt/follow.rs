@@ -29,6 +29,9 @@ const MOST_STOPS: usize = 20;
 /// Share of the margin within which the laws hold where the contacts are many (-): a thousandth moves no force that counts.
 const LARGE_TOLERANCE: f64 = 1e-3;
 
+/// The same where bodies of large strain find their equilibrium to a residual (-).
+const CURVED_TOLERANCE: f64 = 1e-6;
+
 /// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
 const PASSES_PER_ITERATION: usize = 2;
 
@@ -198,8 +201,10 @@ impl Island {
     fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
         if is_eased {
             CLOSE_ENOUGH * self.path.least_margin()
-        } else if self.has_large() || self.is_sparse(2 * self.contacts.len() + self.ties.len()) {
+        } else if self.is_sparse(2 * self.contacts.len() + self.ties.len()) {
             tolerance.max(LARGE_TOLERANCE * self.path.least_margin())
+        } else if self.has_large() {
+            tolerance.max(CURVED_TOLERANCE * self.path.least_margin())
         } else {
             tolerance
         }

@@ -318,7 +318,7 @@ impl Island {
         } else {
             finished?;
         }
-        self.settle_damping();
+        self.settle_damping(settings);
         let joint_work = self.joint_work(settings);
         let allowance = loads + joint_work;
         summary.work = self.actual_work(settings) + joint_work;

@@ -3,11 +3,14 @@
 //! Where joints leave two bodies no relative motion, forces of any size at their contacts change nothing, and rounding decides: of two welded
 //! boxes in a tower 10⁹ N were found, and 10¹¹ m/s² in the stored accelerations. Such contacts are left out of the problem; the joint keeps
 //! the bodies where they are.
+//!
+//! Whether there is such a motion is asked of joints that are closed: anchors that are apart, as they are within a step, would give the
+//! motion of their distance.
 
 use super::island::Island;
 use crate::constraint::contact::Kinematics;
-use crate::constraint::joint::{JointLaw, unit_wrench};
-use crate::math::cross;
+use crate::constraint::joint::{JointGrip, JointLaw, unit_wrench};
+use crate::math::{Vec2, cross};
 use crate::system::{Block, Response};
 
 /// Share of its own mobility below which a row is held by others already (-): exact rows leave rounding, and what moves at all moves by levers
@@ -26,6 +29,7 @@ impl Island {
         let mut bodies = [None; 2];
         // A force along the normal, one across it, and a couple: all that can be between two bodies.
         let mut between = [Pair::default(); 3];
+        let point = self.middle(row.attachments().iter().map(|a| (a.block, a.grip.lever)));
         for a in row.attachments() {
             let Block::Rigid(block) = &self.blocks[a.block] else {
                 return false;
@@ -42,9 +46,10 @@ impl Island {
             };
             bodies[slot] = Some(a.block);
             let forces = [row.normal, row.tangent()].map(|along| a.weight * along);
+            let lever = point - self.blocks[a.block].centre();
             let wrenches = [
-                [forces[0].x, forces[0].y, cross(a.grip.lever, forces[0])],
-                [forces[1].x, forces[1].y, cross(a.grip.lever, forces[1])],
+                [forces[0].x, forces[0].y, cross(lever, forces[0])],
+                [forces[1].x, forces[1].y, cross(lever, forces[1])],
                 [0.0, 0.0, a.weight],
             ];
             for (pair, wrench) in between.iter_mut().zip(wrenches) {
@@ -92,14 +97,25 @@ impl Island {
         (left > DEPENDENT * whole).then(|| wrench.map(|body| body.map(|value| unit * value)))
     }
 
-    /// The wrench of a joint row on two bodies; `None` if it holds anything else that moves.
+    /// The middle of places on blocks, which levers lead to from their centres (m).
+    fn middle(&self, levers: impl ExactSizeIterator<Item = (usize, Vec2)>) -> Vec2 {
+        let n = levers.len().max(1) as f64;
+        let places = levers.map(|(block, lever)| self.blocks[block].centre() + lever);
+        places.sum::<Vec2>() / n
+    }
+
+    /// The wrench of a joint row on two bodies once it is closed; `None` if it holds anything else that moves.
     fn joint_wrench(&self, tie: usize, bodies: &[Option<usize>; 2]) -> Option<Pair> {
         let tie = &self.ties[tie];
         let is_turn = tie.row.measure.is_turn();
         let mut sum = Pair::default();
-        for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {
+        let grips = &self.joint_grips[tie.row.grips.0..tie.row.grips.1];
+        let point = self.middle(grips.iter().map(|grip| (grip.block, grip.lever)));
+        for grip in grips {
             if let Some(slot) = bodies.iter().position(|body| *body == Some(grip.block)) {
-                let wrench = unit_wrench(grip, tie.direction, is_turn);
+                let lever = point - self.blocks[grip.block].centre();
+                let closed = JointGrip { lever, ..*grip };
+                let wrench = unit_wrench(&closed, tie.direction, is_turn);
                 for (sum, value) in sum[slot].iter_mut().zip(wrench) {
                     *sum += value;
                 }

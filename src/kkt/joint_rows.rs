@@ -382,16 +382,22 @@ fn resolve(
         },
         JointLaw::Spring(spring) => {
             let spring = spring.absolute(mobility);
-            resolve_spring(spring, is_hard, (start, mobility, scale), settings.dt)
+            let is_mean = is_hard || settings.b1 == settings.dt;
+            resolve_spring(
+                spring,
+                (is_hard, is_mean),
+                (start, mobility, scale),
+                settings.dt,
+            )
         }
     }
 }
 
-/// A spring that the step resolves acts with its mean force, `q` in the middle of the step; others, and those of flexible
-/// blocks, with that of the end.
+/// A spring that the step resolves acts with its mean force, `q` in the middle of the step, where multipliers act wholly within the step
+/// or on rigid blocks only; others with that of the end.
 fn resolve_spring(
     spring: Spring,
-    is_hard: bool,
+    (is_hard, is_mean): (bool, bool),
     (start, mobility, scale): (f64, f64, f64),
     dt: f64,
 ) -> Resolved {
@@ -404,7 +410,7 @@ fn resolve_spring(
         ..
     } = spring;
     let sampling = mobility * (0.25 * dt * dt * k + 0.5 * dt * c);
-    let is_resolved = is_hard && sampling <= 1.0;
+    let is_resolved = is_mean && sampling <= 1.0;
     let share = if is_resolved { 0.5 } else { 1.0 };
     let total = share * k + c / dt;
     let held = k * (rest - (1.0 - share) * start) + c * (start / dt + rate);

@@ -354,8 +354,17 @@ impl Island {
         Ok(())
     }
 
-    /// Lets the damping of rigid blocks in joints know the velocities that the joints have left.
-    pub(super) fn settle_damping(&mut self) {
+    /// Lets the damping of rigid blocks in joints know the velocities that the joints have left; that of all, what contacts have left, where
+    /// multipliers act wholly within the step.
+    pub(super) fn settle_damping(&mut self, settings: &SolveSettings) {
+        if settings.b1 == settings.dt {
+            for block in &mut self.blocks {
+                if let Block::Rigid(block) = block {
+                    block.settle_damping();
+                }
+            }
+            return;
+        }
         if self.ties.is_empty() {
             return;
         }

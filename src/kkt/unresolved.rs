@@ -90,6 +90,7 @@ mod tests {
             .density(density)
             .rayleigh(rayleigh);
         let plate = FlexBodyBuilder::rectangle([1.0, 0.8], [8, 6])
+            .small_strain()
             .material(material)
             .pin_where(|[_, y]| y < 1e-9, Pin::both())
             .build();
@@ -98,10 +99,7 @@ mod tests {
         };
         let fixed = body.fixed_dofs().to_vec();
         let mut block = FlexBlock::new(Arc::clone(body.model()), fixed, body.frame());
-        let step = Step {
-            dt: DT,
-            weights: Beta2::default().weights(DT),
-        };
+        let step = Step::new(&Beta2::default(), DT);
         let load = FlexLoad {
             force: body.nodal_force(),
             gravity: Vec2::zeros(),

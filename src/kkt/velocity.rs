@@ -35,8 +35,11 @@ impl Island {
         if !self.impact_rows(settings)? {
             return Ok(());
         }
-        // The accelerations do not depend on these impulses: one substitution answers both.
-        self.settle_accelerations(settings)?;
+        // The accelerations do not depend on these impulses: one substitution answers both. Where forces act wholly within the step, none
+        // goes on.
+        if settings.b1 != settings.dt {
+            self.settle_accelerations(settings)?;
+        }
         self.respond();
         self.add_to_flexible(Response::Velocity, 1.0);
         self.add_to_flexible(Response::Acceleration, 1.0);

@@ -51,10 +51,7 @@ impl FlexPipeline {
         if !is_held(gravity.x) || !is_held(gravity.y) {
             return Err(StepError::Gravity(gravity.into()));
         }
-        Ok(Step {
-            dt,
-            weights: self.integrator().weights(dt),
-        })
+        Ok(Step::new(&self.integrator(), dt))
     }
 
     /// Refuses colliders that rapier cannot step, before anything is touched.
@@ -119,7 +116,10 @@ impl FlexPipeline {
     pub(super) fn check_finite(&self, flex_bodies: &FlexBodySet) -> Result<(), StepError> {
         for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
             if let (Block::Flex(block), Some(index)) = (block, index) {
-                let is_finite = are_held(block.positions()) && are_held(block.velocities());
+                // Beside a load beyond all measure any end of a body of large strain is one.
+                let is_found = !(block.is_large() && block.is_overloaded());
+                let is_finite =
+                    is_found && are_held(block.positions()) && are_held(block.velocities());
                 if let (false, Some((handle, _))) = (is_finite, flex_bodies.at_index(*index)) {
                     return Err(StepError::NotFinite(
                         self.overloaded(flex_bodies).unwrap_or(handle),

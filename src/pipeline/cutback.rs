@@ -75,11 +75,7 @@ impl FlexPipeline {
         let owes_more = -reserve > share * summary.brought() + (-before).max(0.0);
         let is_coarse = owes_more && !summary.is_parting;
         if self.may_be_cut(step, n_cuts) && (is_coarse || summary.quality() != Quality::Solved) {
-            let dt = 0.5 * step.dt;
-            let half = Step {
-                dt,
-                weights: self.integrator().weights(dt),
-            };
+            let half = step.halved(&self.integrator());
             self.gatherer.under_way.keep(&self.island, flex_bodies);
             for part in span.halves() {
                 self.gatherer.give_back(&mut self.island);

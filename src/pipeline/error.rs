@@ -142,6 +142,11 @@ pub enum StepError {
 impl From<GatherError> for StepError {
     fn from(error: GatherError) -> Self {
         match error {
+            // The matrix of a body of large strain depends on where the body is.
+            GatherError::Factorization {
+                body,
+                source: CholeskyError::NotPositiveDefinite { pivot, .. },
+            } if !pivot.is_finite() => Self::NotFinite(body),
             GatherError::Factorization { body, source } => Self::Factorization { body, source },
             GatherError::RigidBody(handle) => Self::RigidBody(handle),
             GatherError::Joint(handle) => Self::Joint(handle),

@@ -52,7 +52,8 @@ pub struct FlexPipeline {
     pub(super) landings: Vec<Landing>,
     pub(super) reserves: Vec<(u32, f64)>,
     pub(super) joint_impulses: Vec<JointImpulse>,
-    pub(super) components: Vec<usize>,
+    /// Components with flexible bodies, and whether some of these are of large strain.
+    pub(super) components: Vec<(usize, bool)>,
     pub(super) events: EventBook,
     pub(super) report: StepReport,
     /// What nobody has claimed and rapier's own step has left in a flexible body.

@@ -75,13 +75,20 @@ impl FlexPipeline {
         self.components.clear();
         for flex in 0..self.claims.flex.len() {
             let component = self.claims.component_of_flex(flex);
-            self.components.push(component);
+            let body = flex_bodies.at_index(self.claims.flex[flex].index);
+            let is_large = body.is_some_and(|(_, body)| body.large().is_some());
+            self.components.push((component, is_large));
         }
         self.components.sort_unstable();
-        self.components.dedup();
+        self.components.dedup_by(|next, kept| {
+            kept.1 |= next.1 && next.0 == kept.0;
+            next.0 == kept.0
+        });
         let factorizations = self.gatherer.n_factorizations();
         for slot in 0..self.components.len() {
-            let outcome = self.solve_island(self.components[slot], step, sets, flex_bodies, clock);
+            let (component, has_large) = self.components[slot];
+            let step = if has_large { step.with_large() } else { step };
+            let outcome = self.solve_island(component, step, sets, flex_bodies, clock);
             if outcome.is_err() {
                 // Buffers and blocks may hold numbers that are not finite: they are built anew.
                 self.island = Island::default();

@@ -148,10 +148,7 @@ impl FlexBlock {
             mass_factor: None,
             n_factorizations: 0,
             n_solves: 0,
-            step: Step {
-                dt: 0.0,
-                weights: Weights::default(),
-            },
+            step: Step::default(),
             start_position: zeros(),
             start_velocity: zeros(),
             start_frame: FrameMotion::default(),

@@ -101,22 +101,12 @@ impl FlexBlock {
     /// Adds a multiple of a response to the end velocity or acceleration.
     pub fn add_response(&mut self, of: Response, scale: f64) {
         let slot = channel(of);
-        if !self.impulses[slot].is_used {
+        // Bodies of large strain store no forces.
+        if !self.impulses[slot].is_used || self.is_large() && of == Response::Acceleration {
             return;
         }
         let mean = scale * self.mean_response(slot);
         let impulses = &self.impulses[slot];
-        if let Some(large) = &mut self.large
-            && of == Response::Acceleration
-        {
-            let changes = impulses.response.iter().zip(&impulses.nodal);
-            let sums = large.acceleration.iter_mut().zip(&mut large.end_lasting);
-            for ((acceleration, lasting), (response, force)) in sums.zip(changes) {
-                *acceleration += scale * response;
-                *lasting += scale * force;
-            }
-            return;
-        }
         let target = if of == Response::Acceleration {
             self.torque += scale * impulses.moment;
             self.shift += mean;
@@ -137,12 +127,8 @@ impl FlexBlock {
         }
     }
 
-    /// Scales the responses of a body of large strain, and moves that of velocities so that momentum gains exactly what the impulses give.
+    /// Moves the response of a body of large strain so that momentum gains exactly what the impulses give.
     fn finish_large_velocity(&mut self) {
-        let scale = self.velocity_scale();
-        for impulses in self.impulses.iter_mut().filter(|one| one.is_used) {
-            impulses.response.iter_mut().for_each(|x| *x *= scale);
-        }
         if !self.impulses[0].is_used || self.kind != Frame::Free {
             return;
         }

@@ -374,10 +374,7 @@ impl FlexBlock {
         }
         let mut local = self.compliance.get(at, from);
         if self.is_large() {
-            return match of {
-                Response::Position => local,
-                _ => self.velocity_scale() * local,
-            };
+            return local;
         }
         if let Some(surface) = self
             .surface

@@ -1,18 +1,18 @@
 //! Bodies of large strain: world coordinates, energy–momentum steps, Newton's iteration on a factor that is renewed where it must be.
 //!
 //! ```text
-//! x' = x + dt/2 (v + v'),    M (v' - v)/dt + α M (x' - x)/dt + f_int(x, x') = f + (1 - β1) g + β1 Gᵀp
+//! x' = x + dt/2 (v + v'),    M (v' - v)/dt + α M (x' - x)/dt + f_int(x, x') = f + Gᵀp
 //! ```
 //!
-//! with the conserving stress between both ends (see [`finite_strain`](crate::fe::finite_strain)) and `g` the contact forces that the last
-//! step has left: in Beta-2 a multiplier acts with `β1` in its step and with `1 - β1` in the next, on whatever it presses. The matrix is
+//! with the conserving stress between both ends (see [`finite_strain`](crate::fe::finite_strain)). Multipliers act wholly within their step,
+//! see [`Step::with_large`]. The matrix is
 //!
 //! ```text
-//! A = b0/β1 (2/dt² M + α/dt M + ∂f_int/∂x'),    ∂x'/∂p = b0 A⁻¹ Gᵀ,    ∂v'/∂p = 2/dt ∂x'/∂p
+//! A = dt²/2 (2/dt² M + α/dt M + ∂f_int/∂x'),    ∂x'/∂p = dt²/2 A⁻¹ Gᵀ,    ∂v'/∂p = 2/dt ∂x'/∂p
 //! ```
 //!
-//! so that positions answer forces as those of other blocks do, `b0 A⁻¹`. With the trapezoidal rule and small strains it is the `A` of a
-//! linear body. Vibrations decay as the member's spectral radius says, see [`decay_of`].
+//! so that positions answer forces as those of other blocks do, `b0 A⁻¹`, and velocities impulses, `A⁻¹`. Vibrations decay as the member's
+//! spectral radius says, see [`Beta2::decay`](crate::integrator::Beta2::decay).
 
 use super::compliance::Compliance;
 use super::explicit_block::Explicit;
@@ -25,11 +25,14 @@ use crate::fe::model::Model;
 use crate::large::{Equation, Evaluation, Inertia, largest_row_sum};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
-use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, rotation, set_node_vec};
+use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
 use std::sync::Arc;
 
 /// Residual over the largest load or inertia force that ends the iterations (-): momentum is balanced beyond that by a shift of the whole body.
 const TOLERANCE: f64 = 1e-8;
+
+/// Turn that the tolerance of the iterations may leave (rad).
+const MOST_TURN: f64 = 1e-4;
 
 /// A residual of which an iteration leaves more than this asks for a new factor.
 const SLOWEST: f64 = 0.25;
@@ -54,20 +57,17 @@ pub(super) struct Large {
     tangent: BlockMatrix,
     /// `x + dt v` (m).
     coast: Vec<f64>,
-    /// Mean force over the step: applied, of contacts, and what these have left of the last step (N).
+    /// Mean force over the step, applied and of contacts (N).
     load: Vec<f64>,
-    residual: Vec<f64>,
+    pub(super) residual: Vec<f64>,
     /// Mean force that holds the held dofs (N).
     pub(super) reaction: Vec<f64>,
-    /// Contact forces that act on from the last step, and from this one (N).
-    pub(super) lasting: Vec<f64>,
-    pub(super) end_lasting: Vec<f64>,
-    /// Acceleration at the end of the step (m/s²).
+    /// Mean acceleration over the step (m/s²).
     pub(super) acceleration: Vec<f64>,
     /// The part of the velocities that the step resolves, at its beginning and at its end (m/s).
     pub(super) start_resolved: Vec<f64>,
     pub(super) resolved: Vec<f64>,
-    row_sum: f64,
+    pub(super) row_sum: f64,
     /// Whether the tangent is indefinite where the step begins: under the same forces the body may end it in more ways than one.
     is_ambiguous: bool,
     /// Whether what is not found without detours need not be found: the step is cut then.
@@ -81,15 +81,9 @@ struct Factored {
     is_definite: bool,
 }
 
-/// `χ` of the stress that makes vibrations decay as a member of Beta-2 does: with `β0 = 2/(1 + ρ)²` it is `(1 - ρ)/(1 + ρ)`.
-fn decay_of(step: &Step) -> f64 {
-    let beta0 = 2.0 * step.weights.b0 / (step.dt * step.dt);
-    ((2.0 * beta0).sqrt() - 1.0).max(0.0)
-}
-
 /// The decay of the integrator, and the viscosity of the material as one.
 pub(super) fn total_decay(step: &Step, damping: Rayleigh) -> f64 {
-    decay_of(step) + 2.0 * damping.stiffness / step.dt
+    step.decay + 2.0 * damping.stiffness / step.dt
 }
 
 /// The equation of a step under `load` from `start` by way of `coast`.
@@ -117,7 +111,13 @@ fn equation_of<'a>(
     }
 }
 
+/// Share of the largest row of a matrix that is added to its diagonal where rounding has left it indefinite (-).
+const SHIFT: f64 = 1e-14;
+
 /// Factorizes the tangent at the deformation last evaluated, or its definite part where it is not definite.
+///
+/// Cells that are all but flat are so stiff that rounding may leave their definite part indefinite: more and more is added to its diagonal
+/// then, which makes the iteration slower, not wrong.
 fn factorize(
     equation: &Equation<'_>,
     scale: f64,
@@ -131,7 +131,16 @@ fn factorize(
     if !is_definite {
         equation.assemble(Linearization::Definite, deformation, tangent);
         effective.assign_scaled(scale, tangent);
-        factor.factorize(effective)?;
+        let mut outcome = factor.factorize(effective);
+        let mut shift = SHIFT * scale * largest_row_sum(tangent);
+        while outcome.is_err() && shift.is_finite() && shift > 0.0 {
+            for node in 0..equation.model.n_nodes() {
+                effective.add_diagonal(node, [shift; 2]);
+            }
+            outcome = factor.factorize(effective);
+            shift *= 1e2;
+        }
+        outcome?;
     }
     Ok(Factored {
         row_sum: largest_row_sum(tangent),
@@ -159,8 +168,6 @@ impl FlexBlock {
             load: zeros(),
             residual: zeros(),
             reaction: zeros(),
-            lasting: zeros(),
-            end_lasting: zeros(),
             acceleration: zeros(),
             start_resolved: zeros(),
             resolved: zeros(),
@@ -189,17 +196,6 @@ impl FlexBlock {
         }
     }
 
-    /// `β1`, the share of a multiplier that acts within the step.
-    pub(super) fn share(&self) -> f64 {
-        self.step.weights.b1 / self.step.dt
-    }
-
-    /// What velocities answer over `A⁻¹`, `β0/β1`: one for the trapezoidal rule.
-    pub(super) fn velocity_scale(&self) -> f64 {
-        let step = &self.step;
-        2.0 * step.weights.b0 / (step.dt * step.weights.b1)
-    }
-
     /// Begins a step at the committed state, which has been taken over; the iterate is where the last step's acceleration leads.
     pub(super) fn predict_large(&mut self, state: &FlexState) -> Result<(), CholeskyError> {
         let dt = self.step.dt;
@@ -212,10 +208,6 @@ impl FlexBlock {
             return Ok(());
         };
         large.model.begin(&state.position, &mut large.deformation);
-        match state.lasting.is_empty() {
-            true => large.lasting.fill(0.0),
-            false => large.lasting.copy_from_slice(&state.lasting),
-        }
         for (dof, coast) in large.coast.iter_mut().enumerate() {
             *coast = state.position[dof] + dt * state.velocity[dof];
         }
@@ -253,7 +245,7 @@ impl FlexBlock {
             [&large.load, &self.start_position, &large.coast],
             &self.is_fixed,
         );
-        let scale = self.step.weights.b0 / self.share();
+        let scale = self.step.weights.b0;
         let matrices = (&mut large.tangent, &mut self.effective);
         let deformation = &large.deformation;
         self.n_factorizations += 1;
@@ -281,6 +273,11 @@ impl FlexBlock {
             return 0.0;
         };
         let left = self.iterate_large(&mut large);
+        // Pins move at the mean velocity of their step, and what they hold gets that velocity in it, not twice as much.
+        for &dof in &self.fixed_dofs {
+            let late = (self.position[dof] - large.coast[dof]) / (self.step.dt * self.step.dt);
+            large.reaction[dof] -= self.arms.node_mass[dof / 2] * late;
+        }
         if self.kind == Frame::Free && left.is_finite() {
             self.balance_momentum(&large);
         }
@@ -293,12 +290,9 @@ impl FlexBlock {
         for &dof in &self.fixed_dofs {
             self.position[dof] = self.model.rest_positions()[dof] + self.prescribed[dof];
         }
-        let share = self.share();
-        let scale = self.step.weights.b0 / share;
+        let scale = self.step.weights.b0;
         for (dof, load) in large.load.iter_mut().enumerate() {
-            *load = self.force[dof]
-                + (1.0 - share) * large.lasting[dof]
-                + share * self.contact_force[dof];
+            *load = self.force[dof] + self.contact_force[dof];
         }
         let Large {
             model,
@@ -326,7 +320,9 @@ impl FlexBlock {
         let (mut n_cuts, mut n_iterations, mut n_guesses) = (0, 0, 0);
         loop {
             let outcome = equation.evaluate(&self.position, deformation, residual, reaction);
-            let bound = last.map_or(f64::INFINITY, |last| MOST_GROWTH * last.norm);
+            // Forces that rounding of the positions makes, which may grow and shrink as they like.
+            let rounding = f64::EPSILON * *row_sum * self.extent();
+            let bound = last.map_or(f64::INFINITY, |last| MOST_GROWTH * last.norm.max(rounding));
             let accepted = outcome
                 .ok()
                 .filter(|now| now.norm.is_finite() && now.norm <= bound);
@@ -359,9 +355,7 @@ impl FlexBlock {
                 continue;
             };
             let is_slow = last.is_some_and(|last| now.norm > SLOWEST * last.norm);
-            let extent = self.extent.max(self.frame.centre.amax());
-            let has_ended = now.norm <= TOLERANCE * now.scale
-                || is_slow && now.norm <= f64::EPSILON * *row_sum * extent;
+            let has_ended = now.norm <= TOLERANCE * now.scale || is_slow && now.norm <= rounding;
             if n_iterations == MOST_ITERATIONS && !has_ended {
                 let moved = self.local.iter().fold(0.0f64, |most, x| most.max(x.abs()));
                 return moved / self.size;
@@ -399,24 +393,46 @@ impl FlexBlock {
         }
     }
 
-    /// Shifts a free body so that its centre of mass is where the forces bring it, beyond the tolerance of the iterations.
+    /// Shifts and turns a free body so that its centre of mass is where the forces bring it, and its angular momentum what their couple makes
+    /// it, beyond the tolerance of the iterations.
+    ///
+    /// Inner forces have neither a resultant nor, about the middles `(x + x')/2`, a couple.
     fn balance_momentum(&mut self, large: &Large) {
         let dt = self.step.dt;
         let (inertia, drag) = (2.0 / (dt * dt), large.model.damping().mass / dt);
         // About where the iterate is, so that no digits are lost far from the origin.
-        let mut missing = Vec2::zeros();
-        for (node, mass) in self.arms.node_mass.iter().enumerate() {
-            let x = node_vec(&self.position, node);
+        let missing = |node: usize, x: Vec2, mass: f64| {
             let (coast, start) = (
                 node_vec(&large.coast, node),
                 node_vec(&self.start_position, node),
             );
-            missing +=
-                node_vec(&large.load, node) - *mass * (inertia * (x - coast) + drag * (x - start));
+            node_vec(&large.load, node) - mass * (inertia * (x - coast) + drag * (x - start))
+        };
+        let masses = || self.arms.node_mass.iter().enumerate();
+        let lacking =
+            masses().map(|(node, &mass)| missing(node, node_vec(&self.position, node), mass));
+        let shift = lacking.sum::<Vec2>() / (self.arms.mass * (inertia + drag));
+        let (mut first, mut moment) = (Vec2::zeros(), Vec2::zeros());
+        for (node, &mass) in masses() {
+            first += mass * (node_vec(&self.position, node) - self.start_frame.centre);
+            moment += mass * (node_vec(&self.start_position, node) - self.start_frame.centre);
         }
-        let shift = missing / (self.arms.mass * (inertia + drag));
+        let [centre, started] =
+            [first, moment].map(|sum| self.start_frame.centre + sum / self.arms.mass);
+        let (mut couple, mut polar) = (0.0, 0.0);
+        for (node, &mass) in masses() {
+            let x = node_vec(&self.position, node);
+            let (arm, before) = (x - centre, node_vec(&self.start_position, node) - started);
+            let middle = 0.5 * (arm + before);
+            couple += cross(middle, missing(node, x + shift, mass));
+            polar += mass * (inertia + drag) * middle.dot(&arm);
+        }
+        // A body that turns by half a circle within the step has no such middles.
+        let rest = Some(couple / polar).filter(|turn| turn.abs() <= MOST_TURN);
+        let turn = rest.unwrap_or(0.0);
         for node in 0..self.arms.node_mass.len() {
-            add_node_vec(&mut self.position, node, shift);
+            let arm = node_vec(&self.position, node) - centre;
+            add_node_vec(&mut self.position, node, shift + turn * perp(arm));
         }
     }
 }

@@ -22,22 +22,17 @@ impl FlexBlock {
         self.follow_centre();
     }
 
-    /// Writes the part of velocities that the step resolves, `β0/β1 A⁻¹ M v`: what a body of large strain tells a contact.
+    /// Writes the part of velocities that the step resolves, `A⁻¹ M v`: what a body of large strain tells a contact.
     ///
     /// Rigid motion is all in it, of a vibration of frequency ω the share `1/(1 + ω² dt²/4)`. Vibrations that the step does not resolve change the
     /// sign of their velocities in every step, and impulses that stopped those by what the whole body answers would throw it away. Impulses
     /// `P` that bring `G v` so measured to rest change the kinetic energy by at most `-½ v·GᵀW⁻¹G v`, `W = G A⁻¹ Gᵀ`, as `A⁻¹ M A⁻¹ <= A⁻¹`.
     pub(super) fn resolve(&mut self, position: &[f64], velocity: &[f64], resolved: &mut [f64]) {
-        let scale = self.velocity_scale();
         resolved.copy_from_slice(velocity);
         let rigid = self.take_out_rigid(position, resolved);
         for (dof, value) in resolved.iter_mut().enumerate() {
             let mass = self.arms.node_mass[dof / 2];
-            *value *= if self.is_fixed[dof] {
-                0.0
-            } else {
-                scale * mass
-            };
+            *value *= if self.is_fixed[dof] { 0.0 } else { mass };
         }
         self.factor.solve_in_place(resolved);
         self.n_solves += 1;
@@ -91,10 +86,8 @@ impl FlexBlock {
         self.frame.spin = moment / self.inertia;
     }
 
-    /// Writes the acceleration at the end of the step: the mean one, with the forces of its end for the mean ones,
-    /// `ā + β0/β1 (1 - β1) A⁻¹ (Gᵀp - g)`.
+    /// Writes the velocities that the step resolves and their mean acceleration, and damps the others.
     pub(super) fn place_large_acceleration(&mut self) {
-        let (dt, late) = (self.step.dt, (1.0 - self.share()) * self.velocity_scale());
         let Some(mut large) = self.large.take() else {
             return;
         };
@@ -104,44 +97,41 @@ impl FlexBlock {
         );
         self.resolve(&position, &velocity, &mut large.resolved);
         (self.position, self.velocity) = (position, velocity);
-        self.damp_unresolved(&large);
-        large.end_lasting.copy_from_slice(&self.contact_force);
-        let changes = self.contact_force.iter().zip(&large.lasting);
-        let mut has_changed = false;
-        for ((local, (now, before)), is_fixed) in
-            self.local.iter_mut().zip(changes).zip(&self.is_fixed)
-        {
-            *local = if *is_fixed { 0.0 } else { now - before };
-            has_changed |= *local != 0.0;
-        }
-        if has_changed {
-            self.factor.solve_in_place(&mut self.local);
-            self.n_solves += 1;
-        } else {
-            self.local.fill(0.0);
-        }
-        for (dof, acceleration) in large.acceleration.iter_mut().enumerate() {
-            let mean = (large.resolved[dof] - large.start_resolved[dof]) / dt;
-            *acceleration = mean + late * self.local[dof];
+        self.damp_unresolved(&mut large);
+        let pairs = large.resolved.iter().zip(&large.start_resolved);
+        for (acceleration, (now, before)) in large.acceleration.iter_mut().zip(pairs) {
+            *acceleration = (now - before) / self.step.dt;
         }
         self.large = Some(large);
     }
 
-    /// Takes the share `min(χ, 1)` of the velocities that the step does not resolve, and of neither momentum.
+    /// Takes the share `min(χ, 1)` of the velocities that the step does not resolve, `(1 - A⁻¹ M)² v`, and of neither momentum.
     ///
     /// Of the two amplifications of a mode that the step does not resolve, the decay `χ` of the stress damps one; the other goes to -1. What
-    /// is taken of a mode of frequency ω is `χ ω² dt²/4 / (1 + ω² dt²/4)` of its velocity: energy, always, and nothing where `χ` is zero.
-    fn damp_unresolved(&mut self, large: &Large) {
+    /// is taken of a mode of frequency ω is `χ (1 - r)²` of its velocity, `r = 1/(1 + ω² dt²/4)`: energy, always, and nothing where `χ` is zero.
+    /// What the step resolves loses a share of the fourth order of `ω dt` to it, besides the damping that it is said to have.
+    fn damp_unresolved(&mut self, large: &mut Large) {
         let share = total_decay(&self.step, large.model.damping()).min(1.0);
         if share == 0.0 {
             return;
         }
-        for (dof, change) in self.local.iter_mut().enumerate() {
-            *change = share * (large.resolved[dof] - self.velocity[dof]);
+        let [position, mut fast] = [&mut self.position, &mut self.local].map(std::mem::take);
+        for (dof, fast) in fast.iter_mut().enumerate() {
+            *fast = self.velocity[dof] - large.resolved[dof];
         }
-        for (velocity, change) in self.velocity.iter_mut().zip(&self.local) {
-            *velocity += change;
+        self.resolve(&position, &fast, &mut large.residual);
+        for (dof, velocity) in self.velocity.iter_mut().enumerate() {
+            *velocity -= share * (fast[dof] - large.residual[dof]);
         }
+        (self.position, self.local) = (position, fast);
+    }
+
+    /// Elastic energy that rounding of the positions may make and take (J): nothing for bodies of small strain, whose displacements are known.
+    pub fn rounding_energy(&self) -> f64 {
+        self.large.as_ref().map_or(0.0, |large| {
+            let rounding = f64::EPSILON * self.extent();
+            0.5 * self.n_dofs() as f64 * large.row_sum * rounding * rounding
+        })
     }
 
     /// Goes back to where the step began.
@@ -168,17 +158,21 @@ impl FlexBlock {
             }
         }
         if let Some(large) = &mut self.large {
-            large.end_lasting.fill(0.0);
             large.acceleration.fill(0.0);
             large.resolved.copy_from_slice(&self.velocity);
         }
         self.follow_centre();
     }
 
-    /// Work of the pins that move, by their mean force over the step (J).
+    /// Work of the pins that move, by their mean force over the step and, of what is at the pins, its mean velocity (J).
     pub(super) fn large_pin_work(&self, large: &Large) -> f64 {
         let arrays = [&large.reaction[..], &self.position, &self.start_position];
-        sum_over(arrays, |[force, end, start]| force * (end - start))
+        let work = sum_over(arrays, |[force, end, start]| force * (end - start));
+        let jumps = self.fixed_dofs.iter().map(|&dof| {
+            let jump = self.velocity[dof] - self.start_velocity[dof];
+            0.5 * self.arms.node_mass[dof / 2] * jump * jump
+        });
+        work - jumps.sum::<f64>()
     }
 
     /// Writes the end of the step over the committed state.
@@ -187,8 +181,6 @@ impl FlexBlock {
         state.elastic_energy = self.end_elastic;
         state.position.copy_from_slice(&self.position);
         state.velocity.copy_from_slice(&self.velocity);
-        state.lasting.resize(self.n_dofs(), 0.0);
-        state.lasting.copy_from_slice(&large.end_lasting);
         state.torque = 0.0;
         state.frame = self.frame;
         state.frame.acceleration = Vec2::zeros();

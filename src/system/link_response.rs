@@ -68,10 +68,10 @@ impl LinkResponse {
         }
     }
 
-    /// Begins with forces of which `b1` (s) acts in this step.
-    pub(super) fn begin(&mut self, wrench: [f64; 3], b1: f64) {
+    /// Begins with forces of which `b1` (s) acts in this step, and whether some of them goes on.
+    pub(super) fn begin(&mut self, wrench: [f64; 3], b1: f64, lasts: bool) {
         self.impulse = wrench.map(|value| b1 * value);
-        self.lasting = wrench;
+        self.lasting = if lasts { wrench } else { [0.0; 3] };
     }
 
     pub(super) fn add_impulse(&mut self, impulse: [f64; 3]) {

@@ -5,6 +5,7 @@ mod restart;
 use super::Response;
 use super::link_response::LinkResponse;
 use super::rigid_motion::RigidMotion;
+use super::step::Step;
 use crate::integrator::Weights;
 use crate::math::{Mat2, Vec2, perp};
 
@@ -26,6 +27,8 @@ pub struct RigidBlock {
     inverse_effective: [f64; 3],
     pub(super) force: [f64; 3],
     weights: Weights,
+    /// How long damping at the end of the step acts (s).
+    slowing: f64,
     pub(super) dt: f64,
     is_prescribed: bool,
     /// How a link of a multibody answers; such a block has no mass of its own.
@@ -70,6 +73,7 @@ impl RigidBlock {
             inverse_effective: [0.0; 3],
             force: [0.0; 3],
             weights: Weights::default(),
+            slowing: 0.0,
             dt: 0.0,
             is_prescribed: true,
             link: None,
@@ -85,9 +89,11 @@ impl RigidBlock {
         start: RigidMotion,
         acceleration: Option<[f64; 3]>,
         load: &RigidLoad,
-        weights: Weights,
-        dt: f64,
+        step: &Step,
     ) -> Self {
+        let Step {
+            dt, weights, own, ..
+        } = *step;
         let dofs_v = [start.velocity.x, start.velocity.y, start.spin];
         let drag_free = std::array::from_fn(|i| {
             load.inverse_mass[i] * load.force[i] - load.damping[i] * dofs_v[i]
@@ -99,15 +105,15 @@ impl RigidBlock {
         let dofs_x = [start.centre.x, start.centre.y, start.angle];
         let (mut x, mut v) = ([0.0; 3], [0.0; 3]);
         for i in 0..3 {
-            let factor = 1.0 / (1.0 + weights.b1 * load.damping[i]);
+            let factor = 1.0 / (1.0 + own.b1 * load.damping[i]);
             inverse_effective[i] = load.inverse_mass[i] * factor;
             let q0 = dofs_x[i] + dt * dofs_v[i] + 0.5 * dt * dt * smooth_start[i];
             let q1 = dofs_v[i] + dt * smooth_start[i];
             let increment = factor
                 * (load.inverse_mass[i] * load.force[i] - smooth_start[i] - load.damping[i] * q1);
             if load.inverse_mass[i] > 0.0 {
-                x[i] = q0 + weights.b0 * increment;
-                v[i] = q1 + weights.b1 * increment;
+                x[i] = q0 + own.b0 * increment;
+                v[i] = q1 + own.b1 * increment;
                 smooth_end[i] = smooth_start[i] + increment;
             } else {
                 // A locked axis keeps its velocity, as in rapier.
@@ -134,6 +140,7 @@ impl RigidBlock {
             inverse_effective,
             force: load.force,
             weights,
+            slowing: own.b1,
             dt,
             is_prescribed: false,
             link: None,
@@ -332,15 +339,18 @@ impl RigidBlock {
     pub fn set_soft_force(&mut self, wrench: [f64; 3]) {
         let change = self.answer(wrench);
         let b1 = self.weights.b1;
+        let lasts = b1 != self.dt;
         if let Some(link) = &mut self.link {
-            link.begin(wrench, b1);
+            link.begin(wrench, b1, lasts);
         }
         self.current.velocity = self.free.velocity + b1 * Vec2::new(change[0], change[1]);
         self.current.spin = self.free.spin + b1 * change[2];
-        for (sum, change) in self.smooth_end.iter_mut().zip(change) {
-            *sum += change;
+        if lasts {
+            for (sum, change) in self.smooth_end.iter_mut().zip(change) {
+                *sum += change;
+            }
+            self.damped_velocity = self.rates();
         }
-        self.damped_velocity = self.rates();
     }
 
     /// Lets damping act on the end velocity as it has become, instead of what it would have been without joints.
@@ -350,9 +360,9 @@ impl RigidBlock {
         }
         for (i, end) in self.rates().into_iter().enumerate() {
             if self.inverse_effective[i] > 0.0 {
-                // inverse / effective = 1 + b1 c
+                // inverse / effective = 1 + slowing c
                 let slowed = self.inverse_mass[i] / self.inverse_effective[i] - 1.0;
-                let damping = slowed / self.weights.b1;
+                let damping = slowed / self.slowing;
                 self.smooth_end[i] -= damping * (end - self.damped_velocity[i]);
             }
         }

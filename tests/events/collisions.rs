@@ -92,6 +92,7 @@ fn a_slow_approach_starts_once_as_with_rapier_alone() {
         scene.fixed(ColliderBuilder::cuboid(5.0, 0.5).translation(vec2(0.0, -0.5)));
         scene.flexible(
             block()
+                .small_strain()
                 .active_events(ActiveEvents::empty())
                 .translation([3.0, 0.0]),
         );

@@ -82,11 +82,16 @@ fn roots(a: f64, b: f64, c: f64) -> Vec<f64> {
 /// Whether a closed line goes round a point: by the edges that a ray to the right of it crosses.
 pub fn encloses(surface: &[P], point: P) -> bool {
     let ends = surface.iter().zip(surface.iter().cycle().skip(1));
-    let is_crossed = |(from, to): &(&P, &P)| {
+    let turns = ends.map(|(from, to)| {
         let rises = [from, to].map(|end| end[1] > point[1]);
-        rises[0] != rises[1] && (cross(sub(**to, **from), sub(point, **from)) > 0.0) == rises[1]
-    };
-    ends.filter(is_crossed).count() % 2 == 1
+        let is_left = cross(sub(*to, *from), sub(point, *from)) > 0.0;
+        match rises {
+            [false, true] if is_left => 1,
+            [true, false] if !is_left => -1,
+            _ => 0,
+        }
+    });
+    turns.sum::<i32>() > 0
 }
 
 /// On which side of the line the point is, by its nearest segment: 1 left, -1 right, 0 if it is nearest to an end and so

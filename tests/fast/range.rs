@@ -123,7 +123,7 @@ impl Shot {
 /// A scene with a shot in it.
 pub struct Range {
     pub shot: Shot,
-    pub scene: Scene,
+    scene: Scene,
     pub sheet: Option<FlexBodyHandle>,
     pub rigid: Option<RigidBodyHandle>,
     pub bullet: Option<FlexBodyHandle>,
@@ -305,11 +305,12 @@ impl Range {
         let mut surface_nets = vec![0; surface_before.len()];
         let [mut is_round, mut was_crushed, mut is_draped] = [false; 3];
         for step in 0..n_steps {
-            let is_overbent = match self.scene.try_step() {
+            let (is_overbent, is_whole) = match self.scene.try_step() {
                 Ok(report) => {
                     outcome.n_held += report.n_held();
                     let mut overbent = report.overbent().iter();
-                    overbent.any(|one| Some(one.body) == self.bullet)
+                    let is_overbent = overbent.any(|one| Some(one.body) == self.bullet);
+                    (is_overbent, report.n_parts() <= 1)
                 }
                 Err(error) => {
                     outcome.error = Some(format!("step {step}: {error}"));
@@ -321,7 +322,12 @@ impl Range {
                 return outcome;
             }
             let (mut after, surface) = (self.frame(), self.surface());
-            net += net_crossings(&before, &after);
+            // Within a step in parts a free sheet may turn round what hit it, on ways that are not straight.
+            let is_straight = is_whole || self.shot.target != Target::Free;
+            if is_straight {
+                net += net_crossings(&before, &after);
+            }
+            is_round |= !is_straight;
             let middle = after.point;
             for (node, total) in surface_nets.iter_mut().enumerate() {
                 (before.point, after.point) = (surface_before[node], surface[node]);

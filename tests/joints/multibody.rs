@@ -112,7 +112,8 @@ fn drift(scene: &mut Scene, links: &[RigidBodyHandle]) -> (f64, bool) {
 /// Momentum that rounding may cost (N s) of one of 9 N s: rapier takes forces and keeps velocities in its own precision, so every step
 /// of a hundred rounds once.
 fn rounding() -> f64 {
-    9.0 * by_precision(100.0 * 6e-8, 1e-13)
+    // A body of large strain knows its velocities as far as its positions in the world: `ε x / dt`.
+    9.0 * by_precision(100.0 * 6e-8, 1e-12)
 }
 
 #[test]

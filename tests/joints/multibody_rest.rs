@@ -178,16 +178,15 @@ fn fallen(rate: f64, mass: f64, is_pinned: bool, is_link: bool) -> f64 {
 fn a_link_falls_with_a_block_as_the_same_body_on_an_impulse_joint() {
     // One is staggered and moved by rapier's substeps, the other solved in one system: they differ by the first order.
     for (mass, is_pinned) in [(0.9, false), (90.0, false), (0.9, true), (90.0, true)] {
-        let rates = [120.0, 240.0, 480.0];
-        let errors = rates.map(|rate| {
+        for rate in [120.0, 240.0, 480.0, 960.0] {
             let [ours, theirs] = [true, false].map(|link| fallen(rate, mass, is_pinned, link));
-            (ours - theirs).abs()
-        });
-        let case = format!("{mass} kg, pinned: {is_pinned}");
-        // Of 0.7 and 1.4 rad; measured 4.5e-3 and below at 120 Hz.
-        assert!(errors[0] < 6e-3, "{case}: {errors:?} rad");
-        let order = order(&rates.map(|rate| 1.0 / rate), &errors);
-        assert!(order > 0.7, "{case}: order {order}");
+            let error = (ours - theirs).abs();
+            // Of 0.7 and 1.4 rad; measured 4.5e-3 and below at 120 Hz.
+            assert!(
+                error < 0.8 / rate,
+                "{mass} kg, pinned: {is_pinned}, {rate} Hz: {error} rad"
+            );
+        }
     }
 }
 

@@ -40,7 +40,7 @@ fn supports_of_a_clamped_beam_carry_its_weight_and_its_moment() -> Outcome {
 #[test]
 fn a_tip_force_adds_itself_and_its_lever_to_the_supports() -> Outcome {
     let mut scene = Scene::without_gravity();
-    let beam = scene.insert(cantilever())?;
+    let beam = scene.insert(cantilever().small_strain())?;
     // Node 16 is the lower right corner.
     let tip = 16;
     scene.flex_bodies[beam].set_nodal_force(tip, [30.0, -50.0])?;
@@ -180,6 +180,7 @@ fn a_prescribed_displacement_stretches_a_bar_by_hookes_law() -> Outcome {
     let (young, length, area) = (1e6, 2.0, 0.02);
     let bar = scene.insert(
         FlexBodyBuilder::rectangle([length, 0.2], [10, 2])
+            .small_strain()
             .material(
                 LinearElastic::plane_stress(young, 0.0)
                     .density(1000.0)

@@ -49,8 +49,8 @@ fn queries_work_after_a_step_of_no_length() -> Outcome {
 #[test]
 fn every_new_step_length_costs_one_factorization_a_body_and_none_after_it() -> Outcome {
     let mut scene = Scene::with_floor();
-    scene.insert(square().translation([0.0, 0.001]))?;
-    scene.insert(square().translation([3.0, 0.001]))?;
+    scene.insert(square().small_strain().translation([0.0, 0.001]))?;
+    scene.insert(square().small_strain().translation([3.0, 0.001]))?;
     for (index, dt) in [1.0 / 60.0, 1.0 / 240.0, 1.0 / 1000.0, 1.0 / 30.0]
         .into_iter()
         .enumerate()
@@ -74,9 +74,10 @@ fn every_new_step_length_costs_one_factorization_a_body_and_none_after_it() -> O
 #[test]
 fn one_factorization_serves_for_ever_in_contact_and_in_rotation() -> Outcome {
     let mut scene = Scene::with_floor();
-    scene.insert(square().translation([0.0, 0.5]))?;
-    scene.insert(square().translation([5.0, 30.0]).angvel(4.0))?;
-    scene.insert(beam().translation([10.0, 1.0]))?;
+    scene.insert(square().small_strain().translation([0.0, 0.5]))?;
+    let spinning = square().translation([5.0, 30.0]).angvel(4.0);
+    scene.insert(spinning.small_strain())?;
+    scene.insert(beam().small_strain().translation([10.0, 1.0]))?;
     let mut total = 0;
     for _ in 0..120 {
         total += scene.step()?.n_factorizations();

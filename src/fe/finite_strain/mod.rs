@@ -25,6 +25,7 @@
 //! modes resist as its inner modes let them at small strain.
 
 mod cells;
+mod guard;
 mod hourglass;
 mod model;
 mod point;
@@ -45,7 +46,7 @@ use crate::fe::material::hyperelastic::Hyperelastic;
 pub struct Inadmissible {
     /// The cell.
     pub cell: usize,
-    /// Its `det F` at a quadrature point (-).
+    /// Its `det F` at a quadrature point or a node (-).
     pub jacobian: f64,
     /// Name of the law.
     pub law: &'static str,

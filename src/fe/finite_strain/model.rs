@@ -2,6 +2,7 @@
 
 use super::Inadmissible;
 use super::cells::{CellGroup, Deformed};
+use super::guard::Guards;
 use super::hourglass::Hourglass;
 use super::point::{Form, Linearization};
 use crate::fe::element::quadrature::SQUARE_1;
@@ -177,6 +178,7 @@ pub struct FiniteStrainModel {
     pub(super) description: FiniteStrainDescription,
     pub(super) groups: Vec<CellGroup>,
     n_points: usize,
+    n_guarded: usize,
     masses: Vec<f64>,
     /// The zero matrix with the pattern of the tangent.
     pattern: BlockMatrix,
@@ -201,6 +203,7 @@ impl FiniteStrainModel {
         let mut model = Self {
             groups: Vec::new(),
             n_points: 0,
+            n_guarded: 0,
             masses: vec![0.0; n_nodes],
             pattern,
             description,
@@ -214,6 +217,8 @@ impl FiniteStrainModel {
         for group in &mut model.groups {
             group.first_point = model.n_points;
             model.n_points += group.volumes.len();
+            group.first_guard = model.n_guarded;
+            model.n_guarded += group.guards.len();
         }
         Ok(model)
     }
@@ -257,6 +262,8 @@ impl FiniteStrainModel {
                 group.hourglass.push(hourglass.map_err(wrap)?);
             }
         }
+        let guards = &mut group.guards;
+        guards.add(element, corners, description.law.as_ref(), thickness);
         for &row in cell.nodes {
             // The pattern was built from these cells; numbers of nodes fit into 32 bits.
             group.nodes.push(row as u32);
@@ -315,8 +322,8 @@ impl FiniteStrainModel {
     /// If there is not one entry per dof.
     pub fn deformation(&self, positions: &[f64]) -> Deformation {
         let mut deformation = Deformation {
-            start: Deformed::new(self.n_points),
-            end: Deformed::new(self.n_points),
+            start: Deformed::new(self.n_points, self.n_guarded),
+            end: Deformed::new(self.n_points, self.n_guarded),
         };
         self.begin(positions, &mut deformation);
         deformation
@@ -334,6 +341,7 @@ impl FiniteStrainModel {
         let Deformation { start, end } = deformation;
         end.gradients.copy_from_slice(&start.gradients);
         end.amplitudes.copy_from_slice(&start.amplitudes);
+        end.guarded.copy_from_slice(&start.guarded);
     }
 
     /// Subtracts the internal force (N) from `residual`, for a step that ends at `positions` (m), and keeps its deformation for
@@ -426,6 +434,8 @@ fn group_of(
             places: Vec::new(),
             first_point: 0,
             hourglass: Vec::new(),
+            guards: Guards::default(),
+            first_guard: 0,
         });
     }
     &mut groups[at]

@@ -16,6 +16,16 @@ pub enum Form {
     },
 }
 
+impl Form {
+    /// How much of the end is in the gradient that forces are taken at (-).
+    pub(super) fn share_of_end(self) -> f64 {
+        match self {
+            Self::Equilibrium => 1.0,
+            Self::EnergyMomentum { .. } => 0.5,
+        }
+    }
+}
+
 /// Which matrix stands for `∂f/∂x'`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Linearization {
@@ -33,7 +43,7 @@ pub(super) fn cofactor([xx, xy, yx, yy]: [f64; 4]) -> [f64; 4] {
 }
 
 #[inline]
-fn middle(start: [f64; 4], end: [f64; 4]) -> [f64; 4] {
+pub(super) fn middle(start: [f64; 4], end: [f64; 4]) -> [f64; 4] {
     std::array::from_fn(|k| 0.5 * (start[k] + end[k]))
 }
 
@@ -137,7 +147,12 @@ pub(super) fn moduli<L: Hyperelastic + ?Sized>(
 }
 
 #[inline]
-fn law_moduli(at: [f64; 4], [a, b]: [f64; 2], [tt, tj, jj]: [f64; 3], scale: f64) -> [[f64; 4]; 4] {
+pub(super) fn law_moduli(
+    at: [f64; 4],
+    [a, b]: [f64; 2],
+    [tt, tj, jj]: [f64; 3],
+    scale: f64,
+) -> [[f64; 4]; 4] {
     let cofactor = cofactor(at);
     let mut moduli = [[0.0; 4]; 4];
     for (row, entries) in moduli.iter_mut().enumerate() {

@@ -51,7 +51,7 @@ pub trait Material: Send + Sync + Debug {
         Rayleigh::NONE
     }
 
-    /// The law for large strains, if bodies of the material bend and stretch far; `None` (the default) makes bodies of small strain.
+    /// The law for large strains of a material that is made for them: what keeps its bodies from being such ones is an error then.
     fn hyperelastic(&self) -> Option<&Arc<dyn Hyperelastic>> {
         None
     }

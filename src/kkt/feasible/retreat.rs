@@ -109,7 +109,7 @@ mod tests {
     use super::*;
     use crate::integrator::Weights;
     use crate::math::sin_cos;
-    use crate::system::{RigidBlock, RigidLoad, RigidMotion};
+    use crate::system::{RigidBlock, RigidLoad, RigidMotion, Step};
 
     /// Bodies of one point each, far from each other: their centres are the unknowns.
     const N_BODIES: usize = 3;
@@ -120,9 +120,13 @@ mod tests {
             force: [0.0; 3],
             damping: [0.0; 3],
         };
-        let weights = Weights { b0: 1.0, b1: 1.0 };
+        let step = Step {
+            dt: 1.0,
+            weights: Weights { b0: 1.0, b1: 1.0 },
+            ..Step::default()
+        };
         let rest = RigidMotion::default();
-        let body = || Block::Rigid(RigidBlock::free(rest, None, &load, weights, 1.0));
+        let body = || Block::Rigid(RigidBlock::free(rest, None, &load, &step));
         let blocks: Vec<Block> = std::iter::repeat_with(body).take(N_BODIES).collect();
         let mut path = FeasiblePath::default();
         let none = Vec2::zeros();

@@ -27,8 +27,8 @@ fn rigid(random: &mut Random, centre: Vec2) -> (Block, Sums) {
         damping: [0.0; 3],
     };
     let motion = random_motion(random, centre);
-    let weights = Beta2::default().weights(DT);
-    let body = RigidBlock::free(motion, None, &load, weights, DT);
+    let step = Step::new(&Beta2::default(), DT);
+    let body = RigidBlock::free(motion, None, &load, &step);
     let start = of_rigid(&body, &motion);
     (Block::Rigid(body), start)
 }
@@ -38,6 +38,7 @@ fn flexible(random: &mut Random, centre: Vec2, is_pinned: bool) -> (Block, Sums)
     let [width, height] = [0.3 + random.unit(), 0.3 + random.unit()];
     let material = LinearElastic::plane_stress(1e5, 0.3).density(1.0);
     let mut builder = FlexBodyBuilder::rectangle([width, height], [3, 2])
+        .small_strain()
         .material(material)
         .rotation(random.within(3.0))
         .translation([centre.x, centre.y]);
@@ -54,10 +55,7 @@ fn flexible(random: &mut Random, centre: Vec2, is_pinned: bool) -> (Block, Sums)
     };
     let fixed = body.fixed_dofs().to_vec();
     let mut block = FlexBlock::new(Arc::clone(body.model()), fixed, body.frame());
-    let step = Step {
-        dt: DT,
-        weights: Beta2::default().weights(DT),
-    };
+    let step = Step::new(&Beta2::default(), DT);
     let load = FlexLoad {
         force: body.nodal_force(),
         gravity: Vec2::zeros(),

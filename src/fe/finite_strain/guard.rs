@@ -1,0 +1,275 @@
+//! What keeps cells from turning inside out at their nodes, where the law has no energy for what is turned.
+//!
+//! The law sees the gradient `F` of a cell at its quadrature points, whose determinants stay above zero while a corner folds over: a bow tie.
+//! With `J = det F` at the nodes,
+//!
+//! ```text
+//! W = κ V f(J/J0),    f(z) = (1 - z)³/z  for z < 1,  else 0
+//! ```
+//!
+//! per node of a cell and its share `V` of the volume: twice continuously differentiable, convex, and infinite where a corner is flat, as the
+//! barriers are that keep surfaces apart elsewhere (Li et al., 2020). The energy that comes decides how flat a corner may get, not rounding: a
+//! thousand `κ V` leave a ten-thousandth of the area. It is an energy of the invariant `J` like any other, and with its slope between
+//! the ends of a step it conserves energy and both momenta.
+
+use super::Inadmissible;
+use super::cells::{
+    CellGroup, Deformed, add_point, deformation_gradient, gather, scatter, subtract,
+};
+use super::point::{Form, Linearization, cofactor, law_moduli, middle};
+use crate::fe::element::{Element, MAX_NODES, kinematics::physical_gradient};
+use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
+use crate::linalg::block_matrix::BlockMatrix;
+
+/// `J0`, below which a node is guarded (-): a crushed rectangle is left to its law until nine tenths of its area are gone.
+const FLAT: f64 = 0.1;
+
+/// Change of `J` by itself below which the slope of the energy is its derivative in the middle (-): the error is its square by 24.
+const SMALL: f64 = 1e-4;
+
+/// A gradient that turns what it deforms inside out.
+const TURNED: [f64; 4] = [1.0, 0.0, 0.0, -1.0];
+
+/// The guarded nodes of a group of cells: all of them, or none.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Guards {
+    /// `dN_a/dX` (1/m) at the nodes, shape `(n_cells, n_nodes, n_nodes)`.
+    gradients: Vec<[f64; 2]>,
+    /// `κ V` (J), shape `(n_cells, n_nodes)`; zero where a cell has no gradient, as where two sides are one line.
+    energies: Vec<f64>,
+}
+
+/// The nodes of one cell, the gradients of its shape functions there and `κ V`.
+type Guarded<'a, const N: usize> = (&'a [u32; N], &'a [[[f64; 2]; N]], &'a [f64]);
+
+impl Guards {
+    /// Adds the nodes of a cell, if the law and the element want them guarded.
+    pub fn add(
+        &mut self,
+        element: &dyn Element,
+        corners: &[[f64; 2]],
+        law: &dyn Hyperelastic,
+        thickness: f64,
+    ) {
+        // Of three nodes the gradient is the same everywhere.
+        let nodes = element.reference_nodes();
+        if nodes.len() == 3 || law.admits(Invariants::of(TURNED)) {
+            return;
+        }
+        let constants = law.constants();
+        let modulus = constants.lambda() + 2.0 * constants.mu();
+        let area: f64 = element.quadrature().iter().map(|point| point.weight).sum();
+        let share = area / nodes.len() as f64;
+        for &at in nodes {
+            let mut gradient = [[0.0; 2]; MAX_NODES];
+            let gradient = &mut gradient[..nodes.len()];
+            let determinant = physical_gradient(element, corners, at, gradient).unwrap_or(0.0);
+            self.gradients.extend_from_slice(gradient);
+            self.energies
+                .push(modulus * determinant * share * thickness);
+        }
+    }
+
+    /// Number of guarded nodes.
+    pub fn len(&self) -> usize {
+        self.energies.len()
+    }
+}
+
+impl CellGroup {
+    fn guarded<const N: usize>(&self) -> impl Iterator<Item = Guarded<'_, N>> {
+        let nodes = self.nodes.as_chunks::<N>().0.iter();
+        let gradients = self.guards.gradients.as_chunks::<N>().0.chunks_exact(N);
+        let energies = self.guards.energies.chunks_exact(N);
+        let cells = nodes.zip(gradients).zip(energies);
+        cells.map(|((nodes, gradients), energies)| (nodes, gradients, energies))
+    }
+
+    /// Writes `F` at the guarded nodes.
+    pub(super) fn deform_guards<const N: usize>(&self, positions: &[f64], out: &mut [[f64; 4]]) {
+        for ((nodes, gradients, _), out) in self.guarded::<N>().zip(out.chunks_exact_mut(N)) {
+            let differences = gather(nodes, positions);
+            for (gradient, out) in gradients.iter().zip(out) {
+                *out = deformation_gradient(&differences, gradient);
+            }
+        }
+    }
+
+    /// Stored energy (J).
+    pub(super) fn guard_energy<const N: usize>(&self, positions: &[f64]) -> f64 {
+        let mut energy = 0.0;
+        for (nodes, gradients, energies) in self.guarded::<N>() {
+            let differences = gather(nodes, positions);
+            for (gradient, unit) in gradients.iter().zip(energies) {
+                let f = deformation_gradient(&differences, gradient);
+                energy += guard_energy(*unit, Invariants::of(f).j);
+            }
+        }
+        energy
+    }
+
+    /// Subtracts the forces of the guards, after writing `F` at the end.
+    pub(super) fn subtract_guard_forces<const N: usize>(
+        &self,
+        law: &dyn Hyperelastic,
+        form: Form,
+        positions: &[f64],
+        (start, end): (&Deformed, &mut Deformed),
+        residual: &mut [f64],
+    ) -> Result<(), Inadmissible> {
+        let ends = &mut end.guarded[self.guarded_nodes()];
+        self.deform_guards::<N>(positions, ends);
+        let starts = start.guarded[self.guarded_nodes()].chunks_exact(N);
+        let cells = self.guarded::<N>().zip(starts).zip(ends.chunks_exact(N));
+        for (((nodes, gradients, energies), (starts, ends)), &cell) in cells
+            .map(|((cell, starts), ends)| (cell, (starts, ends)))
+            .zip(&self.cells)
+        {
+            let pairs = starts.iter().zip(ends);
+            for (((start, end), gradient), unit) in pairs.zip(gradients).zip(energies) {
+                let (before, after) = (Invariants::of(*start).j, Invariants::of(*end).j);
+                if *unit == 0.0 || before.min(after) >= FLAT {
+                    continue;
+                }
+                if after <= 0.0 {
+                    return Err(Inadmissible {
+                        cell,
+                        jacobian: after,
+                        law: law.name(),
+                    });
+                }
+                let at = match form {
+                    Form::Equilibrium => *end,
+                    Form::EnergyMomentum { .. } => middle(*start, *end),
+                };
+                let slope = unit * slopes(form, before, after)[0];
+                let stress = cofactor(at).map(|part| slope * part);
+                let force = gradient
+                    .map(|[x, y]| [stress[0] * x + stress[1] * y, stress[2] * x + stress[3] * y]);
+                subtract(nodes, force, residual);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the tangent of the guards.
+    pub(super) fn add_guard_tangent<const N: usize>(
+        &self,
+        (form, kind): (Form, Linearization),
+        (start, end): (&Deformed, &Deformed),
+        matrix: &mut BlockMatrix,
+    ) {
+        let (scale, range) = (form.share_of_end(), self.guarded_nodes());
+        let starts = start.guarded[range.clone()].chunks_exact(N);
+        let ends = end.guarded[range].chunks_exact(N);
+        let places = self.places.as_chunks::<N>().0.chunks_exact(N);
+        let cells = self.guarded::<N>().zip(starts).zip(ends).zip(places);
+        for ((((_, gradients, energies), starts), ends), places) in cells {
+            let pairs = starts.iter().zip(ends);
+            for (((start, end), gradient), unit) in pairs.zip(gradients).zip(energies) {
+                let (before, after) = (Invariants::of(*start).j, Invariants::of(*end).j);
+                if *unit == 0.0 || before.min(after) >= FLAT {
+                    continue;
+                }
+                let [slope, rise] = slopes(form, before, after);
+                let slope = match kind {
+                    Linearization::Consistent => slope,
+                    Linearization::Definite => 0.0,
+                };
+                let at = match form {
+                    Form::Equilibrium => *end,
+                    Form::EnergyMomentum { .. } => middle(*start, *end),
+                };
+                let moduli = law_moduli(at, [0.0, slope], [0.0, 0.0, rise / scale], scale);
+                let mut blocks = [[[0.0; 4]; N]; N];
+                add_point(gradient, &moduli, *unit, &mut blocks);
+                scatter(&blocks, places, matrix);
+            }
+        }
+    }
+}
+
+/// Energy of a node of which the share `j` is left (J); infinite if none is.
+fn guard_energy(unit: f64, j: f64) -> f64 {
+    if unit == 0.0 || j >= FLAT {
+        return 0.0;
+    }
+    unit * barrier(j)
+}
+
+/// `f(J/J0)`.
+fn barrier(j: f64) -> f64 {
+    let z = j / FLAT;
+    if z >= 1.0 {
+        return 0.0;
+    }
+    if z <= 0.0 {
+        return f64::INFINITY;
+    }
+    (1.0 - z) * (1.0 - z) * (1.0 - z) / z
+}
+
+/// First and second derivatives of [`barrier`].
+fn derivatives(j: f64) -> [f64; 2] {
+    let z = j / FLAT;
+    if z >= 1.0 {
+        return [0.0; 2];
+    }
+    let by = (1.0 - z) / z;
+    [
+        -by * by * (1.0 + 2.0 * z) / FLAT,
+        2.0 * (1.0 / (z * z * z) - 1.0) / (FLAT * FLAT),
+    ]
+}
+
+/// The slope that a step between two `J` does its work with, and what it rises by with the last.
+fn slopes(form: Form, before: f64, after: f64) -> [f64; 2] {
+    // What begins turned, as a state that was read may be, is pushed as at its end.
+    if form == Form::Equilibrium || before <= 0.0 {
+        let [slope, rise] = derivatives(after);
+        return [slope, form.share_of_end() * rise];
+    }
+    let change = after - before;
+    if change.abs() <= SMALL * before.min(after) {
+        let [slope, rise] = derivatives(0.5 * (before + after));
+        return [slope, 0.5 * rise];
+    }
+    let slope = (barrier(after) - barrier(before)) / change;
+    [slope, (derivatives(after)[0] - slope) / change]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_barrier_has_the_derivatives_that_it_says() {
+        for j in [1e-3, 0.02, 0.05, 0.0999, 0.1001] {
+            let size = 1e-5 * j;
+            let rise = |f: &dyn Fn(f64) -> f64| (f(j + size) - f(j - size)) / (2.0 * size);
+            let [first, second] = derivatives(j);
+            let [slope, bend] = [rise(&barrier), rise(&|j| derivatives(j)[0])];
+            assert!((slope - first).abs() < 1e-6 * first.abs() + 1e-6, "{j}");
+            assert!((bend - second).abs() < 1e-5 * second.abs() + 1e-1, "{j}");
+        }
+    }
+
+    #[test]
+    fn the_slope_of_a_step_does_the_work_that_the_energy_rises_by() {
+        let form = Form::EnergyMomentum { decay: 0.1 };
+        for before in [0.005, 0.05, 0.2] {
+            for after in [0.004, 0.05 + 1e-7, 0.05 + 1e-5, 0.0999, 0.3] {
+                let [slope, rise] = slopes(form, before, after);
+                let error = slope * (after - before) - (barrier(after) - barrier(before));
+                assert!(error.abs() < 1e-12, "{before} to {after}: {error:e}");
+                let size = 1e-4 * after;
+                let of = |after| slopes(form, before, after)[0];
+                let actual = (of(after + size) - of(after - size)) / (2.0 * size);
+                assert!(
+                    (actual - rise).abs() < 1e-3 * rise.abs() + 1e-6,
+                    "{before} to {after}: {actual} {rise}"
+                );
+            }
+        }
+    }
+}
