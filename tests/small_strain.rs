@@ -187,3 +187,32 @@ fn a_stiff_body_that_turns_round_and_round_is_not_told_of() {
     }
     assert!(scene.body(plate).neglected_strain() < 1e-6);
 }
+
+/// Members with `β1 = 1` are as the ones beside them: only `β0 = β1 = 1` lets stored accelerations cancel out.
+#[test]
+fn results_are_continuous_in_the_parameters_of_the_integrator_where_a_whole_multiplier_acts_in_its_step()
+ {
+    let lands = |beta1: f64| {
+        let member = Beta2::new(1.3, beta1).expect("a stable member");
+        let mut scene = Scene::new(1.0 / 240.0).with_integrator(member);
+        scene.ground(0.5);
+        let block = scene.flexible(
+            FlexBodyBuilder::rectangle([0.6, 0.4], [4, 3])
+                .small_strain()
+                .material(elastic(1e6, 1000.0, 1e-3))
+                .linvel([0.5, -1.0])
+                .translation([0.0, 0.01]),
+        );
+        let shape = ColliderBuilder::cuboid(0.1, 0.1).density(500.0);
+        let lying = RigidBodyBuilder::dynamic().translation(vec2(0.3, 0.515));
+        scene.rigid(lying, shape);
+        for _ in 0..40 {
+            scene.try_step().expect("nothing is wrong with it");
+        }
+        scene.body(block).positions().to_vec()
+    };
+    let [one, beside] = [1.0, 1.0 - 1e-9].map(lands);
+    let pairs = one.iter().zip(&beside);
+    let apart = pairs.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(apart < 1e-6, "{apart:e} m apart");
+}

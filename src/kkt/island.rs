@@ -54,6 +54,8 @@ pub struct SolveSettings {
     pub b0: f64,
     /// Beta-2 weight `b1` (s).
     pub b1: f64,
+    /// Whether multipliers act wholly within the step, so that none goes on.
+    pub is_within: bool,
     /// Whether `β0 = 0`, so that multipliers act at the forward increment.
     pub is_explicit: bool,
     /// Whether steps that are too long for a partner are taken all the same.

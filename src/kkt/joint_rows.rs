@@ -382,7 +382,7 @@ fn resolve(
         },
         JointLaw::Spring(spring) => {
             let spring = spring.absolute(mobility);
-            let is_mean = is_hard || settings.b1 == settings.dt;
+            let is_mean = is_hard || settings.is_within;
             resolve_spring(
                 spring,
                 (is_hard, is_mean),

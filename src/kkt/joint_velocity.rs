@@ -357,7 +357,7 @@ impl Island {
     /// Lets the damping of rigid blocks in joints know the velocities that the joints have left; that of all, what contacts have left, where
     /// multipliers act wholly within the step.
     pub(super) fn settle_damping(&mut self, settings: &SolveSettings) {
-        if settings.b1 == settings.dt {
+        if settings.is_within {
             for block in &mut self.blocks {
                 if let Block::Rigid(block) = block {
                     block.settle_damping();

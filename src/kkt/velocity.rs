@@ -37,7 +37,7 @@ impl Island {
         }
         // The accelerations do not depend on these impulses: one substitution answers both. Where forces act wholly within the step, none
         // goes on.
-        if settings.b1 != settings.dt {
+        if !settings.is_within {
             self.settle_accelerations(settings)?;
         }
         self.respond();

@@ -24,7 +24,7 @@ impl fmt::Display for Overbent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{:?} is bent or stretched so far that small strains leave out a strain of {:.3}: make it stiffer, or a chain of shorter bodies pinned to each other",
+            "{:?} is bent or stretched so far that small strains leave out a strain of {:.3}: leave `.small_strain()` out, or make it stiffer",
             self.body, self.neglected_strain
         )
     }

@@ -144,6 +144,7 @@ impl FlexPipeline {
                 step.weights.b0
             },
             b1: step.weights.b1,
+            is_within: step.is_within(),
             is_explicit: step.is_explicit(),
             insists: self.parameters.insists,
             impact: self.parameters.impact,

@@ -339,7 +339,7 @@ impl RigidBlock {
     pub fn set_soft_force(&mut self, wrench: [f64; 3]) {
         let change = self.answer(wrench);
         let b1 = self.weights.b1;
-        let lasts = b1 != self.dt;
+        let lasts = self.weights != Weights::within(self.dt);
         if let Some(link) = &mut self.link {
             link.begin(wrench, b1, lasts);
         }
