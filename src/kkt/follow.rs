@@ -26,17 +26,17 @@ use crate::system::Block;
 /// that are stopped that often meet in ways that the step does not resolve.
 const MOST_STOPS: usize = 20;
 
-/// Share of the margin within which the laws hold where the contacts are many (-): a thousandth moves no force that counts.
-const LARGE_TOLERANCE: f64 = 1e-3;
-
-/// The same where bodies of large strain find their equilibrium to a residual (-).
+/// Share of the margin within which the laws hold where bodies of large strain find their equilibrium to a residual (-).
 const CURVED_TOLERANCE: f64 = 1e-6;
 
 /// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
 const PASSES_PER_ITERATION: usize = 2;
 
+/// The same where contacts are many: passes that go on for longer change what nobody sees.
+const FEW_PASSES: usize = 6;
+
 /// Share of its way's margin by which a true gap or slip may miss what the law asks for (-).
-const CLOSE_ENOUGH: f64 = 0.05;
+pub(super) const CLOSE_ENOUGH: f64 = 0.05;
 
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
@@ -120,7 +120,7 @@ impl Island {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
-            let is_eased = pass >= settings.max_newton;
+            let is_eased = pass >= self.n_exact_passes(settings);
             let near = self.enough(is_eased, NEAR * tolerance);
             let misleads = is_guess && self.measure_guess() > near;
             let mut arrives = false;
@@ -148,15 +148,15 @@ impl Island {
                 self.enough(is_eased, tolerance)
             };
             let is_close = if is_eased {
-                arrives && turned <= enough && self.shortfall(true) <= CLOSE_ENOUGH
+                arrives && turned.way <= enough && self.shortfall(true) <= CLOSE_ENOUGH
             } else {
-                error <= enough && turned <= ANGLE_TOLERANCE.max(enough)
+                error <= enough && (turned.angle <= ANGLE_TOLERANCE || turned.way <= enough)
             };
             if arrives && is_close && !has_more {
                 self.keep_applied_rows();
                 return !self.leads_around();
             }
-            if arrives && !has_more && turned <= CLOSE_ENOUGH {
+            if arrives && !has_more && turned.angle <= CLOSE_ENOUGH {
                 self.keep_arrival();
             }
             if !misleads && !listing.keeps_rows && self.path.retreat(&self.blocks) {
@@ -166,7 +166,7 @@ impl Island {
                 });
                 self.measure(false);
             }
-            if !(error + turned).is_finite() || n_stopped > MOST_STOPS {
+            if !(error + turned.angle).is_finite() || n_stopped > MOST_STOPS {
                 return false;
             }
             if !self.ties.is_empty() && pass > 0 && pass % 5 == 0 {
@@ -197,12 +197,27 @@ impl Island {
         })
     }
 
+    /// Whether the contacts at hand are so many that they are solved as a sparse problem.
+    fn has_many_rows(&self) -> bool {
+        self.is_sparse(2 * self.contacts.len() + self.ties.len())
+    }
+
+    /// Passes in which the laws have to hold as well as they can be made to.
+    fn n_exact_passes(&self, settings: &SolveSettings) -> usize {
+        if self.has_many_rows() {
+            FEW_PASSES.min(settings.max_newton)
+        } else {
+            settings.max_newton
+        }
+    }
+
     /// How far the laws may be from holding at the end of a pass (m).
+    ///
+    /// Where contacts are many the gap is only a share of the margin: bodies stay apart whatever the forces are, and the next step begins
+    /// with what is left. What comes to rest is solved the finer the less it moves.
     fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
-        if is_eased {
-            CLOSE_ENOUGH * self.path.least_margin()
-        } else if self.is_sparse(2 * self.contacts.len() + self.ties.len()) {
-            tolerance.max(LARGE_TOLERANCE * self.path.least_margin())
+        if is_eased || self.has_many_rows() {
+            tolerance.max(CLOSE_ENOUGH * self.path.least_margin())
         } else if self.has_large() {
             tolerance.max(CURVED_TOLERANCE * self.path.least_margin())
         } else {

@@ -124,6 +124,8 @@ pub struct ActiveContact {
     pub rigid: f64,
     /// How far the row gives way to its own force in the problem solved, along its normal and its tangent (m/N).
     pub(super) yielding: [f64; 2],
+    /// How far a force of its own moves it within the step, along its normal and its tangent, where that is known (m/N).
+    pub(super) mobility: Option<[f64; 2]>,
     /// Approach velocity at the beginning of the step, `n·v` (m/s).
     pub approach: f64,
     /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and

@@ -89,7 +89,7 @@ impl Island {
         let kept = exp(-PARTING_RATE * settings.dt);
         for iteration in 0..settings.max_newton {
             summary.n_newton += 1;
-            let turned = self.correct();
+            let turned = self.correct().angle;
             let is_guess =
                 round == 0 && iteration == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let extrapolates = iteration >= GAPS_KEPT_FROM;

@@ -27,6 +27,15 @@ const OVERLAPPED: f64 = 1e7;
 /// Times that a contact without a gap is let go within a step.
 const LET_GO: u8 = 2;
 
+/// How far frames have turned since the iterate before.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Turned {
+    /// Of the one that has turned farthest (rad).
+    pub angle: f64,
+    /// By how much that moves what is farthest from the middle of its body, at most (m).
+    pub way: f64,
+}
+
 impl Island {
     pub(super) fn solve_positions(
         &mut self,
@@ -131,8 +140,8 @@ impl Island {
         }
     }
 
-    /// Moves all blocks by the multipliers; returns the largest turn of a frame (rad).
-    pub(super) fn correct(&mut self) -> f64 {
+    /// Moves all blocks by the multipliers; returns how far the frames have turned.
+    pub(super) fn correct(&mut self) -> Turned {
         self.wrenches.clear();
         self.wrenches.resize(self.blocks.len(), [0.0; 3]);
         for block in &mut self.blocks {
@@ -152,10 +161,14 @@ impl Island {
             );
         }
         self.spread_joints();
-        let mut turned = 0.0f64;
+        let mut turned = Turned::default();
         for (block, wrench) in self.blocks.iter_mut().zip(&self.wrenches) {
             match block {
-                Block::Flex(block) => turned = turned.max(block.solve()),
+                Block::Flex(block) => {
+                    let angle = block.solve();
+                    turned.angle = turned.angle.max(angle);
+                    turned.way = turned.way.max(0.5 * angle * block.size());
+                }
                 Block::Rigid(block) => block.set_position_increment(*wrench),
             }
         }
@@ -380,6 +393,7 @@ impl ActiveContact {
             unresolved: 0.0,
             rigid: 0.0,
             yielding: [0.0; 2],
+            mobility: None,
             approach,
             remembered,
             base: None,

@@ -7,6 +7,7 @@
 mod layout;
 
 use super::delassus::compliance;
+use super::follow::CLOSE_ENOUGH;
 use super::island::{Island, KktError};
 use super::joint_system::Rows;
 use crate::constraint::joint::unit_wrench;
@@ -124,8 +125,8 @@ impl Island {
         outcome
     }
 
-    /// Notes how far every contact that presses gives way to its force: along its normal where the rows at hand are solved as a sparse
-    /// problem, along its tangent where they contradict each other.
+    /// Notes how far every contact that presses moves under its force and gives way to it: along its normal where the rows at hand are solved
+    /// as a sparse problem, along its tangent where they contradict each other.
     pub(super) fn note_yielding(&mut self, b0: f64) {
         let is_sparse = self.is_sparse(2 * self.contacts.len() + self.ties.len());
         let yields = match self.softness {
@@ -133,13 +134,15 @@ impl Island {
             softness => [0.0, softness],
         };
         for contact in &mut self.contacts {
-            contact.yielding = [0.0; 2];
+            (contact.yielding, contact.mobility) = ([0.0; 2], None);
             if yields != [0.0; 2] && contact.base.is_some() && contact.multiplier[0] > 0.0 {
                 let row = &contact.kinematics;
                 let own = compliance(&self.blocks, row, row, Response::Position);
                 let own = own.unwrap_or_default();
                 let along = [row.normal, row.tangent()].map(|along| along.dot(&(own * along)));
-                contact.yielding = [0, 1].map(|k| b0 * yields[k] * along[k].max(0.0));
+                let mobility = along.map(|along| b0 * along.max(0.0));
+                contact.yielding = [0, 1].map(|k| yields[k] * mobility[k]);
+                contact.mobility = Some(mobility);
             }
         }
     }
@@ -371,14 +374,14 @@ impl Island {
                 &mut others[index]
             }
         };
-        // The dilation of what slides may leave a fifth of what a pass accepts.
         let unit = match asked.of {
             Response::Position | Response::Velocity => asked.unit,
             Response::Acceleration | Response::ByMass => asked.unit * asked.unit,
         };
-        solver.settings.gap_tolerance = 2e-4 * self.path.least_margin().min(1e-3) / unit;
+        // A fifth of what a pass accepts.
+        solver.settings.gap_tolerance = 0.2 * CLOSE_ENOUGH * self.path.least_margin() / unit;
         solver.settings.slip_tolerance = 1e-4;
-        solver.settings.tolerance = 1e-7;
+        solver.settings.tolerance = 1e-6;
         solver.scales_start = asked.of == Response::Velocity;
         let outcome = solver.solve(&problem, multipliers, slip, answer)?;
         let n = self.kinds.len();

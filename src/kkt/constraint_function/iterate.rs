@@ -76,7 +76,7 @@ impl Island {
         let mut is_near = false;
         for iteration in 0..functions.max_iterations {
             summary.n_newton += 1;
-            let turned = self.correct();
+            let turned = self.correct().angle;
             let is_guess = iteration == 0 && !self.contacts.is_empty();
             let error = self.measure(is_guess || iteration >= GAPS_KEPT_FROM);
             let has_more = self.add_violated(trial.tolerance, kept, trial.memory);

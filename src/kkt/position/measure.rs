@@ -19,9 +19,11 @@ impl ActiveContact {
     /// How far the laws were from holding at the last measurement (m).
     pub(in crate::kkt) fn shortfall(&self, friction: f64) -> f64 {
         let slides_off = |base: AtBase| base.is_meeting && self.status[1] != Status::Stick;
-        // The force of what is lost is still in the iterate: far from holding, but a number.
+        // The force of what is lost is still in the iterate: as far from holding as it moves the contact, or far, but a number.
         if self.is_lost || self.base.is_some_and(slides_off) {
-            return f64::MAX;
+            let [normal, tangential] = self.multiplier.map(f64::abs);
+            let moves = |own: [f64; 2]| f64::max(own[0] * normal, own[1] * tangential);
+            return self.mobility.map_or(f64::MAX, moves);
         }
         // What gives way rests nearer by that much: so was it solved.
         let yielded = [0, 1].map(|k| self.yielding[k] * self.multiplier[k]);
@@ -32,12 +34,13 @@ impl ActiveContact {
         )
     }
 
-    /// How far Signorini's and Coulomb's laws are from holding (m).
+    /// How far Signorini's and Coulomb's laws are from holding (m): by no more than the force that is too much, or missing, moves the contact.
     fn law_error(&self, gap: f64, slip: f64, friction: f64) -> f64 {
-        if self.multiplier[0] <= 0.0 {
+        let [normal, tangential] = self.multiplier;
+        if normal <= 0.0 {
             return -gap;
         }
-        let slip = if friction > 0.0 {
+        let slid = if friction > 0.0 {
             match self.status[1] {
                 Status::SlipPositive => slip,
                 Status::SlipNegative => -slip,
@@ -46,7 +49,12 @@ impl ActiveContact {
         } else {
             0.0
         };
-        gap.abs().max(slip)
+        let Some(mobility) = self.mobility else {
+            return gap.abs().max(slid);
+        };
+        let missing = friction * normal + slip.signum() * tangential;
+        let apart = gap.min(mobility[0] * normal);
+        apart.max(-gap).max(slid.min(mobility[1] * missing))
     }
 
     /// Measures gap and slip; returns how far the laws are from holding (m).

@@ -7,10 +7,10 @@
 
 mod ray;
 
-use super::State;
 use super::problem::ConeProblem;
 use super::reduced::Reduced;
 use super::system::System;
+use super::{ConeSettings, State};
 use ray::{Pair, Ray};
 
 const MOST_ITERATIONS: usize = 60;
@@ -18,10 +18,10 @@ const MOST_ITERATIONS: usize = 60;
 const STIFFEST: f64 = 1e8;
 /// Distance from the bounds at the start, of the size of forces. Less starts warmer and jams sooner.
 const CLEARANCE: f64 = 0.1;
-/// Products of force and slack up to which slips are followed; beyond, moving them costs iterations without end.
-const FOLLOW_SLIP: f64 = 1e-5;
-/// Products at the end: enough to tell which rays carry.
-const CLOSE_ENOUGH: f64 = 1e-6;
+/// Products of force and slack at the end, down to which slips are followed: enough to tell which rays carry.
+const CLOSE_ENOUGH: f64 = 1e-8;
+/// Products from which on the forces are looked at: they may be good enough before it is known which rays carry.
+const NEARLY: f64 = 1e-3;
 
 /// Buffers of the interior point.
 #[derive(Debug, Clone, Default)]
@@ -31,23 +31,27 @@ pub(super) struct Interior {
     weights: Vec<[f64; 3]>,
     balance: Vec<f64>,
     step: Vec<f64>,
+    /// Forces and motion of the iterate, while what they would be on their bounds is looked at.
+    kept: Vec<[f64; 2]>,
+    kept_motion: Vec<f64>,
     /// The size of forces, in square roots of energy.
     scale: f64,
 }
 
 impl Interior {
-    /// Replaces the forces and slips of `state` by better ones, or leaves them if that fails.
+    /// Replaces the forces and slips of `state` by better ones, or leaves them if that fails; returns whether they are good enough.
     pub fn run(
         &mut self,
         problem: &ConeProblem,
         reduced: &Reduced,
         system: &mut System,
         state: &mut State,
+        settings: &ConeSettings,
         n_allowed: usize,
-    ) {
+    ) -> bool {
         let limit = system.n_factorizations + n_allowed;
         if !self.start(problem, reduced, state) {
-            return;
+            return false;
         }
         let mut closeness = 1.0;
         for iteration in 0..MOST_ITERATIONS {
@@ -55,11 +59,16 @@ impl Interior {
                 problem,
                 reduced,
                 state,
-                iteration > 0 && closeness > FOLLOW_SLIP,
+                iteration > 0 && closeness > CLOSE_ENOUGH,
             );
             closeness = self.mean_product() / (self.scale * self.scale);
             if closeness < CLOSE_ENOUGH && apart < 1e-4 && imbalance < 1e-4 {
                 break;
+            }
+            if closeness.max(apart).max(imbalance) < NEARLY
+                && self.suffices(problem, reduced, system, state, settings)
+            {
+                return true;
             }
             self.weigh(problem, reduced);
             // what rounding or the budget ends is still a start for proximal steps
@@ -70,6 +79,36 @@ impl Interior {
             self.advance(problem, system, state);
         }
         self.hand_back(problem, reduced, state);
+        false
+    }
+
+    /// Whether the forces are good enough with the rays that do not carry put on their bounds, which they are then.
+    fn suffices(
+        &mut self,
+        problem: &ConeProblem,
+        reduced: &Reduced,
+        system: &mut System,
+        state: &mut State,
+        settings: &ConeSettings,
+    ) -> bool {
+        self.kept.clone_from(&state.forces);
+        self.kept_motion.clone_from(&state.a);
+        self.hand_back(problem, reduced, state);
+        reduced.total_load(problem, &state.forces, &mut state.a);
+        system.solve_bodies(&mut state.a);
+        let State {
+            forces,
+            slip,
+            a,
+            status,
+        } = state;
+        let measure = reduced.measure(problem, a, forces, slip, settings, status);
+        let suffices = measure.is_within(settings, reduced.enough);
+        if !suffices {
+            forces.copy_from_slice(&self.kept);
+            a.copy_from_slice(&self.kept_motion);
+        }
+        suffices
     }
 
     /// Puts every ray off its bounds, starting from the forces and the motion at hand; false if nothing pushes.
@@ -332,9 +371,9 @@ impl Interior {
     }
 
     /// Rays whose force is small beside their slack are put on their bound.
-    fn hand_back(&mut self, problem: &ConeProblem, reduced: &Reduced, state: &mut State) {
+    fn hand_back(&self, problem: &ConeProblem, reduced: &Reduced, state: &mut State) {
         for (index, row) in problem.rows.iter().enumerate() {
-            let pair = &mut self.pairs[index];
+            let mut pair = self.pairs[index];
             for ray in &mut pair.rays[..pair.n_rays] {
                 for side in 0..2 {
                     if ray.has_bound(side)

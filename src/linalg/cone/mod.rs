@@ -11,7 +11,7 @@
 //!
 //! 1. proximal steps from the last answer, by Newton's method (`proximal`);
 //! 2. if that takes more than a few factorizations without gaining, an interior point (`interior`),
-//! 3. whose forces proximal steps finish;
+//! 3. whose forces proximal steps finish, if they are not good enough;
 //! 4. the budget spent, projected gradients (`sweep`), which obey every bound and bring no energy, but leave gaps.
 //!
 //! Whatever the solver, `a` is made from the forces handed back, so that `A a = r + Gᵀ p` to rounding.
@@ -69,7 +69,7 @@ const POLISH: [f64; 3] = [1e2, 1e4, 1e6];
 const N_WARM: [usize; 2] = [12, 3];
 
 /// The part of the error at the start that may be left (-).
-const SETTLING: f64 = 1e-3;
+const SETTLING: f64 = 1e-2;
 
 /// What is good enough, and how much work it may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -281,7 +281,7 @@ impl ConeSolver {
         self.system.solve_bodies(&mut self.state.a);
     }
 
-    /// Allows the error of `w` that the settings admit, but no more than a thousandth of what the start is off: what comes to rest is
+    /// Allows the error of `w` that the settings admit, but no more than a hundredth of what the start is off: what comes to rest is
     /// solved the finer the less it moves, and comes to rest.
     fn set_goal(&mut self, problem: &ConeProblem) {
         let State {
@@ -311,13 +311,17 @@ impl ConeSolver {
         }
         self.restart(problem);
         let n_left = limit - self.system.n_factorizations.min(limit);
-        self.interior.run(
+        let suffices = self.interior.run(
             problem,
             &self.reduced,
             &mut self.system,
             &mut self.state,
+            &self.settings,
             n_left,
         );
+        if suffices {
+            return true;
+        }
         let n_left = limit - self.system.n_factorizations.min(limit);
         let (ending, completed) = self.approach(problem, &POLISH, [n_left, n_left]);
         if ending == Ending::Spent {

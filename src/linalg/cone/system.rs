@@ -4,12 +4,16 @@ use super::problem::{ConeEntry, ConeProblem};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
 
+/// Difference of weights, relative to the larger one of its row, up to which they count as the same (-): a Newton step with the factor of the
+/// ones leaves no more than this share of an imbalance under the others.
+const ALIKE: f64 = 1e-2;
+
 /// How the factor at hand fits the weights asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fit {
     /// It is the factor of the same numbers.
     Exact,
-    /// The weights are the same, but the matrix or the geometry has moved since.
+    /// The weights are nearly the same, but they, the matrix or the geometry have moved since.
     Near,
     /// It belongs to other weights.
     None,
@@ -189,8 +193,16 @@ impl System {
 
     /// Compares the factor at hand with the one asked for; the problem is that of the last [`prepare`](Self::prepare).
     pub fn fit(&self, problem: &ConeProblem, weights: &[[f64; 3]]) -> Fit {
-        if !self.has_factor || self.weights != weights {
+        if !self.has_factor || self.weights.len() != weights.len() {
             return Fit::None;
+        }
+        if self.weights != weights {
+            let is_near = |(kept, asked): (&[f64; 3], &[f64; 3])| {
+                let most = ALIKE * asked[0].max(asked[2]);
+                (0..3).all(|k| (kept[k] - asked[k]).abs() <= most)
+            };
+            let are_near = self.weights.iter().zip(weights).all(is_near);
+            return if are_near { Fit::Near } else { Fit::None };
         }
         if self.is_own {
             return Fit::Exact;
