@@ -19,6 +19,7 @@ use super::position::PARTING_RATE;
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointGrip;
+use crate::linalg::cone::SETTLING;
 use crate::math::exp;
 use crate::system::Block;
 
@@ -116,13 +117,17 @@ impl Island {
         let mut turned = self.correct();
         let mut n_stopped = 0;
         let mut has_left = false;
+        let mut guessed = f64::INFINITY;
         for pass in 0..PASSES_PER_ITERATION * settings.max_newton {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let is_eased = pass >= self.n_exact_passes(settings);
-            let near = self.enough(is_eased, NEAR * tolerance);
-            let misleads = is_guess && self.measure_guess() > near;
+            if is_guess {
+                guessed = self.measure_guess();
+            }
+            let near = self.enough(is_eased, guessed, NEAR * tolerance);
+            let misleads = is_guess && guessed > near;
             let mut arrives = false;
             let mut error = 0.0;
             if !self.is_finite() || has_left && self.leads_around() {
@@ -145,7 +150,7 @@ impl Island {
             let enough = if is_guess {
                 tolerance
             } else {
-                self.enough(is_eased, tolerance)
+                self.enough(is_eased, guessed, tolerance)
             };
             let is_close = if is_eased {
                 arrives && turned.way <= enough && self.shortfall(true) <= CLOSE_ENOUGH
@@ -213,11 +218,17 @@ impl Island {
 
     /// How far the laws may be from holding at the end of a pass (m).
     ///
-    /// Where contacts are many the gap is only a share of the margin: bodies stay apart whatever the forces are, and the next step begins
-    /// with what is left. What comes to rest is solved the finer the less it moves.
-    fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
-        if is_eased || self.has_many_rows() {
-            tolerance.max(CLOSE_ENOUGH * self.path.least_margin())
+    /// Where contacts are many that is a share of the margin, as bodies stay apart whatever the forces are and the next step begins with what
+    /// is left, but no more than a share of what the forces of the last step were off: what comes to rest is solved the finer the less it
+    /// moves.
+    ///
+    /// - `guessed`: how far the laws were from holding under these forces (m).
+    fn enough(&self, is_eased: bool, guessed: f64, tolerance: f64) -> f64 {
+        let close = CLOSE_ENOUGH * self.path.least_margin();
+        if is_eased {
+            tolerance.max(close)
+        } else if self.has_many_rows() {
+            tolerance.max(close.min(SETTLING * guessed))
         } else if self.has_large() {
             tolerance.max(CURVED_TOLERANCE * self.path.least_margin())
         } else {

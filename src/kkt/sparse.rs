@@ -63,15 +63,25 @@ impl Shape {
     }
 }
 
-/// The sparse problem of an island, with its buffers.
-#[derive(Debug, Default)]
-pub(super) struct Sparse {
-    /// One for each response: what rests keeps its factors.
-    solvers: [ConeSolver; 4],
-    matrix: Option<BlockMatrix>,
+/// What is kept of an island from step to step: its unknowns and factors.
+#[derive(Debug)]
+struct Kept {
     shapes: Vec<Shape>,
+    matrix: BlockMatrix,
     /// First node of every block.
     first: Vec<usize>,
+    /// One for each response: what rests keeps its factors.
+    solvers: [ConeSolver; 4],
+    /// Whether it has been asked for since the step began.
+    is_in_use: bool,
+}
+
+/// The sparse problem of an island, with its buffers, and what is kept of those of the step before.
+#[derive(Debug, Default)]
+pub(super) struct Sparse {
+    kept: Vec<Kept>,
+    /// The island at hand among these.
+    at: usize,
     rows: Vec<ConeRow>,
     entries: Vec<ConeEntry>,
     /// Place of every cone row's first component among the scalar rows.
@@ -94,6 +104,11 @@ pub(super) struct Asked {
 }
 
 impl Island {
+    /// Forgets what is kept of sparse problems that the step before did not ask for.
+    pub fn begin_step(&mut self) {
+        self.sparse.forget_unused();
+    }
+
     /// Whether the scalar rows at hand are better solved as a sparse problem.
     pub(super) fn is_sparse(&self, n_rows: usize) -> bool {
         if self.path.is_empty() || n_rows <= ALWAYS_DENSE {
@@ -340,8 +355,8 @@ impl Island {
         asked: Asked,
     ) -> Result<ConeOutcome, KktError> {
         let Sparse {
-            solvers,
-            matrix: Some(matrix),
+            kept,
+            at,
             rows,
             entries,
             places,
@@ -349,8 +364,10 @@ impl Island {
             multipliers,
             slip,
             answer,
-            ..
-        } = sparse
+        } = sparse;
+        let Some(Kept {
+            matrix, solvers, ..
+        }) = kept.get_mut(*at)
         else {
             return Ok(ConeOutcome::default());
         };

@@ -71,6 +71,7 @@ impl FlexPipeline {
     ) -> Result<(), StepError> {
         self.discard_solution();
         self.gatherer.under_way.begin_step();
+        self.island.begin_step();
         self.gatherer.turn_over(false);
         self.components.clear();
         for flex in 0..self.claims.flex.len() {

@@ -1,57 +1,25 @@
 //! The unknowns and loads of a sparse problem: how blocks are laid out in it.
 
-use super::{Shape, Sparse};
+use super::{Kept, Shape, Sparse};
 use crate::constraint::joint::{JointGrip, unit_wrench};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cone::ConeEntry;
 use crate::math::{Vec2, cross};
 use crate::system::{Block, Point};
 
-impl Sparse {
-    pub(super) fn n_nodes(&self) -> usize {
-        self.matrix.as_ref().map_or(0, BlockMatrix::n_nodes)
+impl Kept {
+    /// Whether it is what is kept of these blocks.
+    fn is_of(&self, blocks: &[Block]) -> bool {
+        let mut pairs = self.shapes.iter().zip(blocks);
+        self.shapes.len() == blocks.len() && pairs.all(|(shape, block)| shape.is_that_of(block))
     }
 
-    pub(super) fn scratch_begin(&mut self) {
-        self.load.fill(0.0);
-    }
-
-    /// Writes the bodies' matrices, in a new pattern if the bodies are others.
-    pub(super) fn fill_matrix(&mut self, blocks: &[Block]) {
-        let is_same = self.shapes.len() == blocks.len()
-            && self.matrix.is_some()
-            && self
-                .shapes
-                .iter()
-                .zip(blocks)
-                .all(|(shape, block)| shape.is_that_of(block));
-        if !is_same {
-            self.lay_out(blocks);
-        }
-        let Some(matrix) = &mut self.matrix else {
-            return;
-        };
-        for (block, &first) in blocks.iter().zip(&self.first) {
-            match block {
-                Block::Flex(block) => matrix.assign_part(first, block.effective()),
-                Block::Rigid(block) if !block.is_prescribed() => {
-                    let own = block.effective_mass();
-                    matrix.assign_diagonal(first, [own[0], own[1]]);
-                    matrix.assign_diagonal(first + 1, [own[2], 1.0]);
-                }
-                Block::Rigid(_) => {}
-            }
-        }
-    }
-
-    pub(super) fn lay_out(&mut self, blocks: &[Block]) {
-        self.shapes.clear();
-        self.shapes.extend(blocks.iter().map(Shape::of));
-        self.first.clear();
+    fn lay_out(blocks: &[Block]) -> Self {
+        let mut first = Vec::with_capacity(blocks.len());
         let mut n_nodes = 0;
         let mut pairs: Vec<[usize; 2]> = Vec::new();
         for block in blocks {
-            self.first.push(n_nodes);
+            first.push(n_nodes);
             match block {
                 Block::Flex(block) => {
                     let part = block.effective();
@@ -70,7 +38,58 @@ impl Sparse {
             }
         }
         let cells = pairs.iter().map(|pair| &pair[..]);
-        self.matrix = Some(BlockMatrix::from_cells(n_nodes, cells));
+        Self {
+            shapes: blocks.iter().map(Shape::of).collect(),
+            matrix: BlockMatrix::from_cells(n_nodes, cells),
+            first,
+            solvers: Default::default(),
+            is_in_use: true,
+        }
+    }
+}
+
+impl Sparse {
+    pub(super) fn n_nodes(&self) -> usize {
+        let kept = self.kept.get(self.at);
+        kept.map_or(0, |kept| kept.matrix.n_nodes())
+    }
+
+    pub(super) fn forget_unused(&mut self) {
+        self.kept.retain(|kept| kept.is_in_use);
+        for kept in &mut self.kept {
+            kept.is_in_use = false;
+        }
+    }
+
+    pub(super) fn scratch_begin(&mut self) {
+        self.load.fill(0.0);
+    }
+
+    /// Writes the bodies' matrices, in a new pattern if the bodies are others than those of every island that is known.
+    pub(super) fn fill_matrix(&mut self, blocks: &[Block]) {
+        let known = self.kept.iter().position(|kept| kept.is_of(blocks));
+        self.at = known.unwrap_or_else(|| {
+            self.kept.push(Kept::lay_out(blocks));
+            self.kept.len() - 1
+        });
+        let Kept {
+            matrix,
+            first,
+            is_in_use,
+            ..
+        } = &mut self.kept[self.at];
+        *is_in_use = true;
+        for (block, &first) in blocks.iter().zip(&*first) {
+            match block {
+                Block::Flex(block) => matrix.assign_part(first, block.effective()),
+                Block::Rigid(block) if !block.is_prescribed() => {
+                    let own = block.effective_mass();
+                    matrix.assign_diagonal(first, [own[0], own[1]]);
+                    matrix.assign_diagonal(first + 1, [own[2], 1.0]);
+                }
+                Block::Rigid(_) => {}
+            }
+        }
     }
 
     /// Adds what a point of a block contributes to a row along two directions.
@@ -81,7 +100,7 @@ impl Sparse {
         (point, lever): (Point, Vec2),
         [normal, tangent]: [Vec2; 2],
     ) {
-        let first = self.first[block] as u32;
+        let first = self.kept[self.at].first[block] as u32;
         match (&blocks[block], point) {
             (Block::Flex(body), Point::Node(node)) => {
                 let [normal, tangent] = [normal, tangent].map(|v| body.local_row(node, v));
@@ -137,7 +156,7 @@ impl Sparse {
             }
             Block::Rigid(body) => {
                 let wrench = unit_wrench(grip, direction, is_turn);
-                let first = self.first[grip.block] as u32;
+                let first = self.kept[self.at].first[grip.block] as u32;
                 self.wrench(body.moves_along(), first, [wrench, [0.0; 3]]);
             }
         }
@@ -152,7 +171,7 @@ impl Sparse {
     ) {
         match (&blocks[block], point) {
             (Block::Flex(body), Point::Node(node)) => {
-                let at = 2 * (self.first[block] + node);
+                let at = 2 * (self.kept[self.at].first[block] + node);
                 let local = body.local_row(node, force);
                 self.load[at] += local[0];
                 self.load[at + 1] += local[1];
@@ -168,7 +187,7 @@ impl Sparse {
         let Block::Rigid(body) = &blocks[block] else {
             return;
         };
-        let at = 2 * self.first[block];
+        let at = 2 * self.kept[self.at].first[block];
         for (i, moves) in body.moves_along().into_iter().enumerate() {
             if moves {
                 self.load[at + i] += wrench[i];
