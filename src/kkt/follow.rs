@@ -27,7 +27,10 @@ use crate::system::Block;
 /// that are stopped that often meet in ways that the step does not resolve.
 const MOST_STOPS: usize = 20;
 
-/// Share of the margin within which the laws hold where bodies of large strain find their equilibrium to a residual (-).
+/// Share of the margin within which the laws hold where the contacts are many (-): a thousandth moves no force that counts.
+pub(super) const LARGE_TOLERANCE: f64 = 1e-3;
+
+/// The same where bodies of large strain find their equilibrium to a residual (-).
 const CURVED_TOLERANCE: f64 = 1e-6;
 
 /// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
@@ -37,7 +40,7 @@ const PASSES_PER_ITERATION: usize = 2;
 const FEW_PASSES: usize = 6;
 
 /// Share of its way's margin by which a true gap or slip may miss what the law asks for (-).
-pub(super) const CLOSE_ENOUGH: f64 = 0.05;
+const CLOSE_ENOUGH: f64 = 0.05;
 
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
@@ -218,19 +221,18 @@ impl Island {
 
     /// How far the laws may be from holding at the end of a pass (m).
     ///
-    /// Where contacts are many that is a share of the margin, as bodies stay apart whatever the forces are and the next step begins with what
-    /// is left, but no more than a share of what the forces of the last step were off: what comes to rest is solved the finer the less it
-    /// moves.
+    /// Where contacts are many that is no more than a share of what the forces of the last step were off: what comes to rest is solved the
+    /// finer the less it moves.
     ///
     /// - `guessed`: how far the laws were from holding under these forces (m).
     fn enough(&self, is_eased: bool, guessed: f64, tolerance: f64) -> f64 {
-        let close = CLOSE_ENOUGH * self.path.least_margin();
+        let margin = self.path.least_margin();
         if is_eased {
-            tolerance.max(close)
+            CLOSE_ENOUGH * margin
         } else if self.has_many_rows() {
-            tolerance.max(close.min(SETTLING * guessed))
+            tolerance.max((LARGE_TOLERANCE * margin).min(SETTLING * guessed))
         } else if self.has_large() {
-            tolerance.max(CURVED_TOLERANCE * self.path.least_margin())
+            tolerance.max(CURVED_TOLERANCE * margin)
         } else {
             tolerance
         }

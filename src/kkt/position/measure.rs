@@ -13,34 +13,53 @@ impl ActiveContact {
         let gap = base.gap + normal.dot(&onward) - self.allowance;
         self.kinematics.gap = gap;
         self.slip = self.kinematics.tangent().dot(&(base.moved + onward)) + self.slip_before;
-        self.shortfall(friction)
+        self.violation(friction)
     }
 
     /// How far the laws were from holding at the last measurement (m).
-    pub(in crate::kkt) fn shortfall(&self, friction: f64) -> f64 {
-        let slides_off = |base: AtBase| base.is_meeting && self.status[1] != Status::Stick;
-        // The force of what is lost is still in the iterate: as far from holding as it moves the contact, or far, but a number.
-        if self.is_lost || self.base.is_some_and(slides_off) {
-            let [normal, tangential] = self.multiplier.map(f64::abs);
-            let moves = |own: [f64; 2]| f64::max(own[0] * normal, own[1] * tangential);
-            return self.mobility.map_or(f64::MAX, moves);
+    fn violation(&self, friction: f64) -> f64 {
+        // The force of what is lost is still in the iterate: far from holding, but a number.
+        if self.is_lost || self.slides_off() {
+            return f64::MAX;
         }
-        // What gives way rests nearer by that much: so was it solved.
-        let yielded = [0, 1].map(|k| self.yielding[k] * self.multiplier[k]);
-        self.law_error(
-            self.kinematics.gap + yielded[0],
-            self.slip + yielded[1],
-            friction,
-        )
+        let [gap, slip] = self.rest();
+        self.law_error(gap, slip, friction)
     }
 
-    /// How far Signorini's and Coulomb's laws are from holding (m): by no more than the force that is too much, or missing, moves the contact.
-    fn law_error(&self, gap: f64, slip: f64, friction: f64) -> f64 {
+    /// The same, but by no more than the force that is too much, or missing, moves the contact where that is known (m).
+    pub(in crate::kkt) fn shortfall(&self, friction: f64) -> f64 {
+        let violation = self.violation(friction);
+        let Some(mobility) = self.mobility else {
+            return violation;
+        };
         let [normal, tangential] = self.multiplier;
-        if normal <= 0.0 {
+        if self.is_lost || self.slides_off() {
+            return f64::max(mobility[0] * normal, mobility[1] * tangential.abs());
+        }
+        let [gap, slip] = self.rest();
+        let missing = friction * normal + slip.signum() * tangential;
+        let moved = f64::max(mobility[0] * normal, mobility[1] * missing);
+        violation.min(moved).max(-gap)
+    }
+
+    /// Whether it stands for vertices that are held together no longer.
+    fn slides_off(&self) -> bool {
+        let is_meeting = self.base.is_some_and(|base| base.is_meeting);
+        is_meeting && self.status[1] != Status::Stick
+    }
+
+    /// Gap and slip (m). What gives way rests nearer by that much: so was it solved.
+    fn rest(&self) -> [f64; 2] {
+        let yielded = [0, 1].map(|k| self.yielding[k] * self.multiplier[k]);
+        [self.kinematics.gap + yielded[0], self.slip + yielded[1]]
+    }
+
+    /// How far Signorini's and Coulomb's laws are from holding (m).
+    fn law_error(&self, gap: f64, slip: f64, friction: f64) -> f64 {
+        if self.multiplier[0] <= 0.0 {
             return -gap;
         }
-        let slid = if friction > 0.0 {
+        let slip = if friction > 0.0 {
             match self.status[1] {
                 Status::SlipPositive => slip,
                 Status::SlipNegative => -slip,
@@ -49,12 +68,7 @@ impl ActiveContact {
         } else {
             0.0
         };
-        let Some(mobility) = self.mobility else {
-            return gap.abs().max(slid);
-        };
-        let missing = friction * normal + slip.signum() * tangential;
-        let apart = gap.min(mobility[0] * normal);
-        apart.max(-gap).max(slid.min(mobility[1] * missing))
+        gap.abs().max(slip)
     }
 
     /// Measures gap and slip; returns how far the laws are from holding (m).
@@ -153,5 +167,26 @@ mod tests {
         assert!(contact.shortfall(0.5) < 1e-18);
         contact.slip = -4e-6;
         assert!((contact.shortfall(0.5) - 8e-6).abs() < 1e-18);
+    }
+
+    /// A force of a millionth of a newton that is left where the bodies are 2 mm apart, and slide, moves them by nothing.
+    #[test]
+    fn what_is_wrong_counts_by_the_motion_that_its_force_makes() {
+        let row = Kinematics::with_levers(2e-3, Vec2::new(0.0, 1.0), Vec2::zeros(), &[]);
+        let remembered = Remembered {
+            normal: 1e-6,
+            ..Remembered::default()
+        };
+        let mut contact = ActiveContact::new(0, row, remembered, 0.5, &[]);
+        contact.status = [Status::Stick; 2];
+        contact.slip = 1e-3;
+        assert_eq!(contact.shortfall(0.5), 2e-3);
+        contact.mobility = Some([1e-4; 2]);
+        assert!(contact.shortfall(0.5) <= 1e-10);
+        contact.is_lost = true;
+        assert!(contact.shortfall(0.5) <= 1e-10);
+        (contact.is_lost, contact.kinematics.gap) = (false, -3e-5);
+        assert_eq!(contact.shortfall(0.5), 3e-5);
+        assert_eq!(contact.violation(0.5), 1e-3);
     }
 }
