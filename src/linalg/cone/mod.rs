@@ -69,7 +69,7 @@ const POLISH: [f64; 3] = [1e2, 1e4, 1e6];
 const N_WARM: [usize; 2] = [12, 3];
 
 /// The part of the error at the start that may be left (-).
-pub(crate) const SETTLING: f64 = 1e-2;
+pub(crate) const SETTLING: f64 = 1e-3;
 
 /// What is good enough, and how much work it may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -281,7 +281,7 @@ impl ConeSolver {
         self.system.solve_bodies(&mut self.state.a);
     }
 
-    /// Allows the error of `w` that the settings admit, but no more than a hundredth of what the start is off: what comes to rest is
+    /// Allows the error of `w` that the settings admit, but no more than a thousandth of what the start is off: what comes to rest is
     /// solved the finer the less it moves, and comes to rest.
     fn set_goal(&mut self, problem: &ConeProblem) {
         let State {
