@@ -136,7 +136,7 @@ impl Gatherer {
         settings: &GatherSettings,
         sets: &RapierSets<'_>,
         flex_bodies: &mut FlexBodySet,
-        claims: &mut Claims,
+        claims: &Claims,
         (masters, book): (&Masters, &LinkBook),
         island: &mut Island,
     ) -> Result<(), GatherError> {
@@ -154,15 +154,13 @@ impl Gatherer {
                 self.add_flex(flex, settings, sets, flex_bodies, claims, island)?;
             }
         }
-        for index in 0..claims.rigid.len() {
-            let handle = claims.rigid[index];
+        for &handle in claims.rigid() {
             if claims.component_of_rigid(handle) == Some(component) {
                 self.add_claimed(handle, settings, sets, masters, island)?;
             }
         }
         self.agitation = Agitation::of(&island.blocks);
-        for slot in 0..claims.pairs.len() {
-            let pair = claims.pairs[slot];
+        for &pair in claims.pairs() {
             self.add_pair(pair, settings, sets, claims, island)?;
         }
         self.add_joints(settings, sets, flex_bodies, claims, island)?;

@@ -22,14 +22,13 @@ impl Gatherer {
         settings: &GatherSettings,
         sets: &RapierSets<'_>,
         flex_bodies: &FlexBodySet,
-        claims: &mut Claims,
+        claims: &Claims,
         island: &mut Island,
     ) -> Result<(), GatherError> {
-        for slot in 0..claims.joints.len() {
-            self.add_joint(claims.joints[slot], settings, sets, claims, island)?;
+        for &handle in claims.joints() {
+            self.add_joint(handle, settings, sets, claims, island)?;
         }
-        for slot in 0..claims.attached.len() {
-            let attached = claims.attached[slot];
+        for attached in claims.attached() {
             if claims.component_of_flex(attached.flex) != settings.component {
                 continue;
             }
@@ -48,7 +47,7 @@ impl Gatherer {
         handle: ImpulseJointHandle,
         settings: &GatherSettings,
         sets: &RapierSets<'_>,
-        claims: &mut Claims,
+        claims: &Claims,
         island: &mut Island,
     ) -> Result<(), GatherError> {
         let Some(joint) = sets.impulse_joints.get(handle) else {

@@ -2,7 +2,7 @@
 //! pairs of rigid bodies become candidates.
 
 use super::candidates::{self, Names};
-use super::claim::{ClaimedPair, Claims};
+use super::claim::Claims;
 use super::filter::claimable_parent;
 use super::gather::{GatherSettings, Gatherer, PlacedCollider};
 use super::hooks::{HookBook, HookedPair};
@@ -11,6 +11,7 @@ use super::rigid_pairs::RigidPair;
 use super::rigid_ways::RigidWay;
 use super::sets::RapierSets;
 use super::shapes::pose_of;
+use super::walk::ClaimedPair;
 use super::ways::{self, RigidSurface};
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
@@ -24,7 +25,7 @@ impl Gatherer {
         pair: ClaimedPair,
         settings: &GatherSettings,
         sets: &RapierSets<'_>,
-        claims: &mut Claims,
+        claims: &Claims,
         island: &mut Island,
     ) -> Result<(), GatherError> {
         let component = settings.component;
@@ -226,7 +227,7 @@ impl Gatherer {
         &self,
         pair: [ColliderHandle; 2],
         sets: &RapierSets<'_>,
-        claims: &mut Claims,
+        claims: &Claims,
     ) -> Option<usize> {
         pair.iter()
             .filter_map(|&handle| claimable_parent(sets, sets.colliders.get(handle)?))

@@ -5,8 +5,8 @@
 //! a manifold of one point, whose `user_data` lasts as long as the candidate does. Rapier is given the answers.
 
 use super::claim::Claims;
-use super::events::{PairName, pair_name};
 use super::links::LinkBook;
+use super::pair_name::{PairName, pair_name};
 use super::reading::GatherError;
 use super::sets::RapierSets;
 use crate::constraint::contact::{
@@ -306,7 +306,8 @@ impl HookGate<'_> {
     /// Whether the flexible stage asks the user itself.
     fn is_ours(&self, handles: [ColliderHandle; 2], colliders: &ColliderSet) -> bool {
         handles.iter().any(|&handle| {
-            self.claims.is_surface(handle) || (self.is_full && self.claims.holds(handle, colliders))
+            self.claims.flex.is_surface(handle)
+                || (self.is_full && self.claims.has_collider(handle, colliders))
         })
     }
 }

@@ -1,13 +1,18 @@
 //! What a snapshot writes of the border with rapier: whatever the next step, or the next event, depends on. All else is found anew
 //! in every step.
 
+use super::changes::Changes;
 use super::claim::Claims;
-use super::events::{EventBook, PairName};
+use super::events::EventBook;
+use super::filter::Answers;
 use super::gather::Gatherer;
 use super::hooks::HookBook;
 use super::links::LinkBook;
 use super::masters::{Master, Masters};
+use super::members::Members;
+use super::pair_name::PairName;
 use super::references::References;
+use super::roster::Roster;
 use super::sleep::Sleeper;
 use crate::body::FlexBodySet;
 use crate::constraint::contact::ContactKey;
@@ -65,13 +70,14 @@ struct ClaimRecord {
 
 impl ClaimRecord {
     fn of(claims: &Claims) -> Self {
-        let answers = listed(&claims.answers).into_iter();
+        let answers = listed(claims.walk.answers.all()).into_iter();
+        let (n_colliders, gravity) = claims.changes.noted();
         Self {
-            surfaces: listed(&claims.flex_of_collider),
-            claimed: listed(&claims.rigid_index),
-            asleep: claims.asleep.clone(),
-            n_colliders: claims.changes.n_colliders,
-            gravity: claims.changes.gravity,
+            surfaces: listed(claims.flex.slots()),
+            claimed: listed(claims.walk.members.places()),
+            asleep: claims.flex.asleep().to_vec(),
+            n_colliders,
+            gravity,
             answers: answers
                 .map(|(name, answer)| (name, answer.map(|flags| flags.bits())))
                 .collect(),
@@ -80,16 +86,12 @@ impl ClaimRecord {
 
     fn build(self) -> Claims {
         let answers = self.answers.into_iter();
+        let answers = answers.map(|(name, bits)| (name, bits.map(SolverFlags::from_bits_truncate)));
         let mut claims = Claims::default();
-        claims.flex_of_collider = self.surfaces.into_iter().collect();
-        claims.rigid_index = self.claimed.into_iter().collect();
-        claims.sleeping_surfaces = self.asleep.iter().map(|sleeper| sleeper.collider).collect();
-        claims.asleep = self.asleep;
-        claims.changes.n_colliders = self.n_colliders;
-        claims.changes.gravity = self.gravity;
-        claims.answers = answers
-            .map(|(name, bits)| (name, bits.map(SolverFlags::from_bits_truncate)))
-            .collect();
+        claims.flex = Roster::remembered(self.surfaces, self.asleep);
+        claims.changes = Changes::since(self.n_colliders, self.gravity);
+        claims.walk.members = Members::remembered(self.claimed);
+        claims.walk.answers = Answers::remembered(answers);
         claims
     }
 }

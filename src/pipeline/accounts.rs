@@ -102,8 +102,8 @@ impl FlexPipeline {
 
     /// Keeps what contacts of sleepers will be asked for when they wake, and what the report says of them.
     pub(super) fn keep_sleepers(&mut self, sets: &RapierSets<'_>) {
-        let claims = &self.claims;
-        let sleeps = |owner| claims.sleeps(sets, owner);
+        let flex = &self.claims.flex;
+        let sleeps = |owner| flex.sleeps(sets, owner);
         self.gatherer.keep(sleeps);
         self.memory
             .keep(|key| sleeps(key.contactor) || sleeps(key.target));

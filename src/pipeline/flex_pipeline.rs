@@ -9,8 +9,8 @@ use crate::body::{FlexBodyHandle, FlexBodySet};
 use crate::constraint::contact::ContactMemory;
 use crate::coupling::{
     Claims, EventBook, Gatherer, HookGate, JointImpulse, Landing, LinkBook, Masters, RapierSets,
-    Trespasser, WorldChange, hand_back, land, rests, stop_if_asleep, sync_settings, wake_disturbed,
-    write_impulses, write_surface,
+    Trespassers, WorldChange, hand_back, land, rests, stop_if_asleep, sync_settings,
+    wake_disturbed, write_impulses, write_surface,
 };
 use crate::kkt::Island;
 use crate::rapier::prelude::*;
@@ -57,7 +57,7 @@ pub struct FlexPipeline {
     pub(super) events: EventBook,
     pub(super) report: StepReport,
     /// What nobody has claimed and rapier's own step has left in a flexible body.
-    pub(super) trespassers: Vec<Trespasser>,
+    pub(super) trespassers: Trespassers,
     /// Bodies taken out of the world in this step.
     pub(super) sick: Vec<FlexBodyHandle>,
 }
@@ -85,7 +85,7 @@ impl FlexPipeline {
             components: Vec::new(),
             events: EventBook::default(),
             report: StepReport::default(),
-            trespassers: Vec::new(),
+            trespassers: Trespassers::default(),
             sick: Vec::new(),
         }
     }
@@ -222,17 +222,11 @@ impl FlexPipeline {
             self.wake_for_changes(sets, flex_bodies);
         }
         self.claims.look_ahead(sets, flex_bodies);
-        while self.claims.wake_met(sets) {
-            self.claims.look_ahead(sets, flex_bodies);
-        }
-        self.report.n_asleep = self.claims.n_asleep();
-        if let Some(joint) = self.claims.joint_to_carrier(sets) {
+        self.report.n_asleep = self.claims.flex.asleep().len();
+        if let Some(joint) = self.claims.flex.joint_to_carrier(sets) {
             return Err(StepError::CarrierJoint(joint));
         }
-        let is_detected = step.dt == 0.0
-            || is_changed
-            || self.claims.needs_detection(sets)
-            || self.claims.has_attached_bodies(sets);
+        let is_detected = step.dt == 0.0 || is_changed || self.claims.needs_detection(sets);
         clock.lap(&mut self.report.times.claim);
         self.report.is_detected = is_detected;
         if is_detected {
@@ -305,7 +299,7 @@ impl FlexPipeline {
 
     /// Makes the solved motions the committed ones and writes the surfaces.
     fn commit(&mut self, sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet) {
-        if self.claims.n_asleep() > 0 {
+        if !self.claims.flex.asleep().is_empty() {
             self.keep_sleepers(sets);
         }
         self.memory.turn_over();

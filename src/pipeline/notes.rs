@@ -3,7 +3,7 @@
 use super::flex_pipeline::FlexPipeline;
 use super::report::Participant;
 use crate::body::{FlexBodyHandle, FlexBodySet};
-use crate::coupling::{ClaimedPair, RapierSets};
+use crate::coupling::{ClaimedPair, RapierSets, overlaps_of_newcomers};
 use std::fmt;
 
 /// Something about a body that has just been inserted. Nothing is refused: the step was taken.
@@ -74,7 +74,7 @@ impl FlexPipeline {
                 });
             }
         }
-        for pair in self.claims.overlaps_of_newcomers(sets, flex_bodies) {
+        for pair in overlaps_of_newcomers(&self.claims, sets, flex_bodies) {
             let (body, with) = match pair {
                 ClaimedPair::FlexRigid(flex, other) => {
                     (handle(flex), Some(Participant::Rigid(other)))

@@ -71,11 +71,10 @@ impl FlexPipeline {
     /// Notes what rapier's own step has left in flexible bodies: nothing was solved there, and the step has been taken.
     pub(super) fn note_trespassers(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
         let known = self.report.gap_violation;
-        let mut found = std::mem::take(&mut self.trespassers);
-        found.clear();
-        self.claims
-            .list_trespassers(sets, flex_bodies, known, &mut found);
-        for one in &found {
+        let found = self
+            .trespassers
+            .find(&mut self.claims, sets, flex_bodies, known);
+        for one in found {
             self.report.quality = Quality::Unfinished;
             self.report.gap_violation = self.report.gap_violation.max(one.depth);
             self.report.unsolved.push(Unsolved {
@@ -87,7 +86,6 @@ impl FlexPipeline {
                 overlap: one.depth,
             });
         }
-        self.trespassers = found;
     }
 
     /// Notes an island that was not solved in one piece.
