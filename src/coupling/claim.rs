@@ -68,16 +68,16 @@ impl Claims {
         self.changes.gather(sets);
     }
 
-    /// Looks ahead along the velocities of the flexible bodies, before the detection step; wakes what is in their way.
-    pub fn look_ahead(&mut self, sets: &mut RapierSets<'_>, flex_bodies: &FlexBodySet) {
+    /// Looks ahead along the velocities of the flexible bodies, before the detection step.
+    pub fn look_ahead(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
         self.excess = 0.0;
-        loop {
-            self.flex.list(sets, flex_bodies);
-            if !wake_met(sets, &self.flex, &self.changes, &mut self.strikes) {
-                break;
-            }
-        }
+        self.flex.list(sets, flex_bodies);
         self.attached.list(&self.flex, flex_bodies);
+    }
+
+    /// Wakes sleepers that something awake may meet in the step; returns whether one woke, so that the look-ahead has to begin anew.
+    pub fn wake_met(&mut self, sets: &mut RapierSets<'_>) -> bool {
+        wake_met(sets, &self.flex, &self.changes, &mut self.strikes)
     }
 
     /// Meets the boxes of the flexible bodies with what is around them; returns whether anything was met of which only a detection step

@@ -5,7 +5,7 @@
 //! a manifold of one point, whose `user_data` lasts as long as the candidate does. Rapier is given the answers.
 
 use super::claim::Claims;
-use super::links::LinkBook;
+use super::link_gate::Borrowed;
 use super::pair_name::{PairName, pair_name};
 use super::reading::GatherError;
 use super::sets::RapierSets;
@@ -296,8 +296,8 @@ pub(crate) struct HookGate<'a> {
     pub book: &'a HookBook,
     /// Carriers and claimed bodies.
     pub claims: &'a Claims,
-    /// Links of multibodies, whose pairs with claimed bodies are ours.
-    pub links: &'a LinkBook,
+    /// Contacts of links with claimed bodies, which are ours.
+    pub borrowed: &'a Borrowed,
     /// Whether this is the full step, in which claimed bodies are locked.
     pub is_full: bool,
 }
@@ -317,7 +317,7 @@ impl PhysicsHooks for HookGate<'_> {
         let [one, other] = [context.collider1, context.collider2];
         let name = pair_name(one, other);
         let answered = self.claims.answer(name);
-        let borrowed = &self.links.borrowed;
+        let borrowed = self.borrowed;
         let flags = match answered.filter(|_| self.is_full) {
             Some(answer) => answer,
             None if borrowed.asks_user(name, context.colliders) => {

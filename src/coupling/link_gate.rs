@@ -14,7 +14,7 @@ use std::collections::HashSet;
 
 /// What was taken for the length of rapier's full step.
 #[derive(Debug, Default)]
-pub(super) struct Borrowed {
+pub(crate) struct Borrowed {
     hooks: Vec<(ColliderHandle, ActiveHooks)>,
     /// Joints with their locked, limited and driven axes.
     joints: Vec<(ImpulseJointHandle, [JointAxesMask; 3])>,

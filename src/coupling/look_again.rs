@@ -3,7 +3,7 @@
 //! What they meet there was not in the problem that was solved. The boxes grow by what was left of them, and the step is solved again.
 
 use super::claim::Claims;
-use super::hand_back::Landing;
+use super::landing::Landing;
 use super::sets::RapierSets;
 use crate::math::{Vec2, from_rapier, node_vec};
 use crate::rapier::math::Real;

@@ -5,23 +5,23 @@ use super::changes::Changes;
 use super::claim::Claims;
 use super::events::EventBook;
 use super::filter::Answers;
-use super::gather::Gatherer;
 use super::hooks::HookBook;
-use super::links::LinkBook;
-use super::masters::{Master, Masters};
+use super::masters::Master;
 use super::members::Members;
+use super::memory::Memory;
 use super::pair_name::PairName;
+use super::pool::FlexPool;
 use super::references::References;
 use super::roster::Roster;
 use super::sleep::Sleeper;
 use crate::body::FlexBodySet;
-use crate::constraint::contact::ContactKey;
+use crate::constraint::contact::{ContactKey, ContactMemory};
 use crate::constraint::joint::JointMemory;
 use crate::rapier::prelude::*;
-use crate::system::{ExplicitRecord, FlexBlock};
+use crate::system::ExplicitRecord;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::sync::{Arc, PoisonError};
+use std::sync::PoisonError;
 
 /// Handles as numbers, to sort by.
 trait Numbered: Copy {
@@ -190,56 +190,38 @@ pub(crate) struct CouplingRecord {
 
 impl CouplingRecord {
     /// The record of what a pipeline holds.
-    pub fn of(
-        claims: &Claims,
-        events: &EventBook,
-        (masters, links): (&Masters, &LinkBook),
-        gatherer: &Gatherer,
-    ) -> Self {
-        let pool = gatherer.pool.iter().enumerate();
-        let explicit = pool.filter_map(|(index, block)| {
-            let record = block.as_ref()?.explicit_record()?;
-            Some((index as u32, record))
-        });
+    pub fn of(claims: &Claims, events: &EventBook, memory: &Memory, pool: &FlexPool) -> Self {
         Self {
             claims: ClaimRecord::of(claims),
             events: EventRecord::of(events),
-            hooks: HookRecord::of(&gatherer.hooks),
-            masters: listed(&masters.last),
-            links: listed(&links.last),
-            references: gatherer.references.clone(),
-            joint_memory: gatherer.joint_memory.clone(),
-            explicit: explicit.collect(),
+            hooks: HookRecord::of(&memory.hooks),
+            masters: listed(&memory.masters.last),
+            links: listed(&memory.links.last),
+            references: memory.references.clone(),
+            joint_memory: memory.joints.clone(),
+            explicit: pool.explicit_records(),
         }
     }
 
     /// All of it again, `None` if it does not fit the bodies.
+    ///
+    /// - `contacts`: the memory of contacts, which has a record of its own.
     pub fn build(
         self,
+        contacts: ContactMemory,
         flex_bodies: &FlexBodySet,
-    ) -> Option<(Claims, EventBook, (Masters, LinkBook), Gatherer)> {
-        let mut gatherer = Gatherer::default();
-        gatherer.references = self.references;
-        gatherer.joint_memory = self.joint_memory;
-        gatherer.hooks = self.hooks.build();
-        for (index, record) in self.explicit {
-            let (_, body) = flex_bodies.at_index(index)?;
-            let (model, fixed) = (Arc::clone(body.model()), body.fixed_dofs().to_vec());
-            let mut block = FlexBlock::explicit(model, fixed, body.frame());
-            if !block.recall(record) {
-                return None;
-            }
-            let slot = index as usize;
-            if gatherer.pool.len() <= slot {
-                gatherer.pool.resize_with(slot + 1, || None);
-            }
-            gatherer.pool[slot] = Some(Box::new(block));
-        }
-        let mut masters = Masters::default();
-        masters.last = self.masters.into_iter().collect();
-        let mut links = LinkBook::default();
-        links.last = self.links.into_iter().collect();
-        let kept = (masters, links);
-        Some((self.claims.build(), self.events.build(), kept, gatherer))
+    ) -> Option<(Claims, EventBook, Memory, FlexPool)> {
+        let pool = FlexPool::remembered(self.explicit, flex_bodies)?;
+        let mut memory = Memory {
+            contacts,
+            joints: self.joint_memory,
+            references: self.references,
+            hooks: self.hooks.build(),
+            ..Memory::default()
+        };
+        memory.contacts.list_pressed();
+        memory.masters.last = self.masters.into_iter().collect();
+        memory.links.last = self.links.into_iter().collect();
+        Some((self.claims.build(), self.events.build(), memory, pool))
     }
 }

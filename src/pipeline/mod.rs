@@ -9,17 +9,19 @@ mod cutback;
 mod debug_render;
 mod error;
 mod flex_pipeline;
+mod islands;
 mod joint_accounts;
+mod names;
 mod notes;
+mod outcome;
 mod overbent;
 mod quality;
-mod quarantine;
 mod report;
-mod rest;
 mod settings;
 #[cfg(feature = "serde-serialize")]
 mod snapshot;
 mod solve;
+mod step;
 
 #[cfg(feature = "debug-render")]
 pub use debug_render::FlexDebugRender;

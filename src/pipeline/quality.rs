@@ -1,10 +1,11 @@
 //! How well a step was solved: the one place where a user sees that something was cut short.
 
-use super::flex_pipeline::FlexPipeline;
-use super::report::Participant;
+use super::accounts::SolvedPart;
+use super::names::Names;
+use super::report::{Participant, StepReport};
 use crate::body::FlexBodySet;
-use crate::coupling::RapierSets;
-use crate::kkt::IslandSummary;
+use crate::coupling::{Claims, Trespasser};
+use crate::kkt::{Island, IslandSummary};
 
 /// How well a step, or an island of it, was solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,71 +54,51 @@ impl IslandSummary {
     }
 }
 
-impl FlexPipeline {
-    /// Notes that members have left the boxes they were looked for in for good: what they meet there is not known.
-    pub(super) fn note_unseen(&mut self, flex_bodies: &FlexBodySet) {
-        let claimed = self.claims.flex.iter();
+impl StepReport {
+    /// Tells that members have left the boxes they were looked for in for good: what they meet there is not known.
+    pub(super) fn tell_unseen(&mut self, claims: &Claims, flex_bodies: &FlexBodySet) {
+        let claimed = claims.flex.iter();
         let flexible = claimed.filter_map(|flex| flex_bodies.at_index(flex.index));
-        self.report.quality = Quality::Unfinished;
-        self.report.unsolved.push(Unsolved {
+        self.quality = Quality::Unfinished;
+        self.unsolved.push(Unsolved {
             quality: Quality::Unfinished,
             bodies: flexible
                 .map(|(handle, _)| Participant::Flex(handle))
                 .collect(),
-            overlap: self.report.gap_violation,
+            overlap: self.gap_violation,
         });
     }
 
-    /// Notes what rapier's own step has left in flexible bodies: nothing was solved there, and the step has been taken.
-    pub(super) fn note_trespassers(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
-        let known = self.report.gap_violation;
-        let found = self
-            .trespassers
-            .find(&mut self.claims, sets, flex_bodies, known);
-        for one in found {
-            self.report.quality = Quality::Unfinished;
-            self.report.gap_violation = self.report.gap_violation.max(one.depth);
-            self.report.unsolved.push(Unsolved {
-                quality: Quality::Unfinished,
-                bodies: vec![
-                    Participant::Flex(one.body),
-                    Participant::Rigid(one.collider),
-                ],
-                overlap: one.depth,
-            });
-        }
+    /// Tells what rapier's own step has left in a flexible body: nothing was solved there, and the step has been taken.
+    pub(super) fn tell_trespasser(&mut self, one: &Trespasser) {
+        self.quality = Quality::Unfinished;
+        self.gap_violation = self.gap_violation.max(one.depth);
+        self.unsolved.push(Unsolved {
+            quality: Quality::Unfinished,
+            bodies: vec![
+                Participant::Flex(one.body),
+                Participant::Rigid(one.collider),
+            ],
+            overlap: one.depth,
+        });
     }
 
-    /// Notes an island that was not solved in one piece.
-    pub(super) fn note_quality(
+    /// Tells of a part of an island's step that was not solved in one piece; an island is told of once, whatever the number of its parts.
+    pub(super) fn tell_quality(
         &mut self,
-        summary: &IslandSummary,
-        sets: &RapierSets<'_>,
-        flex_bodies: &FlexBodySet,
+        part: &SolvedPart<'_>,
+        names: Names<'_, '_>,
+        is_told: &mut bool,
     ) {
+        let (island, summary) = (part.island, part.summary);
         let quality = summary.quality();
-        self.report.quality = self.report.quality.max(quality);
+        self.quality = self.quality.max(quality);
         if quality == Quality::Solved {
             return;
         }
-        let flexible = self.island.flex_index.iter().flatten();
-        let flexible = flexible.filter_map(|&index| flex_bodies.at_index(index));
-        let mut bodies: Vec<Participant> = flexible
-            .map(|(handle, _)| Participant::Flex(handle))
-            .collect();
-        let depth = |slot: &usize| -self.island.contacts[*slot].gap();
-        let worst = (0..self.island.contacts.len()).max_by(|a, b| depth(a).total_cmp(&depth(b)));
-        if let Some(slot) = worst {
-            let key = self.island.candidates[self.island.contacts[slot].candidate].key;
-            for owner in key.owners() {
-                let participant = Self::participant(owner, sets, flex_bodies);
-                bodies.extend(participant.filter(|one| !bodies.contains(one)));
-            }
-        }
-        let unsolved = &mut self.report.unsolved;
-        // An island is told of once, whatever the number of its parts.
-        let is_told = std::mem::replace(&mut self.gatherer.under_way.is_told, true);
-        if let Some(before) = unsolved.last_mut().filter(|_| is_told) {
+        let bodies = members_of(island, names);
+        let was_told = std::mem::replace(is_told, true);
+        if let Some(before) = self.unsolved.last_mut().filter(|_| was_told) {
             before.quality = before.quality.max(quality);
             before.overlap = before.overlap.max(summary.gap_violation);
             let new = bodies
@@ -127,10 +108,29 @@ impl FlexPipeline {
             before.bodies.extend(new);
             return;
         }
-        unsolved.push(Unsolved {
+        self.unsolved.push(Unsolved {
             quality,
             bodies,
             overlap: summary.gap_violation,
         });
     }
+}
+
+/// The flexible bodies of an island, and whose its worst contact is.
+fn members_of(island: &Island, names: Names<'_, '_>) -> Vec<Participant> {
+    let flexible = island.flex_index.iter().flatten();
+    let flexible = flexible.filter_map(|&index| names.flex_bodies.at_index(index));
+    let mut bodies: Vec<Participant> = flexible
+        .map(|(handle, _)| Participant::Flex(handle))
+        .collect();
+    let depth = |slot: &usize| -island.contacts[*slot].gap();
+    let worst = (0..island.contacts.len()).max_by(|a, b| depth(a).total_cmp(&depth(b)));
+    if let Some(slot) = worst {
+        let key = island.candidates[island.contacts[slot].candidate].key;
+        for owner in key.owners() {
+            let participant = names.participant(owner);
+            bodies.extend(participant.filter(|one| !bodies.contains(one)));
+        }
+    }
+    bodies
 }
