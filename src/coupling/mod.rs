@@ -71,7 +71,6 @@ pub(crate) use links::Push;
 pub(crate) use loan::{Lent, Loan};
 pub(crate) use memory::Memory;
 pub(crate) use newcomers::overlaps_of_newcomers;
-#[cfg(feature = "serde-serialize")]
 pub(crate) use pool::FlexPool;
 pub(crate) use pressed_point::PressedPoint;
 pub(crate) use quarantine::{quarantine, quarantine_carriers};

@@ -30,10 +30,10 @@ impl FlexPool {
     pub fn retain(&mut self, flex_bodies: &FlexBodySet) {
         for (index, slot) in self.blocks.iter_mut().enumerate() {
             let found = flex_bodies.at_index(index as u32);
-            let fits = |block: &Box<FlexBlock>| {
+            let fits = |block: &FlexBlock| {
                 found.is_some_and(|(_, body)| Arc::ptr_eq(block.model(), body.model()))
             };
-            if !slot.as_ref().is_some_and(fits) {
+            if !slot.as_deref().is_some_and(fits) {
                 *slot = None;
             }
         }
@@ -43,10 +43,10 @@ impl FlexPool {
     pub fn take(&mut self, index: u32, body: &FlexBody, step: &Step) -> Box<FlexBlock> {
         let kept = self.slot(index).take();
         let is_explicit = step.is_explicit();
-        let fits = |block: &Box<FlexBlock>| {
+        let fits = |block: &FlexBlock| {
             Arc::ptr_eq(block.model(), body.model()) && block.is_explicit() == is_explicit
         };
-        if let Some(block) = kept.filter(fits) {
+        if let Some(block) = kept.filter(|block| fits(block)) {
             return block;
         }
         let (model, fixed) = (Arc::clone(body.model()), body.fixed_dofs().to_vec());

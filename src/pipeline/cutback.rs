@@ -3,13 +3,14 @@
 //! Only the island that asks for it is cut, on our side: rapier takes the whole step at once. The report tells of the step as a whole:
 //! impulses of the parts over its length, what dissipates summed, the rest as it is at the end.
 
-use super::accounts::{Books, Entry};
+use super::accounts::Books;
 use super::checks::SHORTEST;
 use super::error::StepError;
 use super::islands::{Part, Solver, Task};
 use super::names::Names;
 use super::quality::Quality;
 use super::settings::FlexParameters;
+use super::solved::Entry;
 use crate::body::FlexBodySet;
 use crate::coupling::Span;
 use crate::kkt::GAINED;

@@ -1,14 +1,15 @@
 //! Solving the islands of a step, one by one: nothing of it is committed.
 
-use super::accounts::{Books, Entry, SolvedPart};
+use super::accounts::Books;
 use super::checks::{check_finite, name_bodies};
 use super::error::StepError;
 use super::names::Names;
 use super::settings::FlexParameters;
+use super::solved::{Entry, SolvedPart};
 use crate::body::{FlexBody, FlexBodySet};
-#[cfg(feature = "serde-serialize")]
-use crate::coupling::FlexPool;
-use crate::coupling::{Claims, GatherSettings, Gatherer, RapierSets, Sources, Span, UnderWay};
+use crate::coupling::{
+    Claims, FlexPool, GatherSettings, Gatherer, RapierSets, Sources, Span, UnderWay,
+};
 use crate::kkt::{Island, IslandSummary, SolveSettings};
 use crate::system::{FlexBlock, Step};
 
@@ -45,6 +46,11 @@ impl Solver {
     /// Drops what belongs to removed bodies and colliders.
     pub fn retain(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
         self.gatherer.retain(sets, flex_bodies);
+    }
+
+    /// The blocks of the flexible bodies, as the last step has left them.
+    pub fn pool(&self) -> &FlexPool {
+        &self.gatherer.pool
     }
 
     /// The rebuildable half of a body, as the last step has left it.
@@ -198,11 +204,6 @@ impl Solver {
 /// What a snapshot writes of it.
 #[cfg(feature = "serde-serialize")]
 impl Solver {
-    /// The blocks of the flexible bodies.
-    pub(super) fn pool(&self) -> &FlexPool {
-        &self.gatherer.pool
-    }
-
     /// A solver with the blocks of before.
     pub(super) fn with_pool(pool: FlexPool) -> Self {
         let mut solver = Self::default();

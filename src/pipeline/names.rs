@@ -1,6 +1,6 @@
 //! What the user knows the owners of contacts and joints as.
 
-use super::report::{Held, Participant};
+use super::participant::{Held, Participant};
 use crate::body::FlexBodySet;
 use crate::constraint::contact::Owner;
 use crate::constraint::joint::JointOwner;

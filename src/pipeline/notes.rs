@@ -1,6 +1,6 @@
 //! What a body's description asked for and is likely a mistake, told in the report of its first step.
 
-use super::report::Participant;
+use super::participant::Participant;
 use crate::body::{FlexBodyHandle, FlexBodySet};
 use crate::coupling::{ClaimedPair, Claims, RapierSets, overlaps_of_newcomers};
 use std::fmt;

@@ -1,10 +1,9 @@
 //! What the solved islands of a step want to commit, before anything is.
 
-use super::accounts::{Entry, SolvedPart};
-use super::islands::Solver;
+use super::solved::{Entry, SolvedPart};
 use crate::body::FlexBodySet;
 use crate::constraint::joint::{JointOwner, Measure};
-use crate::coupling::{JointImpulse, Landing, Push, RapierSets, keep_awake, wake_moving};
+use crate::coupling::{FlexPool, JointImpulse, Landing, Push, RapierSets, keep_awake, wake_moving};
 use crate::rapier::prelude::ImpulseJointHandle;
 use crate::system::Block;
 
@@ -80,12 +79,12 @@ impl Outcome {
     /// Keeps the carriers of bodies that move awake.
     pub fn keep_awake(
         &self,
-        solver: &Solver,
+        pool: &FlexPool,
         sets: &mut RapierSets<'_>,
         flex_bodies: &FlexBodySet,
     ) {
         for &(index, _) in &self.flexible {
-            let block = solver.block(index);
+            let block = pool.block(index);
             if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(index)) {
                 let is_attached = flex_bodies.is_attached(handle);
                 keep_awake(body, block.velocities(), is_attached, sets);
@@ -96,12 +95,12 @@ impl Outcome {
     /// Wakes carriers that rapier has put to sleep while their bodies move.
     pub fn wake_moving(
         &self,
-        solver: &Solver,
+        pool: &FlexPool,
         sets: &mut RapierSets<'_>,
         flex_bodies: &FlexBodySet,
     ) {
         for &(index, _) in &self.flexible {
-            let block = solver.block(index);
+            let block = pool.block(index);
             if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(index)) {
                 let is_attached = flex_bodies.is_attached(handle);
                 wake_moving(body, block.velocities(), is_attached, sets);

@@ -1,11 +1,7 @@
 //! How well a step was solved: the one place where a user sees that something was cut short.
 
-use super::accounts::SolvedPart;
-use super::names::Names;
-use super::report::{Participant, StepReport};
-use crate::body::FlexBodySet;
-use crate::coupling::{Claims, Trespasser};
-use crate::kkt::{Island, IslandSummary};
+use super::participant::Participant;
+use crate::kkt::IslandSummary;
 
 /// How well a step, or an island of it, was solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -54,83 +50,40 @@ impl IslandSummary {
     }
 }
 
-impl StepReport {
-    /// Tells that members have left the boxes they were looked for in for good: what they meet there is not known.
-    pub(super) fn tell_unseen(&mut self, claims: &Claims, flex_bodies: &FlexBodySet) {
-        let claimed = claims.flex.iter();
-        let flexible = claimed.filter_map(|flex| flex_bodies.at_index(flex.index));
-        self.quality = Quality::Unfinished;
-        self.unsolved.push(Unsolved {
-            quality: Quality::Unfinished,
-            bodies: flexible
-                .map(|(handle, _)| Participant::Flex(handle))
-                .collect(),
-            overlap: self.gap_violation,
-        });
-    }
-
-    /// Tells what rapier's own step has left in a flexible body: nothing was solved there, and the step has been taken.
-    pub(super) fn tell_trespasser(&mut self, one: &Trespasser) {
-        self.quality = Quality::Unfinished;
-        self.gap_violation = self.gap_violation.max(one.depth);
-        self.unsolved.push(Unsolved {
-            quality: Quality::Unfinished,
-            bodies: vec![
-                Participant::Flex(one.body),
-                Participant::Rigid(one.collider),
-            ],
-            overlap: one.depth,
-        });
-    }
-
-    /// Tells of a part of an island's step that was not solved in one piece; an island is told of once, whatever the number of its parts.
-    pub(super) fn tell_quality(
-        &mut self,
-        part: &SolvedPart<'_>,
-        names: Names<'_, '_>,
-        is_told: &mut bool,
-    ) {
-        let (island, summary) = (part.island, part.summary);
-        let quality = summary.quality();
-        self.quality = self.quality.max(quality);
-        if quality == Quality::Solved {
-            return;
+impl Unsolved {
+    /// Adds what is told of another part of the same island.
+    pub(super) fn join(&mut self, part: Self) {
+        self.quality = self.quality.max(part.quality);
+        self.overlap = self.overlap.max(part.overlap);
+        let known = self.bodies.len();
+        for body in part.bodies {
+            if !self.bodies[..known].contains(&body) {
+                self.bodies.push(body);
+            }
         }
-        let bodies = members_of(island, names);
-        let was_told = std::mem::replace(is_told, true);
-        if let Some(before) = self.unsolved.last_mut().filter(|_| was_told) {
-            before.quality = before.quality.max(quality);
-            before.overlap = before.overlap.max(summary.gap_violation);
-            let new = bodies
-                .into_iter()
-                .filter(|one| !before.bodies.contains(one));
-            let new: Vec<Participant> = new.collect();
-            before.bodies.extend(new);
-            return;
-        }
-        self.unsolved.push(Unsolved {
-            quality,
-            bodies,
-            overlap: summary.gap_violation,
-        });
     }
 }
 
-/// The flexible bodies of an island, and whose its worst contact is.
-fn members_of(island: &Island, names: Names<'_, '_>) -> Vec<Participant> {
-    let flexible = island.flex_index.iter().flatten();
-    let flexible = flexible.filter_map(|&index| names.flex_bodies.at_index(index));
-    let mut bodies: Vec<Participant> = flexible
-        .map(|(handle, _)| Participant::Flex(handle))
-        .collect();
-    let depth = |slot: &usize| -island.contacts[*slot].gap();
-    let worst = (0..island.contacts.len()).max_by(|a, b| depth(a).total_cmp(&depth(b)));
-    if let Some(slot) = worst {
-        let key = island.candidates[island.contacts[slot].candidate].key;
-        for owner in key.owners() {
-            let participant = names.participant(owner);
-            bodies.extend(participant.filter(|one| !bodies.contains(one)));
+#[cfg(test)]
+mod tests {
+    use super::{Participant, Quality, Unsolved};
+    use crate::rapier::prelude::ColliderHandle;
+
+    fn unsolved(quality: Quality, colliders: &[u32], overlap: f64) -> Unsolved {
+        let handle = |&index: &u32| ColliderHandle::from_raw_parts(index, 0);
+        let bodies = colliders.iter().map(handle).map(Participant::Rigid);
+        Unsolved {
+            quality,
+            bodies: bodies.collect(),
+            overlap,
         }
     }
-    bodies
+
+    /// The parts of an island's step are told of as one: the worst of them, and every body once.
+    #[test]
+    fn parts_of_an_island_are_told_of_as_one() {
+        let mut told = unsolved(Quality::Cut, &[1, 2], 2e-3);
+        told.join(unsolved(Quality::Unfinished, &[2, 3], 1e-3));
+        assert_eq!(told, unsolved(Quality::Unfinished, &[1, 2, 3], 2e-3));
+    }
 }

@@ -5,6 +5,7 @@ use super::clock::Clock;
 use super::error::StepError;
 use super::flex_pipeline::FlexPipeline;
 use super::islands::Task;
+use super::quality::Unsolved;
 use crate::body::FlexBodySet;
 use crate::coupling::RapierSets;
 use crate::system::Step;
@@ -28,7 +29,9 @@ impl FlexPipeline {
                 break;
             }
             if look == MOST_LOOKS {
-                self.report.tell_unseen(&self.claims, flex_bodies);
+                let overlap = self.report.gap_violation;
+                let unseen = Unsolved::unseen(&self.claims, flex_bodies, overlap);
+                self.report.tell(unseen);
                 break;
             }
             for (_, body) in flex_bodies.iter_mut() {
@@ -56,7 +59,7 @@ impl FlexPipeline {
     }
 
     /// Whether members have left the boxes they were looked for in; these have grown then.
-    pub(super) fn looks_again(&mut self, sets: &RapierSets<'_>) -> bool {
+    fn looks_again(&mut self, sets: &RapierSets<'_>) -> bool {
         let (solver, landings) = (&self.solver, &self.outcome.landings);
         self.claims
             .widen(|index| solver.block(index), landings, sets)

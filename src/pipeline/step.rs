@@ -201,7 +201,8 @@ impl FlexPipeline {
         flex_bodies: &FlexBodySet,
         clock: &mut Clock,
     ) {
-        self.outcome.keep_awake(&self.solver, sets, flex_bodies);
+        self.outcome
+            .keep_awake(self.solver.pool(), sets, flex_bodies);
         let (landings, pushes) = (&self.outcome.landings, &mut self.outcome.pushes);
         let links = &self.memory.links;
         let claimed = (step, &self.claims);
@@ -212,7 +213,7 @@ impl FlexPipeline {
         self.report.note_quarantine(loan.sets());
         clock.lap(&mut self.report.times.rapier);
         self.outcome
-            .wake_moving(&self.solver, loan.sets(), flex_bodies);
+            .wake_moving(self.solver.pool(), loan.sets(), flex_bodies);
         let is_led = self.parameters.leads(step);
         loan.land(&self.outcome.landings, is_led, &mut self.memory.masters);
         self.memory.links.keep(&self.outcome.pushes, sets);
@@ -251,7 +252,7 @@ impl FlexPipeline {
         let known = self.report.gap_violation;
         let claims = &mut self.claims;
         for one in self.trespassers.find(claims, sets, flex_bodies, known) {
-            self.report.tell_trespasser(one);
+            self.report.tell(one.into());
         }
     }
 }
