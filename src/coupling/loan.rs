@@ -141,3 +141,36 @@ impl Drop for Loan<'_, '_> {
         self.lent.give_back(self.sets);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrator::Beta2;
+    use crate::system::{RigidBlock, RigidLoad, RigidMotion};
+
+    /// Where a step ends early, as by a panic in a handler, the axes of claimed bodies come back with the sets, whatever was lent.
+    #[test]
+    fn what_is_lent_comes_back_when_the_loan_is_dropped() {
+        let mut world = PhysicsWorld::new();
+        let own = LockedAxes::TRANSLATION_LOCKED_X;
+        let handle = world.insert_body(RigidBodyBuilder::dynamic().locked_axes(own));
+        let step = Step::new(&Beta2::default(), 1.0 / 60.0);
+        let load = RigidLoad {
+            inverse_mass: [0.0, 1.0, 1.0],
+            force: [0.0; 3],
+            damping: [0.0; 3],
+        };
+        let block = RigidBlock::free(RigidMotion::default(), None, &load, &step);
+        let landings = [Landing::new(handle, &block)];
+        let (claims, memory, mut lent) =
+            (Claims::default(), LinkMemory::default(), Lent::default());
+        let mut sets = RapierSets::of_world(&mut world, &(), &());
+        let lending = (&landings[..], &mut Vec::new());
+        let mut loan = Loan::new(&mut lent, lending, &memory, (step, &claims), &mut sets);
+        let all = LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED;
+        assert_eq!(loan.sets().bodies[handle].locked_axes(), all);
+        drop(loan);
+        assert_eq!(sets.bodies[handle].locked_axes(), own);
+        assert!(lent.axes.is_empty());
+    }
+}
