@@ -8,7 +8,7 @@ use super::links::foresee_links;
 use super::masters::{Masters, cap_speed};
 use super::memory::Memory;
 use super::pool::FlexPool;
-use super::reading::{GatherError, is_held_load, is_held_motion, load_of};
+use super::reading::{GatherError, is_representable_load, is_representable_motion, load_of};
 use super::rigid_pairs::Agitation;
 use super::seats::{OpenIsland, Seats};
 use super::sets::RapierSets;
@@ -178,7 +178,7 @@ fn claimed_block(
         None => masters.motion(handle, body, load.drive()),
     };
     cap_speed(&mut motion, body, sets.integration_parameters);
-    if !is_held_motion(&motion) || !is_held_load(&load) {
+    if !is_representable_motion(&motion) || !is_representable_load(&load) {
         return Err(GatherError::RigidBody(handle));
     }
     let step = &sources.settings.step;

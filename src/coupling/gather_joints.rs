@@ -2,7 +2,7 @@
 
 use super::claim::Claims;
 use super::gather_settings::GatherSettings;
-use super::joints::{self, RowWriter, Side, is_held_joint};
+use super::joints::{self, RowWriter, Side, is_representable_joint};
 use super::masters::local_centre;
 use super::reading::GatherError;
 use super::seats::OpenIsland;
@@ -64,7 +64,7 @@ impl JointGatherer<'_, '_> {
         if claimed != Some(settings.component) {
             return Ok(());
         }
-        if !is_held_joint(&joint.data) {
+        if !is_representable_joint(&joint.data) {
             return Err(GatherError::Joint(handle));
         }
         let frames = [&joint.data.local_frame1, &joint.data.local_frame2];

@@ -11,7 +11,7 @@
 use super::filter::is_free_body;
 use super::gather_settings::GatherSettings;
 use super::multibody::{Pace, Tree};
-use super::reading::{GatherError, is_held_motion, prescribed_block};
+use super::reading::{GatherError, is_representable_motion, prescribed_block};
 use super::sets::RapierSets;
 use super::under_way::Span;
 use crate::kkt::Island;
@@ -163,7 +163,8 @@ pub(super) fn foresee_links(
     }
     for link in links {
         if let Block::Rigid(block) = &island.blocks[link.block]
-            && !(is_held_motion(&block.drift()) && block.smooth_end.into_iter().all(f64::is_finite))
+            && !(is_representable_motion(&block.drift())
+                && block.smooth_end.into_iter().all(f64::is_finite))
         {
             return Err(GatherError::RigidBody(link.handle));
         }

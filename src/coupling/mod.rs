@@ -74,7 +74,7 @@ pub(crate) use newcomers::overlaps_of_newcomers;
 pub(crate) use pool::FlexPool;
 pub(crate) use pressed_point::PressedPoint;
 pub(crate) use quarantine::{quarantine, quarantine_carriers};
-pub(crate) use reading::{GatherError, is_held_motion};
+pub(crate) use reading::{GatherError, is_representable_motion};
 #[cfg(feature = "serde-serialize")]
 pub(crate) use record::CouplingRecord;
 pub(crate) use seats::Seats;

@@ -3,7 +3,9 @@
 use super::error::StepError;
 use super::settings::FlexParameters;
 use crate::body::{FlexBody, FlexBodyError, FlexBodyHandle, FlexBodySet};
-use crate::coupling::{RapierSets, Seats, is_asleep, is_carried, is_held_motion, rounding};
+use crate::coupling::{
+    RapierSets, Seats, is_asleep, is_carried, is_representable_motion, rounding,
+};
 use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
 use crate::kkt::{Island, KktError};
@@ -115,7 +117,7 @@ fn check_integrator(
     integrator.check_step(dt, frequency)
 }
 
-/// Refuses a solved island whose motion rapier cannot hold.
+/// Refuses a solved island whose motion rapier cannot represent.
 pub(super) fn check_finite(
     island: &Island,
     seats: &Seats,
@@ -135,7 +137,7 @@ pub(super) fn check_finite(
     }
     for &(block, handle) in seats.claimed() {
         if let Block::Rigid(block) = &island.blocks[block]
-            && !(is_held_motion(block.current())
+            && !(is_representable_motion(block.current())
                 && block.smooth_end.into_iter().all(f64::is_finite))
         {
             return Err(StepError::RigidBody(handle));
@@ -144,7 +146,7 @@ pub(super) fn check_finite(
     Ok(())
 }
 
-/// The body of the island whose loads alone send it beyond what can be held: what touches it suffers, but is not to blame.
+/// The body of the island whose loads alone send it beyond what numbers can represent: what touches it suffers, but is not to blame.
 fn overloaded(island: &Island, flex_bodies: &FlexBodySet) -> Option<FlexBodyHandle> {
     let mut members = island.blocks.iter().zip(&island.flex_index);
     members.find_map(|(block, index)| match (block, index) {
