@@ -1,6 +1,7 @@
 //! The layers of the crate, read off its own sources: imports point downward, rapier stays at the border, and data never
 //! makes the library panic.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -53,6 +54,21 @@ const HANDLES_AND_SETTINGS: [&str; 9] = [
 ];
 
 const MOST_LINES: usize = 450;
+
+/// Layers whose modules still import each other in circles.
+const IN_CIRCLES: [&str; 5] = ["body", "fe", "kkt", "path", "system"];
+
+/// Files in which the methods of one type may stand.
+const MOST_ROOMS: usize = 3;
+
+/// Types that still have more, and how many: let these numbers fall.
+const TOO_WIDE: [(&str, usize); 5] = [
+    ("ActiveContact", 4),
+    ("FeasiblePath", 6),
+    ("FlexBlock", 15),
+    ("FlexBody", 8),
+    ("Island", 28),
+];
 
 /// One source file: code with comments, literals and test modules blanked out, line by line as in the file.
 struct Source {
@@ -362,6 +378,151 @@ fn every_import_points_to_a_lower_layer() {
     assert_none(&violations);
 }
 
+/// Modules of its own layer that a source names: through `crate::`, or by climbing to the layer with `super::`.
+fn siblings(source: &Source) -> Vec<String> {
+    let mut found = Vec::new();
+    let code = &source.code;
+    for (at, word) in words(code) {
+        let mut after = &code[at + word.len()..];
+        if word == "super" && !code[..at].ends_with("super::") {
+            let mut climbed = 1;
+            while let Some(rest) = after.strip_prefix("::super") {
+                climbed += 1;
+                after = rest;
+            }
+            if climbed + 1 != source.module.len() {
+                continue;
+            }
+        } else if word == source.layer() && code[..at].ends_with("crate::") {
+        } else {
+            continue;
+        }
+        if let Some(path) = after.strip_prefix("::") {
+            found.extend(heads(path));
+        }
+    }
+    found
+}
+
+/// By module of a layer, the modules beside it that it names; tests may look wherever they like.
+fn imports_within(layer: &str, sources: &[Source]) -> BTreeMap<String, BTreeSet<String>> {
+    let is_test = |source: &Source| source.module.iter().any(|part| part == "tests");
+    let own = sources
+        .iter()
+        .filter(|source| source.layer() == layer && source.module.len() > 1 && !is_test(source));
+    let mut imports: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for source in own {
+        let named = imports.entry(source.module[1].clone()).or_default();
+        named.extend(siblings(source));
+        named.remove(&source.module[1]);
+    }
+    let modules: BTreeSet<String> = imports.keys().cloned().collect();
+    for named in imports.values_mut() {
+        named.retain(|name| modules.contains(name));
+    }
+    imports
+}
+
+/// Modules that are left when those which import none that is left are taken away, again and again: each leads into a circle.
+fn in_circles(
+    mut imports: BTreeMap<String, BTreeSet<String>>,
+) -> BTreeMap<String, BTreeSet<String>> {
+    loop {
+        let (leaves, others): (BTreeMap<_, _>, BTreeMap<_, _>) =
+            imports.into_iter().partition(|(_, named)| named.is_empty());
+        imports = others;
+        if leaves.is_empty() {
+            return imports;
+        }
+        for named in imports.values_mut() {
+            named.retain(|name| !leaves.contains_key(name));
+        }
+    }
+}
+
+#[test]
+fn modules_of_a_layer_do_not_import_each_other_in_circles() {
+    let sources = sources();
+    let mut violations = Vec::new();
+    for layer in LAYERS.into_iter().flatten() {
+        let circles = in_circles(imports_within(layer, &sources));
+        let is_known = IN_CIRCLES.contains(layer);
+        assert!(
+            !(is_known && circles.is_empty()),
+            "`{layer}` has no circles any more: take it off the list"
+        );
+        if !is_known {
+            let told = circles.iter().map(|(module, named)| {
+                format!("src/{layer}/{module}.rs imports {named:?} and is imported by one of them")
+            });
+            violations.extend(told);
+        }
+    }
+    assert_none(&violations);
+}
+
+/// Types with methods of their own in some code: `impl Type`, not `impl Trait for Type`.
+fn types_with_methods(code: &str) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for line in code.lines() {
+        let Some(mut rest) = line.strip_prefix("impl") else {
+            continue;
+        };
+        if rest.starts_with('<') {
+            rest = &rest[end_of_generics(rest)..];
+        }
+        let Some(rest) = rest.strip_prefix(' ') else {
+            continue;
+        };
+        let name: String = rest.chars().take_while(|&c| is_word(c)).collect();
+        let mut after = &rest[name.len()..];
+        if after.starts_with('<') {
+            after = &after[end_of_generics(after)..];
+        }
+        // A path goes on with `::`, a trait with `for`.
+        if after.trim_start().starts_with('{') || after.trim_start().starts_with("where") {
+            found.insert(name);
+        }
+    }
+    found
+}
+
+fn end_of_generics(text: &str) -> usize {
+    let mut depth = 0;
+    for (at, c) in text.char_indices() {
+        match c {
+            '<' => depth += 1,
+            '>' if depth == 1 => return at + 1,
+            '>' => depth -= 1,
+            _ => {}
+        }
+    }
+    text.len()
+}
+
+#[test]
+fn a_type_is_a_room_and_has_its_methods_in_few_files() {
+    let mut files: BTreeMap<(String, String), Vec<String>> = BTreeMap::new();
+    for source in sources() {
+        for name in types_with_methods(&source.code) {
+            let room = (source.layer().to_owned(), name);
+            files.entry(room).or_default().push(source.name.clone());
+        }
+    }
+    let mut violations = Vec::new();
+    for ((_, name), files) in &files {
+        let known = TOO_WIDE.iter().find(|(wide, _)| wide == name);
+        let most = known.map_or(MOST_ROOMS, |(_, most)| *most);
+        if files.len() > most {
+            violations.push(format!(
+                "`{name}` has methods in {} files: {files:?}. Take it apart into things that own their data",
+                files.len()
+            ));
+        }
+    }
+    assert_none(&violations);
+}
+
 #[test]
 fn rapier_is_named_only_at_the_border() {
     let mut violations = Vec::new();
@@ -533,4 +694,35 @@ fn the_reader_of_this_test_sees_code_and_nothing_else() {
         .map(|(at, _)| source.line_of(at))
         .collect();
     assert_eq!(unwraps, [6]);
+}
+
+#[test]
+fn circles_and_rooms_are_found_where_they_are() {
+    let imports = |all: &[(&str, &[&str])]| -> BTreeMap<String, BTreeSet<String>> {
+        let named = |named: &[&str]| named.iter().map(|&name| name.to_owned()).collect();
+        let all = all
+            .iter()
+            .map(|(module, of)| ((*module).to_owned(), named(of)));
+        all.collect()
+    };
+    assert!(in_circles(imports(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &[])])).is_empty());
+    let circle = in_circles(imports(&[
+        ("a", &["b"]),
+        ("b", &["c"]),
+        ("c", &["b", "d"]),
+        ("d", &[]),
+    ]));
+    assert_eq!(circle.keys().collect::<Vec<_>>(), ["a", "b", "c"]);
+    let source = Source {
+        name: "coupling/deep/one.rs".into(),
+        module: ["coupling", "deep", "one"].map(String::from).into(),
+        code: "use super::other; use super::super::{far, near::X}; use crate::coupling::last::Y;"
+            .into(),
+        n_lines: 1,
+    };
+    assert_eq!(siblings(&source), ["far", "near", "last"]);
+    let code = "impl Plain {\nimpl<'a, T: Into<U>> Wide<'a, T> {\nimpl Drop for Loan<'_> {\nimpl From<A> for B {\n\
+                    impl Inner {\n";
+    let found: Vec<String> = types_with_methods(code).into_iter().collect();
+    assert_eq!(found, ["Inner", "Plain", "Wide"]);
 }

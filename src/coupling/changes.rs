@@ -4,13 +4,13 @@
 //! the marks themselves are looked at, and at nothing else of what is not marked. What is neither marked nor awake is where rapier's tree has it, so
 //! that it need not be asked.
 
-use super::claim::Claims;
-use super::places::{loosened, placed_on, swept_box, travel_of};
+use super::places::{loosened, placed_on, swept_box};
+use super::roster::Roster;
 use super::sets::RapierSets;
 use super::sleep::{is_asleep, reaches};
 use crate::body::FlexBodySet;
 use crate::rapier::data::HasModifiedFlag;
-use crate::rapier::math::{Real, Vector};
+use crate::rapier::math::Vector;
 use crate::rapier::parry::bounding_volume::BoundingVolume;
 use crate::rapier::prelude::*;
 
@@ -18,13 +18,11 @@ use crate::rapier::prelude::*;
 #[derive(Debug, Default)]
 pub(super) struct Changes {
     /// Marked bodies, those that the last step itself has written to included.
-    pub bodies: Vec<RigidBodyHandle>,
+    bodies: Vec<RigidBodyHandle>,
     /// Marked colliders and those of marked bodies; some twice.
-    pub colliders: Vec<ColliderHandle>,
-    /// Those of them that are no surfaces, for as long as the claim looks for what is near.
-    pub strangers: Vec<ColliderHandle>,
-    pub n_colliders: usize,
-    pub gravity: Vector,
+    colliders: Vec<ColliderHandle>,
+    /// What the next step is compared with: the number of colliders, and gravity.
+    noted: (usize, Vector),
 }
 
 /// What may end the rest of a flexible body that sleeps.
@@ -39,7 +37,8 @@ pub(crate) enum WorldChange {
 }
 
 impl Changes {
-    fn gather(&mut self, sets: &RapierSets<'_>) {
+    /// Gathers what is marked: since rapier's last step or, after a detection step, which has taken all changes over, since that.
+    pub fn gather(&mut self, sets: &RapierSets<'_>) {
         self.bodies.clear();
         self.colliders.clear();
         for (handle, collider) in sets.colliders.iter() {
@@ -54,28 +53,28 @@ impl Changes {
             }
         }
     }
-}
 
-impl Claims {
-    /// Colliders that were marked since rapier's last step, or whose body was; some twice.
-    pub fn marked_colliders(&self) -> &[ColliderHandle] {
-        &self.changes.colliders
+    /// Colliders that are marked, or whose body is; some twice.
+    pub fn colliders(&self) -> &[ColliderHandle] {
+        &self.colliders
     }
 
     /// Gathers what was changed since rapier's last step, and says whether it may concern what sleeps. Where nothing sleeps, nothing
     /// does.
-    pub fn look_for_changes(
+    pub fn look(
         &mut self,
         sets: &RapierSets<'_>,
+        flex: &Roster,
         flex_bodies: &FlexBodySet,
     ) -> WorldChange {
-        self.changes.gather(sets);
-        let is_counted = self.changes.n_colliders == sets.colliders.len();
-        let is_weighed = self.changes.gravity == sets.gravity;
-        let mut changed = self.changes.colliders.iter();
+        self.gather(sets);
+        let (n_colliders, gravity) = self.noted;
+        let is_counted = n_colliders == sets.colliders.len();
+        let is_weighed = gravity == sets.gravity;
+        let mut changed = self.colliders.iter();
         let change = if !is_weighed {
             WorldChange::Everywhere
-        } else if !is_counted || changed.any(|&handle| self.is_altered(sets, handle)) {
+        } else if !is_counted || changed.any(|&handle| is_altered(sets, flex, handle)) {
             WorldChange::Somewhere
         } else {
             return WorldChange::None;
@@ -90,34 +89,11 @@ impl Claims {
 
     /// Notes what the next step is to be compared with.
     pub fn note_world(&mut self, sets: &RapierSets<'_>) {
-        self.changes.n_colliders = sets.colliders.len();
-        self.changes.gravity = sets.gravity;
-    }
-
-    /// [`Claims::look_for_changes`] after a detection step, which has taken all changes over.
-    pub fn note_changes_taken_over(&mut self, sets: &RapierSets<'_>) {
-        self.changes.gather(sets);
-    }
-
-    /// Whether a collider is another than after the last step. Marks alone do not say so: rapier marks bodies that it wakes, and the
-    /// last step has written the surfaces of flexible bodies and the velocities of claimed ones.
-    fn is_altered(&self, sets: &RapierSets<'_>, handle: ColliderHandle) -> bool {
-        let Some(collider) = sets.colliders.get(handle) else {
-            return false;
-        };
-        if self.is_surface(handle) {
-            return false;
-        }
-        let body = collider.parent().and_then(|parent| sets.bodies.get(parent));
-        collider.has_modified_flag()
-            || body.is_some_and(|body| {
-                *collider.position() != placed_on(body, collider)
-                    || (collider.is_enabled() && !body.is_enabled())
-            })
+        self.noted = (sets.colliders.len(), sets.gravity);
     }
 
     /// Wakes sleepers beside which something was put or altered.
-    pub fn wake_beside_changes(&self, sets: &mut RapierSets<'_>, flex_bodies: &FlexBodySet) {
+    pub fn wake_beside(&self, sets: &mut RapierSets<'_>, flex: &Roster, flex_bodies: &FlexBodySet) {
         let dt = sets.integration_parameters.dt;
         let margin = sets.integration_parameters.prediction_distance();
         for (_, body) in flex_bodies.iter() {
@@ -132,11 +108,11 @@ impl Claims {
                 other.is_some_and(|other| {
                     let near = loosened(swept_box(sets.bodies, other, dt), margin);
                     near.intersects(&own)
-                        && self.is_altered(sets, handle)
+                        && is_altered(sets, flex, handle)
                         && reaches(sets, surface, &near)
                 })
             };
-            if is_asleep(body, sets.bodies) && self.changes.colliders.iter().any(meets) {
+            if is_asleep(body, sets.bodies) && self.colliders.iter().any(meets) {
                 sets.islands
                     .wake_up(sets.bodies, body.rigid_body_handle(), true);
             }
@@ -144,38 +120,60 @@ impl Claims {
     }
 
     /// Colliders whose place rapier's tree need not know: those of bodies that are awake, and whatever was changed; some twice.
-    pub(super) fn unsettled<'a>(
+    pub fn unsettled<'a>(
         &'a self,
         sets: &'a RapierSets<'_>,
     ) -> impl Iterator<Item = (ColliderHandle, &'a Collider)> + 'a {
         let awake = sets.islands.active_bodies();
         let of_awake = awake.filter_map(|handle| sets.bodies.get(handle));
         let handles = of_awake.flat_map(|body| body.colliders().iter());
-        let handles = handles.chain(&self.changes.colliders);
+        let handles = handles.chain(&self.colliders);
         handles.filter_map(|&handle| Some((handle, sets.colliders.get(handle)?)))
     }
 
     /// Whether no rigid body moves or was set moving, and nobody has written to a surface.
-    pub(super) fn rests_all_rigid(&self, sets: &RapierSets<'_>) -> bool {
+    pub fn leave_at_rest(&self, sets: &RapierSets<'_>, flex: &Roster) -> bool {
         let rests = |handle: RigidBodyHandle| {
             let body = sets.bodies.get(handle);
             body.is_none_or(|body| body.is_fixed() || body.is_sleeping() || !body.is_enabled())
         };
-        let mut changed = self.changes.colliders.iter();
+        let mut changed = self.colliders.iter();
         sets.islands.active_bodies().all(rests)
-            && self.changes.bodies.iter().copied().all(rests)
-            && !changed.any(|&handle| self.is_surface(handle))
+            && self.bodies.iter().copied().all(rests)
+            && !changed.any(|&handle| flex.is_surface(handle))
+    }
+}
+
+/// What a snapshot writes: what the next step is compared with.
+#[cfg(feature = "serde-serialize")]
+impl Changes {
+    /// The number of colliders and gravity.
+    pub fn noted(&self) -> (usize, Vector) {
+        self.noted
     }
 
-    /// How far the fastest body that is awake goes in the step (m), after the detection step.
-    pub(super) fn farthest_travel(&self, sets: &RapierSets<'_>) -> Real {
-        let dt = sets.integration_parameters.dt;
-        let awake = sets.islands.active_bodies();
-        awake
-            .filter_map(|handle| sets.bodies.get(handle))
-            .filter(|body| !body.is_fixed() && !body.is_sleeping())
-            .map(|body| travel_of(body, dt))
-            .chain(self.flex.iter().map(|flex| flex.travel))
-            .fold(0.0, Real::max)
+    /// Changes of a world that had so many colliders, and gravity.
+    pub fn since(n_colliders: usize, gravity: Vector) -> Self {
+        Self {
+            noted: (n_colliders, gravity),
+            ..Self::default()
+        }
     }
+}
+
+/// Whether a collider is another than after the last step. Marks alone do not say so: rapier marks bodies that it wakes, and the
+/// last step has written the surfaces of flexible bodies and the velocities of claimed ones.
+fn is_altered(sets: &RapierSets<'_>, flex: &Roster, handle: ColliderHandle) -> bool {
+    let Some(collider) = sets.colliders.get(handle) else {
+        return false;
+    };
+    if flex.is_surface(handle) {
+        return false;
+    }
+    let body = collider.parent().and_then(|parent| sets.bodies.get(parent));
+    collider.has_modified_flag()
+        || body.is_some_and(|body| {
+            *collider.position() != placed_on(body, collider)
+                || (collider.is_enabled() && !body.is_enabled())
+        })
 }

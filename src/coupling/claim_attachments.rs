@@ -1,7 +1,8 @@
 //! Claiming along attachments: what a flexible body is attached to is solved with it.
 
-use super::claim::Claims;
 use super::filter::claimable_body;
+use super::members::Members;
+use super::roster::Roster;
 use super::sets::RapierSets;
 use crate::body::{AttachmentTarget, FlexBody, FlexBodySet};
 use crate::rapier::prelude::*;
@@ -21,16 +22,22 @@ pub(crate) struct ClaimedAttachment {
     contacts_enabled: bool,
 }
 
-impl Claims {
-    /// Lists the attachments; the flexible bodies have been found already.
-    pub(super) fn list_attachments(&mut self, flex_bodies: &FlexBodySet) {
-        self.attached.clear();
+/// The attachments taking part in the step, in the order of their bodies' places.
+#[derive(Debug, Default)]
+pub(super) struct Attached {
+    all: Vec<ClaimedAttachment>,
+}
+
+impl Attached {
+    /// Lists the attachments of the flexible bodies that take part.
+    pub fn list(&mut self, flex: &Roster, flex_bodies: &FlexBodySet) {
+        self.all.clear();
         for (parts, attachment) in flex_bodies.attachments().iter() {
             let slot_of = |handle| {
                 let index = crate::body::FlexBodyHandle::into_raw_parts(handle).0;
-                self.flex.iter().position(|flex| flex.index == index)
+                flex.iter().position(|flex| flex.index == index)
             };
-            let Some(flex) = slot_of(attachment.body()) else {
+            let Some(own) = slot_of(attachment.body()) else {
                 continue;
             };
             let is_out = |handle| {
@@ -45,9 +52,9 @@ impl Claims {
                 AttachmentTarget::RigidBody(handle) => (None, Some(handle)),
                 AttachmentTarget::Flexible(handle) => (slot_of(handle), None),
             };
-            self.attached.push(ClaimedAttachment {
+            self.all.push(ClaimedAttachment {
                 parts,
-                flex,
+                flex: own,
                 other,
                 rigid,
                 first_node: attachment.nodes()[0],
@@ -56,46 +63,49 @@ impl Claims {
         }
         // The order of insertion is not physics.
         let order = |one: &ClaimedAttachment| (one.flex, one.first_node, one.other, one.parts);
-        self.attached.sort_unstable_by_key(order);
+        self.all.sort_unstable_by_key(order);
     }
 
     /// Whether something is attached of which only a detection step can tell what it touches.
-    pub fn has_attached_bodies(&self, sets: &RapierSets<'_>) -> bool {
-        let mut rigid = self.attached.iter().filter_map(|one| one.rigid);
+    pub fn has_rigid_bodies(&self, sets: &RapierSets<'_>) -> bool {
+        let mut rigid = self.all.iter().filter_map(|one| one.rigid);
         rigid.any(|handle| claimable_body(sets, handle))
     }
 
+    /// All of them.
+    pub fn as_slice(&self) -> &[ClaimedAttachment] {
+        &self.all
+    }
+
     /// Claims the bodies that flexible ones are attached to.
-    pub(super) fn claim_attached(&mut self, sets: &RapierSets<'_>) {
-        for slot in 0..self.attached.len() {
-            let ClaimedAttachment {
-                flex, other, rigid, ..
-            } = self.attached[slot];
-            if let Some(other) = other {
-                self.unite(flex, other);
+    pub fn claim(&self, sets: &RapierSets<'_>, members: &mut Members) {
+        for one in &self.all {
+            if let Some(other) = one.other {
+                members.unite(one.flex, other);
             }
-            if let Some(handle) = rigid.filter(|&handle| claimable_body(sets, handle)) {
-                let member = self.claim(handle);
-                self.unite(flex, member);
+            if let Some(handle) = one.rigid.filter(|&handle| claimable_body(sets, handle)) {
+                let member = members.claim(handle);
+                members.unite(one.flex, member);
             } else {
-                self.meet_link(sets, rigid, flex);
+                members.meet_link(sets.multibody_joints, one.rigid, one.flex);
             }
         }
     }
 
     /// Whether an attachment keeps a flexible body from touching a collider.
-    pub(super) fn attachment_forbids(
+    pub fn forbids(
         &self,
         sets: &RapierSets<'_>,
+        roster: &Roster,
         flex: usize,
         other: ColliderHandle,
     ) -> bool {
-        if self.attached.is_empty() {
+        if self.all.is_empty() {
             return false;
         }
-        let target = self.flex_of_collider.get(&other).copied();
+        let target = roster.slot_of(other);
         let parent = sets.colliders.get(other).and_then(Collider::parent);
-        self.attached.iter().any(|one| {
+        self.all.iter().any(|one| {
             let is_rigid = one.flex == flex && one.rigid.is_some() && one.rigid == parent;
             let is_flexible = target.is_some_and(|target| {
                 (one.flex, one.other) == (flex, Some(target))

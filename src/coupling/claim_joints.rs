@@ -1,14 +1,36 @@
 //! Claiming along impulse joints: what is joined to a claimed body is claimed with it.
 
-use super::claim::Claims;
 use super::filter::claimable_body;
+use super::members::Members;
 use super::places::order_of_bodies;
 use super::sets::RapierSets;
 use crate::rapier::prelude::*;
+use std::collections::HashSet;
 
-impl Claims {
+/// The impulse joints of claimed bodies.
+#[derive(Debug, Default)]
+pub(super) struct ClaimedJoints {
+    /// In the order they were reached.
+    taken: Vec<ImpulseJointHandle>,
+    known: HashSet<ImpulseJointHandle>,
+    /// Joints of one body with what they lead to: scratch.
+    partners: Vec<(RigidBodyHandle, ImpulseJointHandle)>,
+}
+
+impl ClaimedJoints {
+    /// Begins with none.
+    pub fn clear(&mut self) {
+        self.taken.clear();
+        self.known.clear();
+    }
+
+    /// All of them, in the order they were reached.
+    pub fn as_slice(&self) -> &[ImpulseJointHandle] {
+        &self.taken
+    }
+
     /// Takes up the enabled joints of a claimed body, and claims what they lead to.
-    pub(super) fn add_joints(&mut self, sets: &RapierSets<'_>, body: RigidBodyHandle) {
+    pub fn take_up(&mut self, sets: &RapierSets<'_>, body: RigidBodyHandle, members: &mut Members) {
         if sets.impulse_joints.is_empty() {
             return;
         }
@@ -22,34 +44,19 @@ impl Claims {
             order_of_bodies(sets, one.0, other.0)
                 .then_with(|| one.1.0.into_raw_parts().cmp(&other.1.0.into_raw_parts()))
         });
-        for slot in 0..self.partners.len() {
-            let (partner, handle) = self.partners[slot];
-            if !self.seen_joints.insert(handle) {
+        for &(partner, handle) in &self.partners {
+            if !self.known.insert(handle) {
                 continue;
             }
-            self.joints.push(handle);
+            self.taken.push(handle);
             if claimable_body(sets, partner) {
-                let other = self.claim(partner);
-                let own = self.claim(body);
-                self.unite(own, other);
+                let other = members.claim(partner);
+                let own = members.claim(body);
+                members.unite(own, other);
             } else {
-                let own = self.claim(body);
-                self.meet_link(sets, Some(partner), own);
+                let own = members.claim(body);
+                members.meet_link(sets.multibody_joints, Some(partner), own);
             }
         }
-    }
-
-    /// A joint of the user's to the carrier of a flexible body, if there is one.
-    pub fn joint_to_carrier(&self, sets: &RapierSets<'_>) -> Option<ImpulseJointHandle> {
-        if sets.impulse_joints.is_empty() {
-            return None;
-        }
-        let carriers = self.flex.iter().filter_map(|flex| {
-            let collider = sets.colliders.get(flex.collider)?;
-            collider.parent()
-        });
-        let mut joints =
-            carriers.flat_map(|carrier| sets.impulse_joints.attached_enabled_joints(carrier));
-        joints.next().map(|(_, _, handle, _)| handle)
     }
 }

@@ -8,50 +8,13 @@
 
 use super::claim::Claims;
 use super::force_pair::ForcePairs;
+use super::pair_name::{PairName, pair_name};
+use super::pressed_point::PressedPoint;
 use super::sets::RapierSets;
-use crate::math::Vec2;
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use std::collections::{HashMap, HashSet};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// Two colliders, in the order of their handles.
-pub(super) type PairName = [ColliderHandle; 2];
-
-pub(super) fn pair_name(one: ColliderHandle, other: ColliderHandle) -> PairName {
-    if one.into_raw_parts() <= other.into_raw_parts() {
-        [one, other]
-    } else {
-        [other, one]
-    }
-}
-
-/// A point at which two colliders press each other.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PressedPoint {
-    /// Collider of the point.
-    pub contactor: ColliderHandle,
-    /// Collider of the surface.
-    pub target: ColliderHandle,
-    /// Where (m).
-    pub position: Vec2,
-    /// Unit normal from the target to the contactor.
-    pub normal: Vec2,
-    /// Gap (m).
-    pub gap: f64,
-    /// Force on the contactor, along the normal and a quarter turn counter-clockwise from it (N).
-    pub force: [f64; 2],
-    /// Whether it is closed at the end of the step; an opened one may still have had a force.
-    pub is_closed: bool,
-    /// Whether rapier solved the pair in the last step, and found its force above the threshold.
-    pub was_above: bool,
-}
-
-impl PressedPoint {
-    fn name(&self) -> PairName {
-        pair_name(self.contactor, self.target)
-    }
-}
 
 /// What the handler was told about pairs of carriers and claimed bodies.
 #[derive(Debug, Default)]
@@ -342,7 +305,7 @@ impl EventGate<'_> {
         };
         [one, other]
             .iter()
-            .any(|&handle| claims.holds(handle, colliders))
+            .any(|&handle| claims.has_collider(handle, colliders))
     }
 }
 

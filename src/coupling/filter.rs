@@ -1,6 +1,6 @@
 //! Filters: which bodies the flexible stage can solve for, and which colliders may push each other.
 
-use super::events::{PairName, pair_name};
+use super::pair_name::{PairName, pair_name};
 use super::sets::RapierSets;
 use crate::rapier::prelude::*;
 use std::collections::HashMap;
@@ -33,53 +33,88 @@ pub(super) fn is_free_body(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bo
     })
 }
 
-/// Whether two colliders may push each other: what rapier's narrow phase asks of a pair, the user's hook included.
-pub(super) fn may_touch(
-    sets: &RapierSets<'_>,
-    one: ColliderHandle,
-    other: ColliderHandle,
-    answers: &mut HashMap<PairName, Option<SolverFlags>>,
-) -> bool {
-    let name = pair_name(one, other);
-    let pair = sets.narrow_phase.contact_pair(one, other);
-    let [collider1, collider2] = pair.map_or(name, |pair| [pair.collider1, pair.collider2]);
-    let (Some(first), Some(second)) =
-        (sets.colliders.get(collider1), sets.colliders.get(collider2))
-    else {
-        return false;
-    };
-    let is_solid = |collider: &Collider| collider.is_enabled() && !collider.is_sensor();
-    let type_of = |collider: &Collider| {
-        let body = collider.parent().and_then(|parent| sets.bodies.get(parent));
-        body.map_or(RigidBodyType::Fixed, RigidBody::body_type)
-    };
-    let types = (type_of(first), type_of(second));
-    let passes = is_solid(first)
-        && is_solid(second)
-        && first.collision_groups().test(second.collision_groups())
-        && [first, second]
-            .iter()
-            .any(|collider| collider.active_collision_types().test(types.0, types.1));
-    if !passes || joint_forbids(sets, first, second) {
-        return false;
+/// What the user's filter has said of pairs in this step: each is asked about once.
+#[derive(Debug, Default)]
+pub(super) struct Answers {
+    said: HashMap<PairName, Option<SolverFlags>>,
+}
+
+impl Answers {
+    /// Begins a step.
+    pub fn clear(&mut self) {
+        self.said.clear();
     }
-    let hooks = first.active_hooks() | second.active_hooks();
-    if !hooks.contains(ActiveHooks::FILTER_CONTACT_PAIRS) {
-        return true;
+
+    /// What was said of a pair, if the filter was asked.
+    pub fn of(&self, name: PairName) -> Option<Option<SolverFlags>> {
+        self.said.get(&name).copied()
     }
-    let context = PairFilterContext {
-        bodies: sets.bodies,
-        colliders: sets.colliders,
-        collider1,
-        collider2,
-        rigid_body1: first.parent(),
-        rigid_body2: second.parent(),
-    };
-    // From both sides, a pair is asked about once.
-    let flags = *answers
-        .entry(name)
-        .or_insert_with(|| sets.hooks.filter_contact_pair(&context));
-    flags.is_some_and(|flags| flags.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
+
+    /// Whether two colliders may push each other: what rapier's narrow phase asks of a pair, the user's hook included.
+    pub fn may_touch(
+        &mut self,
+        sets: &RapierSets<'_>,
+        one: ColliderHandle,
+        other: ColliderHandle,
+    ) -> bool {
+        let name = pair_name(one, other);
+        let pair = sets.narrow_phase.contact_pair(one, other);
+        let [collider1, collider2] = pair.map_or(name, |pair| [pair.collider1, pair.collider2]);
+        let (Some(first), Some(second)) =
+            (sets.colliders.get(collider1), sets.colliders.get(collider2))
+        else {
+            return false;
+        };
+        let is_solid = |collider: &Collider| collider.is_enabled() && !collider.is_sensor();
+        let type_of = |collider: &Collider| {
+            let body = collider.parent().and_then(|parent| sets.bodies.get(parent));
+            body.map_or(RigidBodyType::Fixed, RigidBody::body_type)
+        };
+        let types = (type_of(first), type_of(second));
+        let passes = is_solid(first)
+            && is_solid(second)
+            && first.collision_groups().test(second.collision_groups())
+            && [first, second]
+                .iter()
+                .any(|collider| collider.active_collision_types().test(types.0, types.1));
+        if !passes || joint_forbids(sets, first, second) {
+            return false;
+        }
+        let hooks = first.active_hooks() | second.active_hooks();
+        if !hooks.contains(ActiveHooks::FILTER_CONTACT_PAIRS) {
+            return true;
+        }
+        let context = PairFilterContext {
+            bodies: sets.bodies,
+            colliders: sets.colliders,
+            collider1,
+            collider2,
+            rigid_body1: first.parent(),
+            rigid_body2: second.parent(),
+        };
+        // From both sides, a pair is asked about once.
+        let flags = *self
+            .said
+            .entry(name)
+            .or_insert_with(|| sets.hooks.filter_contact_pair(&context));
+        flags.is_some_and(|flags| flags.contains(SolverFlags::COMPUTE_RIGID_IMPULSES))
+    }
+}
+
+/// What a snapshot writes.
+#[cfg(feature = "serde-serialize")]
+impl Answers {
+    /// All answers.
+    pub fn all(&self) -> &HashMap<PairName, Option<SolverFlags>> {
+        &self.said
+    }
+
+    /// Answers given before.
+    pub fn remembered(all: impl Iterator<Item = (PairName, Option<SolverFlags>)>) -> Self {
+        Self {
+            said: all.collect(),
+        }
+    }
 }
 
 /// Whether a joint between the bodies of two colliders keeps them from touching.

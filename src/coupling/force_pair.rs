@@ -3,7 +3,7 @@
 //! Rapier's own pairs of carriers and claimed bodies hold no impulse of ours, and cannot be written. A handler is given a
 //! pair of the same form instead, so that [`ContactForceEvent::from_contact_pair`] reads our forces from it.
 
-use super::events::PressedPoint;
+use super::pressed_point::PressedPoint;
 use crate::math::{Vec2, perp, to_rapier};
 use crate::rapier::math::Real;
 use crate::rapier::parry::shape::PackedFeatureId;

@@ -1,129 +1,52 @@
 //! Gathering: an island of blocks and candidates for every component of the claim.
 
 use super::claim::Claims;
-use super::flex_cores::FlexCores;
-use super::hooks::HookBook;
-use super::links::{LinkBlock, LinkBook};
+use super::gather_joints::JointGatherer;
+use super::gather_pairs::PairGatherer;
+use super::gather_settings::GatherSettings;
+use super::links::foresee_links;
 use super::masters::{Masters, cap_speed};
-use super::outlines::OutlineCache;
-use super::reading::{GatherError, is_held_load, is_held_motion, load_of};
-use super::references::References;
+use super::memory::Memory;
+use super::pool::FlexPool;
+use super::reading::{GatherError, is_representable_load, is_representable_motion, load_of};
 use super::rigid_pairs::Agitation;
-use super::rigid_ways::RigidCores;
+use super::seats::{OpenIsland, Seats};
 use super::sets::RapierSets;
-use super::shapes::ShapeCache;
-use super::under_way::{Span, UnderWay};
-use super::ways::Draft;
+use super::under_way::UnderWay;
 use crate::body::FlexBodySet;
-use crate::constraint::contact::Owner;
-use crate::constraint::geometry::Pose2;
-use crate::constraint::joint::JointMemory;
 use crate::kkt::Island;
 use crate::math::{Vec2, from_rapier};
 use crate::rapier::prelude::*;
-use crate::system::{Block, FlexBlock, FlexLoad, RigidBlock, Step};
-use std::collections::HashMap;
-use std::ops::Range;
-use std::sync::Arc;
+use crate::system::{FlexLoad, RigidBlock};
 
-/// Where a collider's parts are in the island being gathered.
-#[derive(Clone, Debug)]
-pub(super) struct PlacedCollider {
-    pub(super) block: usize,
-    pub(super) parts: Range<usize>,
-    pub(super) offset: Pose2,
-}
-
-/// Builds islands; holds the rebuildable half of every flexible body and the converted shapes.
+/// Builds islands.
 #[derive(Debug, Default)]
 pub(crate) struct Gatherer {
-    /// One per slot of the flexible set.
-    pub(super) pool: Vec<Option<Box<FlexBlock>>>,
-    pub(super) shapes: ShapeCache,
-    pub(super) outlines: OutlineCache,
-    pub(super) draft: Draft,
-    pub(super) cores: RigidCores,
-    pub(super) flex_cores: FlexCores,
-    pub(super) references: References,
-    pub(super) placed: HashMap<ColliderHandle, PlacedCollider>,
-    block_of_body: HashMap<RigidBodyHandle, usize>,
-    pub(super) flex_blocks: HashMap<usize, usize>,
-    pub(super) agitation: Agitation,
-    /// Where members are between two parts of a step.
-    pub under_way: UnderWay,
-    /// Multipliers of joints in the last step.
-    pub joint_memory: JointMemory,
-    /// What the user's hooks said of the contacts gathered.
-    pub hooks: HookBook,
-    /// Claimed bodies of the island, by block.
-    pub bodies: Vec<(usize, RigidBodyHandle)>,
-    /// Links of multibodies in the island.
-    pub links: Vec<LinkBlock>,
+    /// Blocks of the flexible bodies, when they are in no island.
+    pub pool: FlexPool,
+    /// Who is which block of the island that was gathered last.
+    pub seats: Seats,
+    pairs: PairGatherer,
 }
 
-/// What all islands of a step have in common.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GatherSettings {
-    /// The component of the claim to gather.
-    pub component: usize,
-    /// Step length and weights, those of the part that is solved.
-    pub step: Step,
-    /// Which part of the step it is.
-    pub span: Span,
-    /// Prediction distance of rapier (m).
-    pub prediction: f64,
-    /// By how much members have left the boxes they were looked for in (m).
-    pub excess: f64,
-    /// Whether flexible surfaces are led along a feasible path.
-    pub uses_path: bool,
+/// What an island is gathered from.
+#[derive(Clone, Copy)]
+pub(crate) struct Sources<'a, 'r> {
+    /// What all of it has in common.
+    pub settings: &'a GatherSettings,
+    /// Rapier's world.
+    pub sets: &'a RapierSets<'r>,
+    /// Who takes part.
+    pub claims: &'a Claims,
+    /// Where the members are if the step has been begun.
+    pub under_way: &'a UnderWay,
 }
 
 impl Gatherer {
-    /// The number of numeric factorizations of a body so far.
-    pub fn n_factorizations(&self) -> u64 {
-        self.pool
-            .iter()
-            .flatten()
-            .map(|block| block.n_factorizations())
-            .sum()
-    }
-
-    /// Keeps the reference faces noted since the last call, or with `false` throws them away.
-    pub fn turn_over(&mut self, keeps: bool) {
-        if keeps {
-            self.references.turn_over();
-            self.joint_memory.turn_over();
-            self.hooks.turn_over();
-        } else {
-            self.references.discard_notes();
-            self.joint_memory.discard_notes();
-            self.hooks.begin();
-        }
-    }
-
-    /// Keeps the reference faces of owners that sleep.
-    pub fn keep(&mut self, sleeps: impl Fn(Owner) -> bool) {
-        self.references.keep(sleeps);
-    }
-
-    /// The rebuildable half of a body, if it took part in a step.
-    pub fn block(&self, index: u32) -> Option<&FlexBlock> {
-        self.pool.get(index as usize)?.as_deref()
-    }
-
     /// Drops what belongs to removed bodies and colliders.
     pub fn retain(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
-        for (index, slot) in self.pool.iter_mut().enumerate() {
-            let lives = flex_bodies.at_index(index as u32).is_some_and(|(_, body)| {
-                slot.as_ref()
-                    .is_some_and(|block| Arc::ptr_eq(block.model(), body.model()))
-            });
-            if !lives {
-                *slot = None;
-            }
-        }
-        self.shapes.retain(sets.colliders);
-        self.outlines.retain(sets.colliders);
+        self.pool.retain(flex_bodies);
+        self.pairs.retain(sets.colliders);
     }
 
     /// Fills `island` with one component.
@@ -133,88 +56,75 @@ impl Gatherer {
     /// will be built anew.
     pub fn gather(
         &mut self,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
+        sources: Sources<'_, '_>,
+        memory: &mut Memory,
         flex_bodies: &mut FlexBodySet,
-        claims: &mut Claims,
-        (masters, book): (&Masters, &LinkBook),
         island: &mut Island,
     ) -> Result<(), GatherError> {
+        let Sources {
+            settings,
+            sets,
+            claims,
+            under_way,
+        } = sources;
         let component = settings.component;
         island.clear();
-        self.placed.clear();
-        self.cores.clear();
-        self.flex_cores.clear();
-        self.block_of_body.clear();
-        self.flex_blocks.clear();
-        self.bodies.clear();
-        self.links.clear();
+        self.seats.clear();
+        self.pairs.clear();
         for flex in 0..claims.flex.len() {
             if claims.component_of_flex(flex) == component {
-                self.add_flex(flex, settings, sets, flex_bodies, claims, island)?;
+                self.add_flex(flex, sources, flex_bodies, island)?;
             }
         }
-        for index in 0..claims.rigid.len() {
-            let handle = claims.rigid[index];
-            if claims.component_of_rigid(handle) == Some(component) {
-                self.add_claimed(handle, settings, sets, masters, island)?;
+        for &handle in claims.rigid() {
+            if claims.component_of_rigid(handle) == Some(component)
+                && let Some(block) = claimed_block(handle, sources, &memory.masters)?
+            {
+                self.seats.add_claimed(handle, block, island);
             }
         }
-        self.agitation = Agitation::of(&island.blocks);
-        for slot in 0..claims.pairs.len() {
-            let pair = claims.pairs[slot];
-            self.add_pair(pair, settings, sets, claims, island)?;
+        let mut open = OpenIsland {
+            settings,
+            sets,
+            seats: &mut self.seats,
+            island,
+        };
+        let agitation = Agitation::of(&open.island.blocks);
+        for &pair in claims.pairs() {
+            self.pairs
+                .add(pair, claims, &agitation, memory, &mut open)?;
         }
-        self.add_joints(settings, sets, flex_bodies, claims, island)?;
-        self.finish_links(settings, book, sets, island)
-    }
-
-    /// Puts the flexible blocks of a solved island back into the pool.
-    pub fn give_back(&mut self, island: &mut Island) {
-        for (block, index) in island.blocks.drain(..).zip(&island.flex_index) {
-            if let (Block::Flex(block), Some(index)) = (block, index) {
-                self.pool[*index as usize] = Some(block);
-            }
-        }
-        island.flex_index.clear();
+        let last = if settings.span.is_first() {
+            &memory.joints
+        } else {
+            &under_way.joints
+        };
+        JointGatherer { last, open }.add_all(claims, flex_bodies)?;
+        foresee_links(
+            self.seats.links(),
+            settings.step,
+            &memory.links,
+            sets,
+            island,
+        )
     }
 
     fn add_flex(
         &mut self,
         flex: usize,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
+        sources: Sources<'_, '_>,
         flex_bodies: &mut FlexBodySet,
-        claims: &Claims,
         island: &mut Island,
     ) -> Result<(), GatherError> {
-        let index = claims.flex[flex].index;
+        let Sources { settings, sets, .. } = sources;
+        let index = sources.claims.flex[flex].index;
         let Some(handle) = flex_bodies.at_index(index).map(|(handle, _)| handle) else {
             return Ok(());
         };
         let Some(body) = flex_bodies.at_index_mut(index) else {
             return Ok(());
         };
-        let slot = index as usize;
-        if self.pool.len() <= slot {
-            self.pool.resize_with(slot + 1, || None);
-        }
-        let lives = self.pool[slot]
-            .as_ref()
-            .is_some_and(|block| Arc::ptr_eq(block.model(), body.model()));
-        let is_explicit = settings.step.is_explicit();
-        let kept = self.pool[slot].take();
-        let mut block = match kept.filter(|block| lives && block.is_explicit() == is_explicit) {
-            Some(block) => block,
-            None => {
-                let (model, fixed) = (Arc::clone(body.model()), body.fixed_dofs().to_vec());
-                Box::new(match body.large() {
-                    Some(large) => FlexBlock::large(model, Arc::clone(large), fixed, body.frame()),
-                    None if is_explicit => FlexBlock::explicit(model, fixed, body.frame()),
-                    None => FlexBlock::new(model, fixed, body.frame()),
-                })
-            }
-        };
+        let mut block = self.pool.take(index, body, &settings.step);
         let own: Vec2 = body.body_force().into();
         let gravity = body.gravity_scale() * from_rapier(sets.gravity) + own;
         let mut outcome = Ok(());
@@ -234,7 +144,7 @@ impl Gatherer {
             });
         }
         let rest = body.model().rest_positions();
-        let pins = self
+        let pins = sources
             .under_way
             .pins(index, settings.span, rest, body.prescribed());
         let load = FlexLoad {
@@ -244,70 +154,33 @@ impl Gatherer {
             reaction: body.reactions(),
         };
         let outcome = outcome.and_then(|()| block.predict(settings.step, body.state(), &load));
-        island.blocks.push(Block::Flex(block));
-        island.flex_index.push(Some(index));
-        self.flex_blocks.insert(flex, island.blocks.len() - 1);
+        self.seats.add_flex((flex, index), block, island);
         outcome.map_err(|source| GatherError::Factorization {
             body: handle,
             source,
         })
     }
+}
 
-    fn add_claimed(
-        &mut self,
-        handle: RigidBodyHandle,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
-        masters: &Masters,
-        island: &mut Island,
-    ) -> Result<(), GatherError> {
-        let Some(body) = sets.bodies.get(handle) else {
-            return Ok(());
-        };
-        let load = load_of(body, from_rapier(sets.gravity));
-        let (mut motion, acceleration) = match self.under_way.rigid(handle) {
-            Some(known) => known,
-            None => masters.motion(handle, body, load.drive()),
-        };
-        cap_speed(&mut motion, body, sets.integration_parameters);
-        if !is_held_motion(&motion) || !is_held_load(&load) {
-            return Err(GatherError::RigidBody(handle));
-        }
-        let block = RigidBlock::free(motion, acceleration, &load, &settings.step);
-        self.push_rigid(block, Some(handle), island);
-        self.bodies.push((island.blocks.len() - 1, handle));
-        Ok(())
+/// The block of a claimed rigid body.
+fn claimed_block(
+    handle: RigidBodyHandle,
+    sources: Sources<'_, '_>,
+    masters: &Masters,
+) -> Result<Option<RigidBlock>, GatherError> {
+    let sets = sources.sets;
+    let Some(body) = sets.bodies.get(handle) else {
+        return Ok(None);
+    };
+    let load = load_of(body, from_rapier(sets.gravity));
+    let (mut motion, acceleration) = match sources.under_way.rigid(handle) {
+        Some(known) => known,
+        None => masters.motion(handle, body, load.drive()),
+    };
+    cap_speed(&mut motion, body, sets.integration_parameters);
+    if !is_representable_motion(&motion) || !is_representable_load(&load) {
+        return Err(GatherError::RigidBody(handle));
     }
-
-    /// The block of a rigid body that is in the island already.
-    pub(super) fn known_block(&self, handle: RigidBodyHandle) -> Option<usize> {
-        self.block_of_body.get(&handle).copied()
-    }
-
-    /// The block of a claimed flexible body.
-    pub(super) fn flex_block(&self, flex: usize) -> Option<usize> {
-        self.flex_blocks.get(&flex).copied()
-    }
-
-    pub(super) fn push_rigid(
-        &mut self,
-        block: RigidBlock,
-        handle: Option<RigidBodyHandle>,
-        island: &mut Island,
-    ) -> usize {
-        let is_link = block.link_response().is_some();
-        island.blocks.push(Block::Rigid(block));
-        island.flex_index.push(None);
-        let index = island.blocks.len() - 1;
-        if let Some(handle) = handle {
-            self.block_of_body.insert(handle, index);
-            if is_link {
-                self.links.push(LinkBlock {
-                    block: index,
-                    handle,
-                });
-            }
-        }
-        index
-    }
+    let step = &sources.settings.step;
+    Ok(Some(RigidBlock::free(motion, acceleration, &load, step)))
 }

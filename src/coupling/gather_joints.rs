@@ -1,11 +1,11 @@
 //! Gathering joints and attachments as joint rows.
 
 use super::claim::Claims;
-use super::gather::{GatherSettings, Gatherer};
-use super::joints::{self, RowWriter, Side, is_held_joint};
+use super::gather_settings::GatherSettings;
+use super::joints::{self, RowWriter, Side, is_representable_joint};
 use super::masters::local_centre;
 use super::reading::GatherError;
-use super::sets::RapierSets;
+use super::seats::OpenIsland;
 use crate::body::{Anchor, Attachment, AttachmentKind, AttachmentTarget, FlexBodySet, Shift};
 use crate::constraint::joint::{
     JointGrip, JointKey, JointLaw, JointMemory, JointOwner, JointRow, Measure, Spring,
@@ -15,22 +15,27 @@ use crate::math::Vec2;
 use crate::rapier::prelude::*;
 use crate::system::{Point, RigidBlock, RigidMotion};
 
-impl Gatherer {
-    /// Adds the joints and attachments of a component.
-    pub(super) fn add_joints(
+/// Adds joint rows to an island.
+pub(super) struct JointGatherer<'a, 'r> {
+    /// Multipliers of joints where the step, or its part, begins.
+    pub last: &'a JointMemory,
+    /// The island, and whose it is.
+    pub open: OpenIsland<'a, 'r>,
+}
+
+impl JointGatherer<'_, '_> {
+    /// Adds the joints and attachments of the component.
+    pub fn add_all(
         &mut self,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
+        claims: &Claims,
         flex_bodies: &FlexBodySet,
-        claims: &mut Claims,
-        island: &mut Island,
     ) -> Result<(), GatherError> {
-        for slot in 0..claims.joints.len() {
-            self.add_joint(claims.joints[slot], settings, sets, claims, island)?;
+        let component = self.open.settings.component;
+        for &handle in claims.joints() {
+            self.add_joint(handle, claims)?;
         }
-        for slot in 0..claims.attached.len() {
-            let attached = claims.attached[slot];
-            if claims.component_of_flex(attached.flex) != settings.component {
+        for attached in claims.attached() {
+            if claims.component_of_flex(attached.flex) != component {
                 continue;
             }
             let Some(attachment) = flex_bodies.attachments().get(attached.parts) else {
@@ -38,7 +43,7 @@ impl Gatherer {
             };
             let owner = JointOwner::Attachment(attached.parts.0, attached.parts.1);
             let flex = [Some(attached.flex), attached.other];
-            self.add_attachment(attachment, (owner, flex), settings, sets, island);
+            self.add_attachment(attachment, (owner, flex));
         }
         Ok(())
     }
@@ -46,11 +51,9 @@ impl Gatherer {
     fn add_joint(
         &mut self,
         handle: ImpulseJointHandle,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
-        claims: &mut Claims,
-        island: &mut Island,
+        claims: &Claims,
     ) -> Result<(), GatherError> {
+        let OpenIsland { settings, sets, .. } = self.open;
         let Some(joint) = sets.impulse_joints.get(handle) else {
             return Ok(());
         };
@@ -61,13 +64,13 @@ impl Gatherer {
         if claimed != Some(settings.component) {
             return Ok(());
         }
-        if !is_held_joint(&joint.data) {
+        if !is_representable_joint(&joint.data) {
             return Err(GatherError::Joint(handle));
         }
         let frames = [&joint.data.local_frame1, &joint.data.local_frame2];
         let mut sides = [None; 2];
         for ((side, body), frame) in sides.iter_mut().zip(bodies).zip(frames) {
-            let block = self.block_of(body, settings, sets, island);
+            let block = self.open.block_of(body);
             let body = sets.bodies.get(body);
             *side = block
                 .zip(body)
@@ -77,8 +80,8 @@ impl Gatherer {
             return Ok(());
         };
         let mut writer = RowWriter {
-            island,
-            memory: self.last_joints(settings),
+            island: &mut *self.open.island,
+            memory: self.last,
             owner: joints::owner_of(handle),
             sides: [first, second],
             dt: settings.step.dt,
@@ -87,50 +90,24 @@ impl Gatherer {
         Ok(())
     }
 
-    /// Multipliers of joints where the step, or its part, begins.
-    fn last_joints(&self, settings: &GatherSettings) -> &JointMemory {
-        if settings.span.is_first() {
-            &self.joint_memory
-        } else {
-            &self.under_way.joints
-        }
-    }
-
-    /// The block of a rigid body: its own if it is claimed, or one that moves as rapier says.
-    pub(super) fn block_of(
-        &mut self,
-        handle: RigidBodyHandle,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
-        island: &mut Island,
-    ) -> Option<usize> {
-        if let Some(block) = self.known_block(handle) {
-            return Some(block);
-        }
-        let block = self.foreign_block(handle, settings, sets)?;
-        Some(self.push_rigid(block, Some(handle), island))
-    }
-
     fn add_attachment(
         &mut self,
         attachment: &Attachment,
         (owner, flex): (JointOwner, [Option<usize>; 2]),
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
-        island: &mut Island,
     ) {
-        let [own, other] = flex.map(|flex| flex.and_then(|flex| self.flex_block(flex)));
+        let OpenIsland { settings, sets, .. } = self.open;
+        let [own, other] = flex.map(|flex| flex.and_then(|flex| self.open.seats.flex_block(flex)));
         let (target, centre) = match attachment.target {
             AttachmentTarget::World => {
                 let block = moved_world(attachment, settings);
-                (Some(self.push_rigid(block, None, island)), attachment.pivot)
+                (Some(self.open.add_rigid(block)), attachment.pivot)
             }
             AttachmentTarget::RigidBody(handle) => {
                 let body = sets.bodies.get(handle).filter(|body| body.is_enabled());
                 let Some(body) = body else {
                     return;
                 };
-                let block = self.block_of(handle, settings, sets, island);
+                let block = self.open.block_of(handle);
                 (block, local_centre(body))
             }
             AttachmentTarget::Flexible(_) => (other, Vec2::zeros()),
@@ -138,6 +115,7 @@ impl Gatherer {
         let (Some(own), Some(target)) = (own, target) else {
             return;
         };
+        let island = &mut *self.open.island;
         let mut row = 0;
         for (slot, anchor) in attachment.anchors.iter().enumerate() {
             let nodes = match attachment.kind {
@@ -147,7 +125,7 @@ impl Gatherer {
             for (measure, law) in rows_of(attachment.kind) {
                 let key = JointKey { owner, row };
                 row += 1;
-                let remembered = self.last_joints(settings).recall(&key);
+                let remembered = self.last.recall(&key);
                 let first = island.joint_grips.len();
                 hold_anchor(island, (target, centre), anchor);
                 let weight = 1.0 / nodes.len() as f64;

@@ -2,41 +2,81 @@
 //! pairs of rigid bodies become candidates.
 
 use super::candidates::{self, Names};
-use super::claim::{ClaimedPair, Claims};
+use super::claim::Claims;
 use super::filter::claimable_parent;
-use super::gather::{GatherSettings, Gatherer, PlacedCollider};
+use super::flex_cores::FlexCores;
 use super::hooks::{HookBook, HookedPair};
+use super::memory::Memory;
+use super::outlines::OutlineCache;
 use super::reading::{GatherError, at_rest, law_of, offset_of, owner_of};
-use super::rigid_pairs::RigidPair;
-use super::rigid_ways::RigidWay;
+use super::rigid_pairs::{Agitation, RigidPair};
+use super::rigid_ways::{RigidCores, RigidWay};
+use super::seats::OpenIsland;
 use super::sets::RapierSets;
-use super::shapes::pose_of;
-use super::ways::{self, RigidSurface};
+use super::shapes::{ShapeCache, pose_of};
+use super::walk::ClaimedPair;
+use super::ways::{self, Draft, RigidSurface};
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
-use crate::kkt::Island;
 use crate::rapier::prelude::*;
 use crate::system::{Block, RigidBlock};
+use std::collections::HashMap;
+use std::ops::Range;
 
-impl Gatherer {
-    pub(super) fn add_pair(
+/// Where a collider's parts are in the island being gathered.
+#[derive(Clone, Debug)]
+struct PlacedCollider {
+    block: usize,
+    parts: Range<usize>,
+    offset: Pose2,
+}
+
+/// Adds pairs to islands; holds the converted shapes of colliders.
+#[derive(Debug, Default)]
+pub(super) struct PairGatherer {
+    shapes: ShapeCache,
+    outlines: OutlineCache,
+    /// The island's.
+    placed: HashMap<ColliderHandle, PlacedCollider>,
+    cores: RigidCores,
+    flex_cores: FlexCores,
+    draft: Draft,
+}
+
+impl PairGatherer {
+    /// Drops what belongs to removed colliders.
+    pub fn retain(&mut self, colliders: &ColliderSet) {
+        self.shapes.retain(colliders);
+        self.outlines.retain(colliders);
+    }
+
+    /// Begins with an empty island.
+    pub fn clear(&mut self) {
+        self.placed.clear();
+        self.cores.clear();
+        self.flex_cores.clear();
+    }
+
+    /// Adds a pair, if it is one of the component's.
+    pub fn add(
         &mut self,
         pair: ClaimedPair,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
-        claims: &mut Claims,
-        island: &mut Island,
+        claims: &Claims,
+        agitation: &Agitation,
+        memory: &mut Memory,
+        open: &mut OpenIsland<'_, '_>,
     ) -> Result<(), GatherError> {
+        let OpenIsland { settings, sets, .. } = *open;
         let component = settings.component;
         match pair {
             ClaimedPair::FlexRigid(flex, collider)
                 if claims.component_of_flex(flex) == component =>
             {
                 let own = claims.flex[flex];
-                let Some(block) = self.flex_blocks.get(&flex).copied() else {
+                let Some(block) = open.seats.flex_block(flex) else {
                     return Ok(());
                 };
-                let Some(placed) = self.place(collider, settings, sets, island)? else {
+                let Some(placed) = self.placed(collider, open)? else {
                     return Ok(());
                 };
                 let names = Names {
@@ -45,19 +85,14 @@ impl Gatherer {
                 };
                 let mut law = law_of(sets.colliders, own.collider, collider)?;
                 if settings.uses_path && !HookBook::asks([own.collider, collider], sets) {
-                    let led = self.lead(
-                        collider,
-                        block,
-                        (&placed, own.reach()),
-                        (names, law),
-                        sets,
-                        island,
-                    );
+                    let led =
+                        self.lead(collider, block, (&placed, own.reach()), (names, law), open);
                     match led {
                         Ok(()) => return Ok(()),
                         Err(gap) => law.skin += gap,
                     }
                 }
+                let island = &mut *open.island;
                 let first = island.candidates.len();
                 candidates::flex_rigid(
                     island,
@@ -68,13 +103,19 @@ impl Gatherer {
                     law,
                     own.edge + 2.0 * law.skin,
                 );
-                self.hook([own.collider, collider], names, first, sets, island)?;
+                hook(
+                    [own.collider, collider],
+                    names,
+                    first,
+                    &mut memory.hooks,
+                    open,
+                )?;
             }
             ClaimedPair::FlexFlex(one, other) if claims.component_of_flex(one) == component => {
                 // The finer surface is the contactor; the first by place if they are equal.
                 let is_finer = claims.flex[other].edge < claims.flex[one].edge * (1.0 - 1e-9);
                 let (contactor, target) = if is_finer { (other, one) } else { (one, other) };
-                let blocks = [contactor, target].map(|flex| self.flex_blocks.get(&flex).copied());
+                let blocks = [contactor, target].map(|flex| open.seats.flex_block(flex));
                 let [Some(points), Some(surface)] = blocks else {
                     return Ok(());
                 };
@@ -88,7 +129,7 @@ impl Gatherer {
                 let colliders = [points_of.collider, surface_of.collider];
                 if settings.uses_path && !HookBook::asks(colliders, sets) {
                     match ways::flex_flex(
-                        island,
+                        open.island,
                         [points, surface],
                         names,
                         law,
@@ -98,18 +139,19 @@ impl Gatherer {
                         Err(gap) => law.skin += gap,
                     }
                 }
+                let island = &mut *open.island;
                 let first = island.candidates.len();
                 candidates::flex_flex(island, points, surface, names, law, edge);
-                self.hook(colliders, names, first, sets, island)?;
+                hook(colliders, names, first, &mut memory.hooks, open)?;
             }
             ClaimedPair::RigidRigid(one, other) => {
-                if self.component_of_pair([one, other], sets, claims) != Some(component) {
+                if component_of_pair([one, other], sets, claims) != Some(component) {
                     return Ok(());
                 }
-                let Some(first) = self.place(one, settings, sets, island)? else {
+                let Some(first) = self.placed(one, open)? else {
                     return Ok(());
                 };
-                let Some(second) = self.place(other, settings, sets, island)? else {
+                let Some(second) = self.placed(other, open)? else {
                     return Ok(());
                 };
                 let names = Names {
@@ -120,12 +162,13 @@ impl Gatherer {
                 let placed = [&first, &second];
                 if settings.uses_path
                     && !HookBook::asks([one, other], sets)
-                    && self.lead_rigid([one, other], placed, (names, law, settings), sets, island)
+                    && self.lead_rigid([one, other], placed, (names, law), agitation, open)
                 {
                     return Ok(());
                 }
                 let blocks = [first.block, second.block];
                 let parts = [first.parts, second.parts];
+                let island = &mut *open.island;
                 let first = island.candidates.len();
                 let pair = RigidPair {
                     blocks,
@@ -133,10 +176,10 @@ impl Gatherer {
                     names,
                     law,
                     prediction: settings.prediction + law.skin,
-                    agitation: &self.agitation,
+                    agitation,
                 };
-                pair.add_candidates(island, &mut self.references);
-                self.hook([one, other], names, first, sets, island)?;
+                pair.add_candidates(island, &mut memory.references);
+                hook([one, other], names, first, &mut memory.hooks, open)?;
             }
             _ => {}
         }
@@ -150,10 +193,9 @@ impl Gatherer {
         flex: usize,
         (placed, reach): (&PlacedCollider, f64),
         (names, law): (Names, ContactLaw),
-        sets: &RapierSets<'_>,
-        island: &mut Island,
+        open: &mut OpenIsland<'_, '_>,
     ) -> Result<(), f64> {
-        let Some(collider) = sets.colliders.get(handle) else {
+        let Some(collider) = open.sets.colliders.get(handle) else {
             return Err(0.0);
         };
         let surface = RigidSurface {
@@ -162,7 +204,7 @@ impl Gatherer {
             offset: placed.offset,
         };
         let drawing = (&mut self.draft, &mut self.flex_cores);
-        ways::flex_rigid(island, flex, &surface, names, law, reach, drawing)
+        ways::flex_rigid(open.island, flex, &surface, names, law, reach, drawing)
     }
 
     /// Leads two rigid colliders along a path that keeps them apart; returns whether they are.
@@ -170,16 +212,17 @@ impl Gatherer {
         &mut self,
         handles: [ColliderHandle; 2],
         placed: [&PlacedCollider; 2],
-        (names, law, settings): (Names, ContactLaw, &GatherSettings),
-        sets: &RapierSets<'_>,
-        island: &mut Island,
+        (names, law): (Names, ContactLaw),
+        agitation: &Agitation,
+        open: &mut OpenIsland<'_, '_>,
     ) -> bool {
+        let OpenIsland { settings, sets, .. } = *open;
         let [Block::Rigid(one), Block::Rigid(other)] =
-            placed.map(|collider| &island.blocks[collider.block])
+            placed.map(|collider| &open.island.blocks[collider.block])
         else {
             return false;
         };
-        let (reach, turn) = self.agitation.reach(
+        let (reach, turn) = agitation.reach(
             [one, other],
             settings.prediction + settings.excess + law.skin,
         );
@@ -205,42 +248,16 @@ impl Gatherer {
             reach,
             turn,
         };
-        self.cores.lead(&way, island)
-    }
-
-    /// Shows the candidates from the `first` on to the user's hook.
-    fn hook(
-        &mut self,
-        colliders: [ColliderHandle; 2],
-        names: Names,
-        first: usize,
-        sets: &RapierSets<'_>,
-        island: &mut Island,
-    ) -> Result<(), GatherError> {
-        let owners = [names.one, names.other];
-        let pair = HookedPair { colliders, owners };
-        self.hooks.modify(pair, first, sets, island)
-    }
-
-    fn component_of_pair(
-        &self,
-        pair: [ColliderHandle; 2],
-        sets: &RapierSets<'_>,
-        claims: &mut Claims,
-    ) -> Option<usize> {
-        pair.iter()
-            .filter_map(|&handle| claimable_parent(sets, sets.colliders.get(handle)?))
-            .find_map(|body| claims.component_of_rigid(body))
+        self.cores.lead(&way, open.island)
     }
 
     /// The block and parts of a collider, added to the island when first met.
-    fn place(
+    fn placed(
         &mut self,
         handle: ColliderHandle,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
-        island: &mut Island,
+        open: &mut OpenIsland<'_, '_>,
     ) -> Result<Option<PlacedCollider>, GatherError> {
+        let sets = open.sets;
         if let Some(placed) = self.placed.get(&handle) {
             return Ok(Some(placed.clone()));
         }
@@ -254,13 +271,11 @@ impl Gatherer {
             None => {
                 let pose = pose_of(collider.position());
                 let motion = at_rest(&pose);
-                (
-                    self.push_rigid(RigidBlock::prescribed(motion, motion), None, island),
-                    Pose2::identity(),
-                )
+                let block = RigidBlock::prescribed(motion, motion);
+                (open.add_rigid(block), Pose2::identity())
             }
             Some((parent, body)) => {
-                let Some(block) = self.block_of(parent, settings, sets, island) else {
+                let Some(block) = open.block_of(parent) else {
                     return Ok(None);
                 };
                 (block, offset_of(collider, body))
@@ -268,7 +283,7 @@ impl Gatherer {
         };
         let shape = self.shapes.parts(handle, collider);
         let shape = shape.map_err(|fault| GatherError::Shape(handle, fault))?;
-        let parts = candidates::add_parts(island, shape, offset);
+        let parts = candidates::add_parts(open.island, shape, offset);
         let placed = PlacedCollider {
             block,
             parts,
@@ -277,4 +292,27 @@ impl Gatherer {
         self.placed.insert(handle, placed.clone());
         Ok(Some(placed))
     }
+}
+
+/// Shows the candidates from the `first` on to the user's hook.
+fn hook(
+    colliders: [ColliderHandle; 2],
+    names: Names,
+    first: usize,
+    book: &mut HookBook,
+    open: &mut OpenIsland<'_, '_>,
+) -> Result<(), GatherError> {
+    let owners = [names.one, names.other];
+    let pair = HookedPair { colliders, owners };
+    book.modify(pair, first, open.sets, open.island)
+}
+
+fn component_of_pair(
+    pair: [ColliderHandle; 2],
+    sets: &RapierSets<'_>,
+    claims: &Claims,
+) -> Option<usize> {
+    pair.iter()
+        .filter_map(|&handle| claimable_parent(sets, sets.colliders.get(handle)?))
+        .find_map(|body| claims.component_of_rigid(body))
 }

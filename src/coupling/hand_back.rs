@@ -1,45 +1,21 @@
 //! Handing back: rapier's own step carries claimed bodies to where the flexible stage put them.
 //!
 //! All axes are locked for that step, so neither contacts nor gravity act, and the velocity is the one that lands the
-//! body on our result; then axes and true end velocities return.
+//! body on our result; then axes ([`super::loan`]) and true end velocities return.
 
+use super::landing::Landing;
 use super::masters::{Masters, cap_speed, local_centre};
 use super::sets::RapierSets;
 use crate::math::{self, REAL_EPSILON, Vec2, atan2, from_rapier, tan, to_rapier};
 use crate::rapier::math::{Pose, Real, Rotation};
 use crate::rapier::prelude::*;
-use crate::system::RigidBlock;
-use crate::system::RigidMotion;
 
-/// A claimed body on its way through rapier's step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Landing {
-    /// The body.
-    pub handle: RigidBodyHandle,
-    /// Where and how fast it must end.
-    pub motion: RigidMotion,
-    /// Its smooth acceleration.
-    pub acceleration: [f64; 3],
-    /// What of it the user's forces and gravity give to the body alone.
-    pub drive: [f64; 3],
-    axes: LockedAxes,
-}
-
-impl Landing {
-    /// Notes the end of a claimed body's step.
-    pub fn new(handle: RigidBodyHandle, block: &RigidBlock) -> Self {
-        Self {
-            handle,
-            motion: *block.current(),
-            acceleration: block.smooth_end,
-            drive: block.drive(),
-            axes: LockedAxes::empty(),
-        }
-    }
-}
-
-/// Locks claimed bodies and gives them the velocity that lands them.
-pub(crate) fn hand_back(landings: &mut [Landing], sets: &mut RapierSets<'_>) {
+/// Locks claimed bodies and gives them the velocity that lands them; the axes that were locked before are added to `axes`.
+pub(super) fn hand_back(
+    landings: &[Landing],
+    axes: &mut Vec<(RigidBodyHandle, LockedAxes)>,
+    sets: &mut RapierSets<'_>,
+) {
     let dt = f64::from(sets.integration_parameters.dt);
     let iterations = sets.integration_parameters.num_solver_iterations;
     for landing in landings {
@@ -51,7 +27,7 @@ pub(crate) fn hand_back(landings: &mut [Landing], sets: &mut RapierSets<'_>) {
         let Some(body) = sets.bodies.get_mut(landing.handle) else {
             continue;
         };
-        landing.axes = body.locked_axes();
+        axes.push((landing.handle, body.locked_axes()));
         let n = (iterations + body.additional_solver_iterations()).max(1) as f64;
         let angle = atan2(f64::from(body.rotation().im), f64::from(body.rotation().re));
         let turned = wrap(landing.motion.angle - angle);
@@ -66,11 +42,11 @@ pub(crate) fn hand_back(landings: &mut [Landing], sets: &mut RapierSets<'_>) {
     }
 }
 
-/// Restores axes and end velocities after rapier's step, and keeps the motions in `f64`.
+/// Gives claimed bodies their end velocities after rapier's step, and keeps the motions in `f64`.
 ///
 /// Rapier's continuous collision detection sweeps every fast body along a straight way and stops it where nothing was solved. What `is_led`
 /// along a feasible path passes through nothing, and is put where it was led to; of others rapier's pose counts.
-pub(crate) fn land(
+pub(super) fn land(
     landings: &[Landing],
     is_led: bool,
     sets: &mut RapierSets<'_>,
@@ -88,7 +64,6 @@ pub(crate) fn land(
             (motion.velocity, motion.spin) = (Vec2::zeros(), 0.0);
         }
         cap_speed(&mut motion, body, sets.integration_parameters);
-        body.set_locked_axes(landing.axes, false);
         body.set_linvel(to_rapier(motion.velocity), false);
         body.set_angvel(motion.spin as Real, false);
         let missed = from_rapier(body.center_of_mass()) - motion.centre;

@@ -5,8 +5,8 @@
 //! a manifold of one point, whose `user_data` lasts as long as the candidate does. Rapier is given the answers.
 
 use super::claim::Claims;
-use super::events::{PairName, pair_name};
-use super::links::LinkBook;
+use super::link_gate::Borrowed;
+use super::pair_name::{PairName, pair_name};
 use super::reading::GatherError;
 use super::sets::RapierSets;
 use crate::constraint::contact::{
@@ -296,8 +296,8 @@ pub(crate) struct HookGate<'a> {
     pub book: &'a HookBook,
     /// Carriers and claimed bodies.
     pub claims: &'a Claims,
-    /// Links of multibodies, whose pairs with claimed bodies are ours.
-    pub links: &'a LinkBook,
+    /// Contacts of links with claimed bodies, which are ours.
+    pub borrowed: &'a Borrowed,
     /// Whether this is the full step, in which claimed bodies are locked.
     pub is_full: bool,
 }
@@ -306,7 +306,8 @@ impl HookGate<'_> {
     /// Whether the flexible stage asks the user itself.
     fn is_ours(&self, handles: [ColliderHandle; 2], colliders: &ColliderSet) -> bool {
         handles.iter().any(|&handle| {
-            self.claims.is_surface(handle) || (self.is_full && self.claims.holds(handle, colliders))
+            self.claims.flex.is_surface(handle)
+                || (self.is_full && self.claims.has_collider(handle, colliders))
         })
     }
 }
@@ -316,7 +317,7 @@ impl PhysicsHooks for HookGate<'_> {
         let [one, other] = [context.collider1, context.collider2];
         let name = pair_name(one, other);
         let answered = self.claims.answer(name);
-        let borrowed = &self.links.borrowed;
+        let borrowed = self.borrowed;
         let flags = match answered.filter(|_| self.is_full) {
             Some(answer) => answer,
             None if borrowed.asks_user(name, context.colliders) => {

@@ -283,7 +283,7 @@ impl RowWriter<'_> {
 }
 
 /// Whether all numbers of a joint that take part are finite.
-pub(super) fn is_held_joint(data: &GenericJoint) -> bool {
+pub(super) fn is_representable_joint(data: &GenericJoint) -> bool {
     let frames = [data.local_frame1, data.local_frame2];
     let frames = frames.iter().flat_map(|frame| {
         let (at, turn) = (frame.translation, frame.rotation);

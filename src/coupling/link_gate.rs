@@ -4,16 +4,17 @@
 //! For the step, colliders of such links ask the pair filter, where our gate takes the forces out and leaves the contacts; joints hold
 //! no axis. Both get back what they had.
 
-use super::claim::{ClaimedPair, Claims};
-use super::events::{PairName, pair_name};
+use super::claim::Claims;
 use super::links::Push;
+use super::pair_name::{PairName, pair_name};
 use super::sets::RapierSets;
+use super::walk::ClaimedPair;
 use crate::rapier::prelude::*;
 use std::collections::HashSet;
 
 /// What was taken for the length of rapier's full step.
 #[derive(Debug, Default)]
-pub(super) struct Borrowed {
+pub(crate) struct Borrowed {
     hooks: Vec<(ColliderHandle, ActiveHooks)>,
     /// Joints with their locked, limited and driven axes.
     joints: Vec<(ImpulseJointHandle, [JointAxesMask; 3])>,
@@ -24,7 +25,7 @@ impl Borrowed {
     /// Takes contacts and joints of links with claimed bodies out of rapier's hands.
     pub fn take(&mut self, claims: &Claims, pushes: &[Push], sets: &mut RapierSets<'_>) {
         let is_pushed = |body| pushes.iter().any(|push| push.handle == body);
-        for pair in &claims.pairs {
+        for pair in claims.pairs() {
             if let ClaimedPair::RigidRigid(one, other) = *pair {
                 for handle in [one, other] {
                     let parent = sets.colliders.get(handle).and_then(Collider::parent);
@@ -35,7 +36,7 @@ impl Borrowed {
                 }
             }
         }
-        for &handle in &claims.joints {
+        for &handle in claims.joints() {
             let joint = sets.impulse_joints.get(handle);
             let bodies = joint.map(|joint| [joint.body1(), joint.body2()]);
             let holds_link = bodies.is_some_and(|all| all.into_iter().any(is_pushed));

@@ -8,17 +8,14 @@
 //! than they do together (mass splitting): too small a force is corrected in the next step, too large a one would throw the lighter
 //! side away. Forces that last are known for all links, so at rest nothing is scaled.
 
-use super::claim::Claims;
 use super::filter::is_free_body;
-use super::gather::{GatherSettings, Gatherer};
-use super::link_gate::Borrowed;
+use super::gather_settings::GatherSettings;
 use super::multibody::{Pace, Tree};
-use super::reading::{GatherError, is_held_motion, prescribed_block};
+use super::reading::{GatherError, is_representable_motion, prescribed_block};
 use super::sets::RapierSets;
 use super::under_way::Span;
 use crate::kkt::Island;
-use crate::math::{Vec2, to_rapier};
-use crate::rapier::math::{Real, Vector};
+use crate::math::Vec2;
 use crate::rapier::prelude::*;
 use crate::system::{Block, LinkResponse, RigidBlock, RigidMotion, Step};
 use nalgebra::{Matrix3, Vector3};
@@ -49,61 +46,44 @@ pub(crate) struct Push {
     pub lasting: [f64; 3],
 }
 
-/// Pushes of this step, and what those of the last have left to do.
-#[derive(Debug, Default)]
-pub(crate) struct LinkBook {
-    /// Forces at the end of the last step.
-    pub(super) last: HashMap<RigidBodyHandle, [f64; 3]>,
-    /// This step's.
-    pub pushes: Vec<Push>,
-    /// Forces of the user's, to be put back.
-    lent: Vec<(RigidBodyHandle, Vector, Real)>,
-    /// Contacts and joints that rapier is not to solve.
-    pub(super) borrowed: Borrowed,
+/// The links of a solved island as they were pushed.
+pub(super) fn pushes_of<'a>(
+    links: &'a [LinkBlock],
+    island: &'a Island,
+) -> impl Iterator<Item = Push> + 'a {
+    links
+        .iter()
+        .filter_map(|&LinkBlock { block, handle }| match &island.blocks[block] {
+            Block::Rigid(block) => block.link_response().map(|response| Push {
+                handle,
+                impulse: response.impulse(),
+                lasting: response.lasting(),
+            }),
+            Block::Flex(_) => None,
+        })
 }
 
-impl LinkBook {
-    /// Notes what the island did to its links.
-    pub fn note(&mut self, links: &[LinkBlock], island: &Island) {
-        for &LinkBlock { block, handle } in links {
-            if let Block::Rigid(block) = &island.blocks[block]
-                && let Some(response) = block.link_response()
-            {
-                self.pushes.push(Push {
-                    handle,
-                    impulse: response.impulse(),
-                    lasting: response.lasting(),
-                });
-            }
-        }
+/// Forces on links at the end of the last step, which have a part of themselves left to do in this one.
+#[derive(Debug, Default)]
+pub(crate) struct LinkMemory {
+    pub(super) last: HashMap<RigidBodyHandle, [f64; 3]>,
+}
+
+impl LinkMemory {
+    /// Whether nothing is left to do.
+    pub fn is_empty(&self) -> bool {
+        self.last.is_empty()
     }
 
-    /// Adds the pushes to the forces of the user's, for rapier's full step, and takes over what they stand for.
-    pub fn lend(&mut self, step: Step, claims: &Claims, sets: &mut RapierSets<'_>) {
-        self.lent.clear();
-        if self.last.is_empty() && self.pushes.is_empty() {
-            return;
-        }
-        self.borrowed.take(claims, &self.pushes, sets);
-        self.push_left_ones(sets);
-        let late = step.late;
-        for push in &self.pushes {
-            let before = self.last.get(&push.handle).copied().unwrap_or_default();
-            let force: [f64; 3] =
-                std::array::from_fn(|i| (push.impulse[i] + late * before[i]) / step.dt);
-            if let Some(body) = sets.bodies.get_mut(push.handle) {
-                self.lent
-                    .push((push.handle, body.user_force(), body.user_torque()));
-                body.add_force(to_rapier(Vec2::new(force[0], force[1])), false);
-                body.add_torque(force[2] as Real, false);
-            }
-        }
+    /// The force that acts on a link in the first part of the step (N, N, N m).
+    pub fn lasting(&self, handle: RigidBodyHandle) -> [f64; 3] {
+        self.last.get(&handle).copied().unwrap_or_default()
     }
 
-    /// Links that nothing touches any more still get what the last forces have left.
-    fn push_left_ones(&mut self, sets: &RapierSets<'_>) {
+    /// Adds the links that nothing touches any more: they still get what the last forces have left.
+    pub fn add_left_ones(&self, pushes: &mut Vec<Push>, sets: &RapierSets<'_>) {
         let is_met = |handle: &RigidBodyHandle| {
-            let mut pushes = self.pushes.iter();
+            let mut pushes = pushes.iter();
             pushes.any(|push| push.handle == *handle)
         };
         let is_awake = |handle| {
@@ -116,28 +96,19 @@ impl LinkBook {
             .filter(|&handle| is_moving_link(sets, handle) && is_awake(handle))
             .collect();
         left.sort_unstable_by_key(|handle| handle.into_raw_parts());
-        self.pushes.extend(left.into_iter().map(|handle| Push {
+        pushes.extend(left.into_iter().map(|handle| Push {
             handle,
             impulse: [0.0; 3],
             lasting: [0.0; 3],
         }));
     }
 
-    /// Puts the user's forces back, to the last bit, and keeps what this step leaves to the next.
-    pub fn take_back(&mut self, sets: &mut RapierSets<'_>) {
-        for (handle, force, torque) in self.lent.drain(..) {
-            if let Some(body) = sets.bodies.get_mut(handle) {
-                body.reset_forces(false);
-                body.reset_torques(false);
-                body.add_force(force, false);
-                body.add_torque(torque, false);
-            }
-        }
-        self.borrowed.give_back(sets);
+    /// Keeps what a step that has been taken leaves to the next.
+    pub fn keep(&mut self, pushes: &[Push], sets: &RapierSets<'_>) {
         // What sleeps is not stepped, and waits.
         let sleeps = |handle| sets.bodies.get(handle).is_some_and(RigidBody::is_sleeping);
         self.last.retain(|handle, _| sleeps(*handle));
-        for push in self.pushes.drain(..) {
+        for push in pushes {
             self.last.remove(&push.handle);
             if push.lasting != [0.0; 3] {
                 self.last.insert(push.handle, push.lasting);
@@ -146,62 +117,59 @@ impl LinkBook {
     }
 }
 
-impl Gatherer {
-    /// A block that moves as rapier says: given its motion, or for a link answering forces.
-    pub(super) fn foreign_block(
-        &self,
-        handle: RigidBodyHandle,
-        settings: &GatherSettings,
-        sets: &RapierSets<'_>,
-    ) -> Option<RigidBlock> {
-        let Step { dt, weights, .. } = settings.step;
-        let block = prescribed_block(sets.bodies.get(handle)?, dt, settings.span);
-        if is_moving_link(sets, handle) {
-            let start = link_motion(handle, *block.start(), sets);
-            Some(RigidBlock::link(start, weights, dt))
-        } else {
-            Some(block)
-        }
+/// A block that moves as rapier says: given its motion, or for a link answering forces.
+pub(super) fn foreign_block(
+    handle: RigidBodyHandle,
+    settings: &GatherSettings,
+    sets: &RapierSets<'_>,
+) -> Option<RigidBlock> {
+    let Step { dt, weights, .. } = settings.step;
+    let block = prescribed_block(sets.bodies.get(handle)?, dt, settings.span);
+    if is_moving_link(sets, handle) {
+        let start = link_motion(handle, *block.start(), sets);
+        Some(RigidBlock::link(start, weights, dt))
+    } else {
+        Some(block)
     }
+}
 
-    /// Finds how the links of the island answer forces, all of them being known.
-    ///
-    /// # Errors
-    /// If the motion foreseen is not finite.
-    pub(super) fn finish_links(
-        &mut self,
-        settings: &GatherSettings,
-        book: &LinkBook,
-        sets: &RapierSets<'_>,
-        island: &mut Island,
-    ) -> Result<(), GatherError> {
-        for slot in 0..self.links.len() {
-            let index = multibody_of(self.links[slot].handle, sets);
-            let is_first = !self.links[..slot]
+/// Finds how the links of an island answer forces, all of them being known.
+///
+/// # Errors
+/// If the motion foreseen is not finite.
+pub(super) fn foresee_links(
+    links: &[LinkBlock],
+    step: Step,
+    memory: &LinkMemory,
+    sets: &RapierSets<'_>,
+    island: &mut Island,
+) -> Result<(), GatherError> {
+    for slot in 0..links.len() {
+        let index = multibody_of(links[slot].handle, sets);
+        let is_first = !links[..slot]
+            .iter()
+            .any(|link| multibody_of(link.handle, sets) == index);
+        if let Some(index) = index.filter(|_| is_first) {
+            let members: Vec<LinkBlock> = links[slot..]
                 .iter()
-                .any(|link| multibody_of(link.handle, sets) == index);
-            if let Some(index) = index.filter(|_| is_first) {
-                let members: Vec<LinkBlock> = self.links[slot..]
-                    .iter()
-                    .copied()
-                    .filter(|link| multibody_of(link.handle, sets) == Some(index))
-                    .collect();
-                let foreseen = foresee(index, &members, settings.step, book, sets, island);
-                if foreseen.is_none() {
-                    prescribe(&members, settings.step.dt, sets, island);
-                }
+                .copied()
+                .filter(|link| multibody_of(link.handle, sets) == Some(index))
+                .collect();
+            let foreseen = foresee(index, &members, step, memory, sets, island);
+            if foreseen.is_none() {
+                prescribe(&members, step.dt, sets, island);
             }
         }
-        for link in &self.links {
-            if let Block::Rigid(block) = &island.blocks[link.block]
-                && !(is_held_motion(&block.drift())
-                    && block.smooth_end.into_iter().all(f64::is_finite))
-            {
-                return Err(GatherError::RigidBody(link.handle));
-            }
-        }
-        Ok(())
     }
+    for link in links {
+        if let Block::Rigid(block) = &island.blocks[link.block]
+            && !(is_representable_motion(&block.drift())
+                && block.smooth_end.into_iter().all(f64::is_finite))
+        {
+            return Err(GatherError::RigidBody(link.handle));
+        }
+    }
+    Ok(())
 }
 
 /// A link's motion with the velocity that its joints have: rapier's copy in the body is one substep old.
@@ -242,7 +210,7 @@ fn foresee(
     index: MultibodyIndex,
     members: &[LinkBlock],
     step: Step,
-    book: &LinkBook,
+    memory: &LinkMemory,
     sets: &RapierSets<'_>,
     island: &mut Island,
 ) -> Option<()> {
@@ -258,9 +226,8 @@ fn foresee(
     );
     let place = |handle| tree.links.iter().position(|link| link.handle == handle);
     let mut reactions = tree.pull_back(0, [0.0; 3]);
-    let lasting = |handle| book.last.get(&handle).copied().unwrap_or_default();
     for member in members {
-        let pulled = tree.pull_back(place(member.handle)?, lasting(member.handle));
+        let pulled = tree.pull_back(place(member.handle)?, memory.lasting(member.handle));
         reactions
             .iter_mut()
             .zip(pulled)
@@ -273,7 +240,7 @@ fn foresee(
         let others = members.iter().filter_map(|other| place(other.handle));
         let split = others.filter(|&other| tree.stem(other) == stem).count() as f64;
         let mobility = split * solved.mobility(&tree, link);
-        let own = mobility * Vector3::from(lasting(member.handle));
+        let own = mobility * Vector3::from(memory.lasting(member.handle));
         let acceleration = Vector3::from(solved.acceleration(&tree, link)) - own;
         let Block::Rigid(block) = &mut island.blocks[member.block] else {
             continue;

@@ -3,8 +3,7 @@
 //! What they meet there was not in the problem that was solved. The boxes grow by what was left of them, and the step is solved again.
 
 use super::claim::Claims;
-use super::hand_back::Landing;
-use super::places::loosened;
+use super::landing::Landing;
 use super::sets::RapierSets;
 use crate::math::{Vec2, from_rapier, node_vec};
 use crate::rapier::math::Real;
@@ -58,10 +57,7 @@ impl Claims {
         }
         let grown = MORE * excess;
         self.excess += grown;
-        for flex in &mut self.flex {
-            flex.swept = loosened(flex.swept, grown);
-            flex.travel += grown;
-        }
+        self.flex.grow(grown);
         true
     }
 }

@@ -1,6 +1,6 @@
 //! The `f64` motion of claimed rigid bodies, kept from step to step while rapier's copy is the one we wrote.
 
-use super::hand_back::Landing;
+use super::landing::Landing;
 use super::shapes::pose_of;
 use crate::math::{Vec2, atan2, from_rapier};
 use crate::rapier::math::{Pose, Real, Vector};

@@ -1,8 +1,10 @@
 //! What a body that has just been inserted overlaps: looked at once, in its first step, when all that was inserted with it is there.
 
-use super::claim::{ClaimedPair, Claims};
+use super::claim::Claims;
 use super::places::placed_on;
+use super::roster::Roster;
 use super::sets::RapierSets;
+use super::walk::ClaimedPair;
 use crate::body::{FlexBody, FlexBodySet};
 use crate::math::{Vec2, from_rapier, node_vec};
 use crate::rapier::parry::query;
@@ -12,41 +14,37 @@ use crate::rapier::prelude::*;
 /// rounding of rapier's numbers, and boxes at rest in rapier by a few thousandths of their size.
 pub(super) const DEEP: f64 = 1e-2;
 
-impl Claims {
-    /// The pairs of this step in which a body that has not been stepped before overlaps what it meets.
-    pub fn overlaps_of_newcomers(
-        &self,
-        sets: &RapierSets<'_>,
-        flex_bodies: &FlexBodySet,
-    ) -> Vec<ClaimedPair> {
-        let overlaps = |pair: &ClaimedPair| match *pair {
-            ClaimedPair::FlexRigid(flex, other) => {
-                let body = self.body_of(flex, flex_bodies);
-                let body = body.filter(|body| body.is_new());
-                body.is_some_and(|body| overlaps_rigid(body, other, self.depth(flex), sets))
-            }
-            ClaimedPair::FlexFlex(one, other) => {
-                let bodies = [one, other].map(|flex| self.body_of(flex, flex_bodies));
-                let [Some(first), Some(second)] = bodies else {
-                    return false;
-                };
-                let depth = self.depth(one).min(self.depth(other));
-                (first.is_new() || second.is_new()) && overlap(first, second, depth, sets)
-            }
-            ClaimedPair::RigidRigid(..) => false,
-        };
-        self.pairs.iter().copied().filter(overlaps).collect()
-    }
-
-    fn body_of<'a>(&self, flex: usize, flex_bodies: &'a FlexBodySet) -> Option<&'a FlexBody> {
-        let found = flex_bodies.at_index(self.flex[flex].index);
+/// The pairs of this step in which a body that has not been stepped before overlaps what it meets.
+pub(crate) fn overlaps_of_newcomers(
+    claims: &Claims,
+    sets: &RapierSets<'_>,
+    flex_bodies: &FlexBodySet,
+) -> Vec<ClaimedPair> {
+    let flex = &claims.flex;
+    let body_of = |slot: usize| {
+        let found = flex_bodies.at_index(flex[slot].index);
         found.map(|(_, body)| body)
-    }
+    };
+    let overlaps = |pair: &ClaimedPair| match *pair {
+        ClaimedPair::FlexRigid(slot, other) => {
+            let body = body_of(slot).filter(|body| body.is_new());
+            body.is_some_and(|body| depth_in(body, other, sets) > least_depth(flex, slot))
+        }
+        ClaimedPair::FlexFlex(one, other) => {
+            let [Some(first), Some(second)] = [one, other].map(body_of) else {
+                return false;
+            };
+            let depth = least_depth(flex, one).min(least_depth(flex, other));
+            (first.is_new() || second.is_new()) && overlap(first, second, depth, sets)
+        }
+        ClaimedPair::RigidRigid(..) => false,
+    };
+    claims.pairs().iter().copied().filter(overlaps).collect()
+}
 
-    /// Depth from which a body overlaps (m).
-    fn depth(&self, flex: usize) -> f64 {
-        DEEP * self.flex[flex].edge
-    }
+/// Depth from which a body overlaps (m).
+fn least_depth(flex: &Roster, slot: usize) -> f64 {
+    DEEP * flex[slot].edge
 }
 
 /// Whether the surfaces cross, or a piece of material of one lies in the other.
@@ -54,15 +52,6 @@ fn overlap(one: &FlexBody, other: &FlexBody, depth: f64, sets: &RapierSets<'_>) 
     one.contains(inner_point(other).into())
         || other.contains(inner_point(one).into())
         || crossing(one.collider_handle(), other.collider_handle(), sets) > depth
-}
-
-fn overlaps_rigid(
-    body: &FlexBody,
-    other: ColliderHandle,
-    depth: f64,
-    sets: &RapierSets<'_>,
-) -> bool {
-    depth_in(body, other, sets) > depth
 }
 
 /// How deep a collider is in a flexible body (m), zero where it is not: at the surface, or by half its width if its middle is in there.

@@ -183,7 +183,7 @@ pub(super) fn law_of(
 }
 
 /// Whether a motion is finite and rapier's precision holds it.
-pub(crate) fn is_held_motion(motion: &RigidMotion) -> bool {
+pub(crate) fn is_representable_motion(motion: &RigidMotion) -> bool {
     let RigidMotion {
         centre,
         angle,
@@ -195,7 +195,7 @@ pub(crate) fn is_held_motion(motion: &RigidMotion) -> bool {
 }
 
 /// Whether all numbers of a load are finite.
-pub(super) fn is_held_load(load: &RigidLoad) -> bool {
+pub(super) fn is_representable_load(load: &RigidLoad) -> bool {
     let all = [load.inverse_mass, load.force, load.damping];
     all.into_iter().flatten().all(f64::is_finite)
 }

@@ -1,22 +1,27 @@
 //! What a snapshot writes of the border with rapier: whatever the next step, or the next event, depends on. All else is found anew
 //! in every step.
 
+use super::changes::Changes;
 use super::claim::Claims;
-use super::events::{EventBook, PairName};
-use super::gather::Gatherer;
+use super::events::EventBook;
+use super::filter::Answers;
 use super::hooks::HookBook;
-use super::links::LinkBook;
-use super::masters::{Master, Masters};
+use super::masters::Master;
+use super::members::Members;
+use super::memory::Memory;
+use super::pair_name::PairName;
+use super::pool::FlexPool;
 use super::references::References;
+use super::roster::Roster;
 use super::sleep::Sleeper;
 use crate::body::FlexBodySet;
-use crate::constraint::contact::ContactKey;
+use crate::constraint::contact::{ContactKey, ContactMemory};
 use crate::constraint::joint::JointMemory;
 use crate::rapier::prelude::*;
-use crate::system::{ExplicitRecord, FlexBlock};
+use crate::system::ExplicitRecord;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-use std::sync::{Arc, PoisonError};
+use std::sync::PoisonError;
 
 /// Handles as numbers, to sort by.
 trait Numbered: Copy {
@@ -65,13 +70,14 @@ struct ClaimRecord {
 
 impl ClaimRecord {
     fn of(claims: &Claims) -> Self {
-        let answers = listed(&claims.answers).into_iter();
+        let answers = listed(claims.walk.answers.all()).into_iter();
+        let (n_colliders, gravity) = claims.changes.noted();
         Self {
-            surfaces: listed(&claims.flex_of_collider),
-            claimed: listed(&claims.rigid_index),
-            asleep: claims.asleep.clone(),
-            n_colliders: claims.changes.n_colliders,
-            gravity: claims.changes.gravity,
+            surfaces: listed(claims.flex.slots()),
+            claimed: listed(claims.walk.members.places()),
+            asleep: claims.flex.asleep().to_vec(),
+            n_colliders,
+            gravity,
             answers: answers
                 .map(|(name, answer)| (name, answer.map(|flags| flags.bits())))
                 .collect(),
@@ -80,16 +86,12 @@ impl ClaimRecord {
 
     fn build(self) -> Claims {
         let answers = self.answers.into_iter();
+        let answers = answers.map(|(name, bits)| (name, bits.map(SolverFlags::from_bits_truncate)));
         let mut claims = Claims::default();
-        claims.flex_of_collider = self.surfaces.into_iter().collect();
-        claims.rigid_index = self.claimed.into_iter().collect();
-        claims.sleeping_surfaces = self.asleep.iter().map(|sleeper| sleeper.collider).collect();
-        claims.asleep = self.asleep;
-        claims.changes.n_colliders = self.n_colliders;
-        claims.changes.gravity = self.gravity;
-        claims.answers = answers
-            .map(|(name, bits)| (name, bits.map(SolverFlags::from_bits_truncate)))
-            .collect();
+        claims.flex = Roster::remembered(self.surfaces, self.asleep);
+        claims.changes = Changes::since(self.n_colliders, self.gravity);
+        claims.walk.members = Members::remembered(self.claimed);
+        claims.walk.answers = Answers::remembered(answers);
         claims
     }
 }
@@ -188,56 +190,38 @@ pub(crate) struct CouplingRecord {
 
 impl CouplingRecord {
     /// The record of what a pipeline holds.
-    pub fn of(
-        claims: &Claims,
-        events: &EventBook,
-        (masters, links): (&Masters, &LinkBook),
-        gatherer: &Gatherer,
-    ) -> Self {
-        let pool = gatherer.pool.iter().enumerate();
-        let explicit = pool.filter_map(|(index, block)| {
-            let record = block.as_ref()?.explicit_record()?;
-            Some((index as u32, record))
-        });
+    pub fn of(claims: &Claims, events: &EventBook, memory: &Memory, pool: &FlexPool) -> Self {
         Self {
             claims: ClaimRecord::of(claims),
             events: EventRecord::of(events),
-            hooks: HookRecord::of(&gatherer.hooks),
-            masters: listed(&masters.last),
-            links: listed(&links.last),
-            references: gatherer.references.clone(),
-            joint_memory: gatherer.joint_memory.clone(),
-            explicit: explicit.collect(),
+            hooks: HookRecord::of(&memory.hooks),
+            masters: listed(&memory.masters.last),
+            links: listed(&memory.links.last),
+            references: memory.references.clone(),
+            joint_memory: memory.joints.clone(),
+            explicit: pool.explicit_records(),
         }
     }
 
     /// All of it again, `None` if it does not fit the bodies.
+    ///
+    /// - `contacts`: the memory of contacts, which has a record of its own.
     pub fn build(
         self,
+        contacts: ContactMemory,
         flex_bodies: &FlexBodySet,
-    ) -> Option<(Claims, EventBook, (Masters, LinkBook), Gatherer)> {
-        let mut gatherer = Gatherer::default();
-        gatherer.references = self.references;
-        gatherer.joint_memory = self.joint_memory;
-        gatherer.hooks = self.hooks.build();
-        for (index, record) in self.explicit {
-            let (_, body) = flex_bodies.at_index(index)?;
-            let (model, fixed) = (Arc::clone(body.model()), body.fixed_dofs().to_vec());
-            let mut block = FlexBlock::explicit(model, fixed, body.frame());
-            if !block.recall(record) {
-                return None;
-            }
-            let slot = index as usize;
-            if gatherer.pool.len() <= slot {
-                gatherer.pool.resize_with(slot + 1, || None);
-            }
-            gatherer.pool[slot] = Some(Box::new(block));
-        }
-        let mut masters = Masters::default();
-        masters.last = self.masters.into_iter().collect();
-        let mut links = LinkBook::default();
-        links.last = self.links.into_iter().collect();
-        let kept = (masters, links);
-        Some((self.claims.build(), self.events.build(), kept, gatherer))
+    ) -> Option<(Claims, EventBook, Memory, FlexPool)> {
+        let pool = FlexPool::remembered(self.explicit, flex_bodies)?;
+        let mut memory = Memory {
+            contacts,
+            joints: self.joint_memory,
+            references: self.references,
+            hooks: self.hooks.build(),
+            ..Memory::default()
+        };
+        memory.contacts.list_pressed();
+        memory.masters.last = self.masters.into_iter().collect();
+        memory.links.last = self.links.into_iter().collect();
+        Some((self.claims.build(), self.events.build(), memory, pool))
     }
 }

@@ -1,6 +1,7 @@
 //! Sensors that are left in rapier's step without length: the user hears of it when the full step agrees.
 
-use super::events::{EventBook, EventGate, PairName, lock, name_of};
+use super::events::{EventBook, EventGate, lock, name_of};
+use super::pair_name::PairName;
 use super::sets::RapierSets;
 use crate::rapier::prelude::*;
 

@@ -1,15 +1,12 @@
 //! Sleep: what has come to rest sleeps with its island in rapier and is not solved; its motion and its contact forces wait.
 //!
 //! A carrier never moves, so rapier would let it sleep at once: its timer is set back while a node of the body moves. What
-//! rapier wakes is awake here too. What is awake and comes near a sleeper wakes it before they touch.
+//! rapier wakes is awake here too. What is awake and comes near a sleeper wakes it before they touch: see [`super::waking`].
 
-use super::claim::Claims;
-use super::places::{loosened, swept_box};
 use super::sets::RapierSets;
 use crate::body::{FlexBody, FlexBodySet};
-use crate::constraint::contact::Owner;
 use crate::rapier::math::Real;
-use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
+use crate::rapier::parry::bounding_volume::Aabb;
 use crate::rapier::prelude::*;
 
 /// How far the fastest node of a body at rest goes in the time until sleep, over the body's size: displacements and forces are then
@@ -30,10 +27,12 @@ const SET_BACK: Real = 0.5;
 pub(crate) struct Sleeper {
     /// Slot in the set.
     pub index: u32,
-    carrier: RigidBodyHandle,
+    /// Its body in rapier.
+    pub carrier: RigidBodyHandle,
     /// Its surface in rapier.
     pub collider: ColliderHandle,
-    surface: Aabb,
+    /// Box of its surface.
+    pub surface: Aabb,
 }
 
 impl Sleeper {
@@ -66,115 +65,11 @@ pub(crate) fn wake_disturbed(sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBo
     }
 }
 
-impl Claims {
-    /// Whether all that could move sleeps, so that there is nothing to do.
-    pub fn is_all_asleep(&self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
-        let is_quiet = |body: &FlexBody| {
-            body.is_quarantined() || !body.is_disturbed() && is_asleep(body, sets.bodies)
-        };
-        self.rests_all_rigid(sets) && flex_bodies.iter().all(|(_, body)| is_quiet(body))
-    }
-
-    /// Whether a collider is the surface of a flexible body, awake or not.
-    pub fn is_surface(&self, collider: ColliderHandle) -> bool {
-        self.flex_of_collider.contains_key(&collider) || self.is_sleeping_surface(collider)
-    }
-
-    pub(super) fn is_sleeping_surface(&self, collider: ColliderHandle) -> bool {
-        self.sleeping_surfaces.contains(&collider)
-    }
-
-    /// Wakes sleepers that something awake may meet in the step; returns whether one woke, so that the look-ahead has to begin
-    /// anew.
-    pub fn wake_met(&mut self, sets: &mut RapierSets<'_>) -> bool {
-        self.woken.clear();
-        if self.asleep.is_empty() {
-            return false;
-        }
-        let dt = sets.integration_parameters.dt;
-        let fall = sets.gravity.length() * dt * dt;
-        let margin = sets.integration_parameters.prediction_distance() + fall;
-        let mut woken = std::mem::take(&mut self.woken);
-        for flex in &self.flex {
-            self.list_met(sets, &loosened(flex.swept, margin), &mut woken);
-        }
-        for (handle, collider) in self.unsettled(sets) {
-            if is_awake(sets, collider) && !self.flex_of_collider.contains_key(&handle) {
-                let swept = swept_box(sets.bodies, collider, dt);
-                self.list_met(sets, &loosened(swept, margin), &mut woken);
-            }
-        }
-        self.list_movers(sets);
-        for slot in 0..self.asleep.len() {
-            let sleeper = self.asleep[slot];
-            let mut is_met = false;
-            self.visit_struck(sets, &sleeper.surface, |_, _| is_met = true);
-            if is_met && !woken.contains(&sleeper.carrier) {
-                woken.push(sleeper.carrier);
-            }
-        }
-        self.woken = woken;
-        let mut has_woken = false;
-        for &carrier in &self.woken {
-            sets.islands.wake_up(sets.bodies, carrier, true);
-            // Rapier wakes no body that the user has made a fixed one.
-            has_woken |= sets
-                .bodies
-                .get(carrier)
-                .is_some_and(|body| !body.is_sleeping());
-        }
-        has_woken
-    }
-
-    /// Lists the sleepers whose surface a box reaches.
-    fn list_met(&self, sets: &RapierSets<'_>, near: &Aabb, woken: &mut Vec<RigidBodyHandle>) {
-        for sleeper in &self.asleep {
-            if near.intersects(&sleeper.surface)
-                && !woken.contains(&sleeper.carrier)
-                && reaches(sets, sleeper.collider, near)
-            {
-                woken.push(sleeper.carrier);
-            }
-        }
-    }
-
-    /// How many flexible bodies sleep.
-    pub fn n_asleep(&self) -> usize {
-        self.asleep.len()
-    }
-
-    /// Whether an owner's body sleeps.
-    pub fn sleeps(&self, sets: &RapierSets<'_>, owner: Owner) -> bool {
-        match owner {
-            Owner::Flex(index) => {
-                let found = self
-                    .asleep
-                    .binary_search_by_key(&index, |sleeper| sleeper.index);
-                found.is_ok()
-            }
-            Owner::Collider(index) => {
-                let collider = sets.colliders.get_unknown_gen(index);
-                let parent = collider.and_then(|(collider, _)| collider.parent());
-                let body = parent.and_then(|parent| sets.bodies.get(parent));
-                body.is_some_and(RigidBody::is_sleeping)
-            }
-        }
-    }
-}
-
 /// Whether a box meets a segment of a surface.
 pub(super) fn reaches(sets: &RapierSets<'_>, surface: ColliderHandle, other: &Aabb) -> bool {
     let shape = sets.colliders.get(surface).map(Collider::shape);
     let polyline = shape.and_then(|shape| shape.as_polyline());
     polyline.is_none_or(|polyline| polyline.bvh().intersect_aabb(other).next().is_some())
-}
-
-/// Whether a collider belongs to a body that may move.
-fn is_awake(sets: &RapierSets<'_>, collider: &Collider) -> bool {
-    let parent = collider.parent().and_then(|parent| sets.bodies.get(parent));
-    collider.is_enabled()
-        && !collider.is_sensor()
-        && parent.is_some_and(|body| !body.is_fixed() && !body.is_sleeping())
 }
 
 /// Keeps the carrier of a body awake while a node moves, or while it is attached to something, of which rapier knows nothing. To be

@@ -6,9 +6,10 @@
 //! A row of bodies that touch, each lighter than the one before, hands a blow on faster than that: what it leaves in a flexible body is told
 //! ([`super::trespassers`]).
 
-use super::claim::Claims;
+use super::changes::Changes;
 use super::filter::{claimable_parent, is_free_body};
 use super::places::{loosened, swept_box, travel_vector};
+use super::roster::Roster;
 use super::sets::RapierSets;
 use crate::rapier::math::{Real, Vector};
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
@@ -30,7 +31,7 @@ struct Mover {
     turn: Real,
 }
 
-/// What moves, and how hard it strikes; with its buffers.
+/// What moves, and how hard it strikes: nothing of it outlives [`Strikes::meet`].
 #[derive(Debug, Default)]
 pub(super) struct Strikes {
     /// In the order of their left ends.
@@ -44,21 +45,134 @@ pub(super) struct Strikes {
     /// How far the two of a group that close in the most do so in the step (m).
     blow_of: Vec<Real>,
     waiting: Vec<RigidBodyHandle>,
-    /// How far around its own way a collider may be driven (m).
-    pub reach: HashMap<ColliderHandle, Real>,
-    seen: Vec<ColliderHandle>,
+    /// Colliders beside a box.
+    beside: Vec<ColliderHandle>,
 }
 
 impl Strikes {
-    /// How far a collider of a body in such a group may be driven (m).
-    fn reach_of(
+    /// Visits what is about to be struck and may be driven into one of some boxes: the number of the box, the collider, and how far around
+    /// its own way it may be driven (m).
+    ///
+    /// - `known`: the flexible bodies, whose surfaces strike by themselves, and what may move.
+    pub fn meet(
         &mut self,
-        body: RigidBodyHandle,
         sets: &RapierSets<'_>,
-        is_surface: impl Fn(ColliderHandle) -> bool,
-    ) -> Real {
+        (flex, changes): (&Roster, &Changes),
+        boxes: impl Iterator<Item = Aabb>,
+        mut visit: impl FnMut(usize, ColliderHandle, Real),
+    ) {
+        self.list_movers(sets, flex, changes);
+        for (slot, around) in boxes.enumerate() {
+            self.visit_struck(sets, flex, &around, |handle, reach| {
+                visit(slot, handle, reach);
+            });
+        }
+    }
+
+    /// Lists what moves.
+    fn list_movers(&mut self, sets: &RapierSets<'_>, flex: &Roster, changes: &Changes) {
+        let dt = sets.integration_parameters.dt;
+        self.movers.clear();
+        self.group_of.clear();
+        self.blow_of.clear();
+        let (mut farthest, mut widest): (Real, Real) = (0.0, 0.0);
+        for (handle, collider) in changes.unsettled(sets) {
+            let parent = collider.parent();
+            let body = parent.and_then(|parent| Some((parent, sets.bodies.get(parent)?)));
+            let Some((parent, body)) = body else { continue };
+            let moves = !body.is_fixed() && !body.is_sleeping() && body.is_enabled();
+            if !moves || !collider.is_enabled() || collider.is_sensor() || flex.is_surface(handle) {
+                continue;
+            }
+            let swept = swept_box(sets.bodies, collider, dt);
+            let (way, turn) = (travel_vector(body, dt), turn_of(body, &swept, dt));
+            // What is no number rapier takes out.
+            if !(way.length() + turn).is_finite() || !swept.mins.is_finite() {
+                continue;
+            }
+            farthest = farthest.max(way.length() + turn);
+            widest = widest.max(swept.extents().x);
+            self.movers.push(Mover {
+                collider: handle,
+                body: parent,
+                swept,
+                way,
+                turn,
+            });
+        }
+        self.movers.sort_unstable_by(|one, other| {
+            let left = one.swept.mins.x.total_cmp(&other.swept.mins.x);
+            let handles = [one, other].map(|mover| mover.collider.into_raw_parts());
+            left.then(handles[0].cmp(&handles[1]))
+        });
+        self.movers.dedup_by_key(|mover| mover.collider);
+        (self.widest, self.hardest) = (widest, 2.0 * farthest);
+    }
+
+    /// Visits colliders of bodies that miss a box by their own motion, or sleep in it, and may be driven into it, with how far they may be
+    /// driven (m).
+    fn visit_struck(
+        &mut self,
+        sets: &RapierSets<'_>,
+        flex: &Roster,
+        around: &Aabb,
+        mut visit: impl FnMut(ColliderHandle, Real),
+    ) {
+        let farthest = THROWN * self.hardest;
+        if farthest > sets.integration_parameters.prediction_distance() {
+            self.list_beside(&loosened(*around, farthest), sets, flex);
+            let dt = sets.integration_parameters.dt;
+            for slot in 0..self.beside.len() {
+                let handle = self.beside[slot];
+                let Some(collider) = sets.colliders.get(handle) else {
+                    continue;
+                };
+                let Some(body) = claimable_parent(sets, collider) else {
+                    continue;
+                };
+                let away = apart(&swept_box(sets.bodies, collider, dt), around);
+                // What moves into the box by itself is found without this; what sleeps there does not move before it is struck.
+                let sleeps = sets.bodies.get(body).is_some_and(RigidBody::is_sleeping);
+                let is_beside = away > 0.0 || sleeps;
+                if !is_beside || away > farthest || collider.is_sensor() {
+                    continue;
+                }
+                let reach = self.reach_of(body, sets, flex);
+                if reach > 0.0 && away <= reach {
+                    visit(handle, reach);
+                }
+            }
+        }
+    }
+
+    /// Lists the colliders near a box: those that move, and those that rapier's tree has there.
+    fn list_beside(&mut self, near: &Aabb, sets: &RapierSets<'_>, flex: &Roster) {
+        self.beside.clear();
+        let first = self
+            .movers
+            .partition_point(|mover| mover.swept.mins.x < near.mins.x - self.widest);
+        let moving = self.movers[first..].iter();
+        let moving = moving.take_while(|mover| mover.swept.mins.x <= near.maxs.x);
+        let beside = moving.filter(|mover| mover.swept.intersects(near));
+        self.beside.extend(beside.map(|mover| mover.collider));
+        let query = sets.broad_phase.as_query_pipeline(
+            sets.narrow_phase.query_dispatcher(),
+            sets.bodies,
+            sets.colliders,
+            QueryFilter::new(),
+        );
+        let in_tree = query.intersect_aabb_conservative(*near);
+        let resting = in_tree.filter(|(handle, _)| !flex.is_surface(*handle));
+        self.beside.extend(resting.map(|(handle, _)| handle));
+        self.beside
+            .sort_unstable_by_key(|handle| handle.into_raw_parts());
+        self.beside.dedup();
+    }
+
+    /// How far a collider of a body in such a group may be driven (m).
+    fn reach_of(&mut self, body: RigidBodyHandle, sets: &RapierSets<'_>, flex: &Roster) -> Real {
         let group = self.group_of.get(&body).copied();
-        let group = group.unwrap_or_else(|| self.walk_group(body, sets, is_surface));
+        let group = group.unwrap_or_else(|| self.walk_group(body, sets, flex));
         THROWN * self.blow_of[group]
     }
 
@@ -67,7 +181,7 @@ impl Strikes {
         &mut self,
         first: RigidBodyHandle,
         sets: &RapierSets<'_>,
-        is_surface: impl Fn(ColliderHandle) -> bool,
+        flex: &Roster,
     ) -> usize {
         let group = self.blow_of.len();
         let mut blow: Real = 0.0;
@@ -79,7 +193,7 @@ impl Strikes {
             };
             for &own in body.colliders() {
                 for pair in sets.narrow_phase.contact_pairs_with(own) {
-                    if is_surface(pair.collider1) || is_surface(pair.collider2) {
+                    if flex.is_surface(pair.collider1) || flex.is_surface(pair.collider2) {
                         continue;
                     }
                     let closing = closing_of(pair, sets);
@@ -147,134 +261,6 @@ impl Strikes {
             self.group_of.insert(body, group);
             self.waiting.push(body);
         }
-    }
-}
-
-impl Claims {
-    /// Lists what moves; to be called before [`Claims::visit_struck`].
-    pub(super) fn list_movers(&mut self, sets: &RapierSets<'_>) {
-        let dt = sets.integration_parameters.dt;
-        let mut strikes = std::mem::take(&mut self.strikes);
-        strikes.movers.clear();
-        strikes.group_of.clear();
-        strikes.blow_of.clear();
-        strikes.reach.clear();
-        let (mut farthest, mut widest): (Real, Real) = (0.0, 0.0);
-        for (handle, collider) in self.unsettled(sets) {
-            let parent = collider.parent();
-            let body = parent.and_then(|parent| Some((parent, sets.bodies.get(parent)?)));
-            let Some((parent, body)) = body else { continue };
-            let moves = !body.is_fixed() && !body.is_sleeping() && body.is_enabled();
-            if !moves || !collider.is_enabled() || collider.is_sensor() || self.is_surface(handle) {
-                continue;
-            }
-            let swept = swept_box(sets.bodies, collider, dt);
-            let (way, turn) = (travel_vector(body, dt), turn_of(body, &swept, dt));
-            // What is no number rapier takes out.
-            if !(way.length() + turn).is_finite() || !swept.mins.is_finite() {
-                continue;
-            }
-            farthest = farthest.max(way.length() + turn);
-            widest = widest.max(swept.extents().x);
-            strikes.movers.push(Mover {
-                collider: handle,
-                body: parent,
-                swept,
-                way,
-                turn,
-            });
-        }
-        strikes.movers.sort_unstable_by(|one, other| {
-            let left = one.swept.mins.x.total_cmp(&other.swept.mins.x);
-            let handles = [one, other].map(|mover| mover.collider.into_raw_parts());
-            left.then(handles[0].cmp(&handles[1]))
-        });
-        strikes.movers.dedup_by_key(|mover| mover.collider);
-        (strikes.widest, strikes.hardest) = (widest, 2.0 * farthest);
-        self.strikes = strikes;
-    }
-
-    /// Visits colliders of bodies that miss a box by their own motion, or sleep in it, and may be driven into it, with how far they may be
-    /// driven (m).
-    pub(super) fn visit_struck(
-        &mut self,
-        sets: &RapierSets<'_>,
-        around: &Aabb,
-        mut visit: impl FnMut(ColliderHandle, Real),
-    ) {
-        let mut strikes = std::mem::take(&mut self.strikes);
-        let farthest = THROWN * strikes.hardest;
-        if farthest > sets.integration_parameters.prediction_distance() {
-            self.list_beside(&mut strikes, &loosened(*around, farthest), sets);
-            let dt = sets.integration_parameters.dt;
-            for slot in 0..strikes.seen.len() {
-                let handle = strikes.seen[slot];
-                let Some(collider) = sets.colliders.get(handle) else {
-                    continue;
-                };
-                let Some(body) = claimable_parent(sets, collider) else {
-                    continue;
-                };
-                let away = apart(&swept_box(sets.bodies, collider, dt), around);
-                // What moves into the box by itself is found without this; what sleeps there does not move before it is struck.
-                let sleeps = sets.bodies.get(body).is_some_and(RigidBody::is_sleeping);
-                let is_beside = away > 0.0 || sleeps;
-                if !is_beside || away > farthest || collider.is_sensor() {
-                    continue;
-                }
-                let reach = strikes.reach_of(body, sets, |other| self.is_surface(other));
-                if reach > 0.0 && away <= reach {
-                    visit(handle, reach);
-                }
-            }
-        }
-        self.strikes = strikes;
-    }
-
-    /// Lists the colliders near a box: those that move, and those that rapier's tree has there.
-    fn list_beside(&self, strikes: &mut Strikes, near: &Aabb, sets: &RapierSets<'_>) {
-        strikes.seen.clear();
-        let first = strikes
-            .movers
-            .partition_point(|mover| mover.swept.mins.x < near.mins.x - strikes.widest);
-        let moving = strikes.movers[first..].iter();
-        let moving = moving.take_while(|mover| mover.swept.mins.x <= near.maxs.x);
-        let beside = moving.filter(|mover| mover.swept.intersects(near));
-        strikes.seen.extend(beside.map(|mover| mover.collider));
-        let query = sets.broad_phase.as_query_pipeline(
-            sets.narrow_phase.query_dispatcher(),
-            sets.bodies,
-            sets.colliders,
-            QueryFilter::new(),
-        );
-        let in_tree = query.intersect_aabb_conservative(*near);
-        let resting = in_tree.filter(|(handle, _)| !self.is_surface(*handle));
-        strikes.seen.extend(resting.map(|(handle, _)| handle));
-        strikes
-            .seen
-            .sort_unstable_by_key(|handle| handle.into_raw_parts());
-        strikes.seen.dedup();
-    }
-
-    /// Adds to what the swept boxes meet what may be driven into them; returns whether there is any.
-    pub(super) fn meet_struck(&mut self, sets: &RapierSets<'_>) -> bool {
-        if self.flex.is_empty() {
-            return false;
-        }
-        self.list_movers(sets);
-        let mut hits = std::mem::take(&mut self.swept_hits);
-        let mut driven = std::mem::take(&mut self.strikes.reach);
-        let n_met = hits.len();
-        for slot in 0..self.flex.len() {
-            let flex = self.flex[slot];
-            self.visit_struck(sets, &flex.swept, |handle, reach| {
-                hits.push((slot, handle));
-                driven.insert(handle, reach);
-            });
-        }
-        let has_any = hits.len() > n_met;
-        (self.swept_hits, self.strikes.reach) = (hits, driven);
-        has_any
     }
 }
 

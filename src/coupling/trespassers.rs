@@ -4,7 +4,6 @@
 //! motor or a joint flings, is met in the next step only: until then it lies where nothing was solved, and that is told.
 
 use super::claim::Claims;
-use super::filter::may_touch;
 use super::newcomers::{DEEP, depth_in};
 use super::sets::RapierSets;
 use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
@@ -23,41 +22,48 @@ pub(crate) struct Trespasser {
     pub depth: f64,
 }
 
-impl Claims {
-    /// Lists what moves, was not claimed and ends in a flexible body, by more than `known` (m); surfaces and bodies are where the step ends.
-    pub fn list_trespassers(
+/// Trespassers of a step, with the boxes of the flexible surfaces where it ends.
+#[derive(Debug, Default)]
+pub(crate) struct Trespassers {
+    surfaces: Vec<(FlexBodyHandle, Aabb)>,
+    found: Vec<Trespasser>,
+}
+
+impl Trespassers {
+    /// Finds what moves, was not claimed and ends in a flexible body, by more than `known` (m); surfaces and bodies are where the step
+    /// ends. The user's filter is asked about pairs that it has not been asked about in this step.
+    pub fn find(
         &mut self,
+        claims: &mut Claims,
         sets: &RapierSets<'_>,
         flex_bodies: &FlexBodySet,
         known: f64,
-        found: &mut Vec<Trespasser>,
-    ) {
-        let mut surfaces = std::mem::take(&mut self.surface_boxes);
-        surfaces.clear();
-        surfaces
+    ) -> &[Trespasser] {
+        self.found.clear();
+        self.surfaces.clear();
+        self.surfaces
             .extend(flexible_in_world(flex_bodies).filter_map(|(handle, body)| {
                 Some((handle, box_of(body.collider_handle(), sets)?))
             }));
-        let boxes = surfaces.iter().map(|(_, surface)| *surface);
+        let boxes = self.surfaces.iter().map(|(_, surface)| *surface);
         let Some(around) = boxes.reduce(|one, other| one.merged(&other)) else {
-            self.surface_boxes = surfaces;
-            return;
+            return &self.found;
         };
-        let mut answers = std::mem::take(&mut self.answers);
         for handle in sets.islands.active_bodies() {
             let body = sets.bodies.get(handle).filter(|body| body.is_dynamic());
             // Links of multibodies are not claimed, but what they meet is solved with them.
             let is_link = sets.multibody_joints.rigid_body_link(handle).is_some();
-            let is_solved = is_link || self.rigid_index.contains_key(&handle);
+            let is_solved = is_link || claims.has(handle);
             let Some(body) = body.filter(|_| !is_solved) else {
                 continue;
             };
             for &collider in body.colliders() {
                 let own = box_of(collider, sets).filter(|own| own.intersects(&around));
-                let Some(own) = own.filter(|_| !self.is_surface(collider)) else {
+                let Some(own) = own.filter(|_| !claims.flex.is_surface(collider)) else {
                     continue;
                 };
-                let met = surfaces
+                let met = self
+                    .surfaces
                     .iter()
                     .filter(|(_, surface)| surface.intersects(&own));
                 for &(body, _) in met {
@@ -67,9 +73,8 @@ impl Claims {
                     let surface = flexible.collider_handle();
                     let least = DEEP * flexible.mesh().boundary().mean_segment_length();
                     let depth = depth_in(flexible, collider, sets);
-                    if depth > known.max(least) && may_touch(sets, surface, collider, &mut answers)
-                    {
-                        found.push(Trespasser {
+                    if depth > known.max(least) && claims.may_touch(sets, surface, collider) {
+                        self.found.push(Trespasser {
                             body,
                             collider,
                             depth,
@@ -78,7 +83,7 @@ impl Claims {
                 }
             }
         }
-        (self.answers, self.surface_boxes) = (answers, surfaces);
+        &self.found
     }
 }
 

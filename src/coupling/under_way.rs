@@ -83,14 +83,6 @@ pub(crate) struct UnderWay {
     /// Multipliers of the last part.
     pub contacts: ContactMemory,
     pub joints: JointMemory,
-    /// Parts that are over.
-    pub n_parts: usize,
-    /// Where the island's contacts and joints begin in the report, and the impulses on rapier's joints.
-    pub firsts: [usize; 3],
-    /// Whether the report tells that one of the parts was not solved.
-    pub is_told: bool,
-    /// What the island has been counted for in the report.
-    counted: [bool; 4],
 }
 
 impl UnderWay {
@@ -100,26 +92,11 @@ impl UnderWay {
     }
 
     /// Begins with an island whose whole step is still to come.
-    pub fn begin(&mut self, firsts: [usize; 3]) {
+    pub fn begin(&mut self) {
         self.flex.clear();
         self.rigid.clear();
         self.contacts = ContactMemory::default();
         self.joints = JointMemory::default();
-        self.n_parts = 0;
-        self.firsts = firsts;
-        self.is_told = false;
-        self.counted = [false; 4];
-    }
-
-    /// What of this happens for the first time in the step of the island: it is counted once, whatever the number of its parts.
-    pub fn count(&mut self, happened: [bool; 4]) -> [usize; 4] {
-        let pairs = self.counted.iter_mut().zip(happened);
-        let mut new = [0; 4];
-        for ((counted, happened), new) in pairs.zip(&mut new) {
-            *new = usize::from(happened && !*counted);
-            *counted |= happened;
-        }
-        new
     }
 
     /// Keeps the motions that the step of the island begins with.

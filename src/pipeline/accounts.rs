@@ -1,254 +1,172 @@
-//! Accounts of a solved island: what it wants to commit, and what the report says of it.
+//! The books of a step: what solved islands are entered into, before anything is committed.
 
-use super::flex_pipeline::FlexPipeline;
-use super::report::{ContactReport, Participant};
+use super::clock::Clock;
+use super::names::Names;
+use super::outcome::Outcome;
+use super::quality::Unsolved;
+use super::report::{ContactReport, JointReport, StepReport};
+use super::solved::{Entry, SolvedPart};
 use crate::body::FlexBodySet;
-use crate::constraint::contact::{Owner, Remembered};
-use crate::coupling::{Landing, PressedPoint, RapierSets, Span, keep_awake, wake_moving};
-use crate::kkt::{ActiveContact, IslandSummary};
-use crate::linalg::complementarity::Status;
+use crate::coupling::{EventBook, Memory};
+use crate::kkt::Island;
 use crate::math::{Vec2, cross, from_rapier};
-use crate::system::{Block, Step};
+use crate::system::Block;
 
-impl FlexPipeline {
-    /// Notes what the solved island wants to commit and to report.
-    pub(super) fn note(
-        &mut self,
-        (step, span): (Step, Span),
-        summary: &IslandSummary,
-        reserve: f64,
-        sets: &RapierSets<'_>,
-        flex_bodies: &FlexBodySet,
-    ) {
-        let [first_contact, first_joint, first_impulse] = self.gatherer.under_way.firsts;
-        let owns = [self.report.contacts.len(), self.report.joints.len()];
-        for slot in 0..self.island.contacts.len() {
-            let contact = &self.island.contacts[slot];
-            let key = self.island.candidates[contact.candidate].key;
-            let state = Remembered {
-                normal: contact.multiplier[0],
-                tangent: contact.multiplier[1],
-                lasting: contact.lasting(),
-                feature: contact.kinematics.feature,
-            };
-            let memory = if span.is_last() {
-                &mut self.memory
-            } else {
-                &mut self.gatherer.under_way.contacts
-            };
-            memory.remember(key, state);
-            if contact.is_closed() {
-                let report = self.contact_report(contact, (step, span), sets, flex_bodies);
-                self.report_residuals(slot);
-                self.report.contacts.extend(report);
+/// What the islands of a step are entered into.
+pub(super) struct Books<'a> {
+    pub memory: &'a mut Memory,
+    pub events: &'a mut EventBook,
+    pub outcome: &'a mut Outcome,
+    pub report: &'a mut StepReport,
+    pub clock: &'a mut Clock,
+}
+
+impl Books<'_> {
+    /// Begins with an island.
+    pub fn open(&self) -> Entry {
+        Entry::begin([
+            self.report.contacts.len(),
+            self.report.joints.len(),
+            self.outcome.joint_impulses.len(),
+        ])
+    }
+
+    /// Enters a part of the step of an island.
+    pub fn enter(&mut self, part: &SolvedPart<'_>, names: Names<'_, '_>, entry: &mut Entry) {
+        for contact in &part.island.contacts {
+            if let Some(point) = part.pressed(contact, names) {
+                self.events.note(point, names.sets);
             }
-            self.note_pressed(slot, (step, span), sets, flex_bodies);
         }
-        self.note_joints((step, span), first_impulse, flex_bodies);
-        if !span.is_first() {
-            self.report.join_contacts(first_contact, owns[0]);
-            self.report.join_joints(first_joint, owns[1]);
+        self.outcome.enter(part, entry);
+        self.report.enter(part, names, entry);
+        entry.n_parts += 1;
+    }
+}
+
+impl StepReport {
+    fn enter(&mut self, part: &SolvedPart<'_>, names: Names<'_, '_>, entry: &mut Entry) {
+        let (n_contacts, n_joints) = (self.contacts.len(), self.joints.len());
+        self.add_contacts(part, names);
+        self.joints.extend(JointReport::all_of(part, names));
+        if !part.span.is_first() {
+            self.join_contacts(entry.first_contact, n_contacts);
+            self.join_joints(entry.first_joint, n_joints);
         }
-        self.note_quality(summary, sets, flex_bodies);
-        let counts = self.gatherer.under_way.count([
+        let summary = part.summary;
+        if let Some(unsolved) = Unsolved::of_part(part, names) {
+            match std::mem::replace(&mut entry.is_told, true) {
+                true => self.tell_again(unsolved),
+                false => self.tell(unsolved),
+            }
+        }
+        let counts = entry.count([
             summary.has_failed,
             summary.is_substituted,
             summary.is_linearized,
             summary.is_held,
         ]);
-        let report = &mut self.report;
-        report.gap_violation = report.gap_violation.max(summary.gap_violation);
-        report.slip_violation = report.slip_violation.max(summary.slip_violation);
-        report.solver_residual = report.solver_residual.max(summary.residual);
-        report.n_newton = report.n_newton.max(summary.n_newton);
-        report.n_failed += counts[0];
-        report.n_substituted += counts[1];
-        report.n_linearized += counts[2];
-        report.n_held += counts[3];
-        report.n_pivots += summary.n_pivots;
-        report.energy_limited += summary.limited;
+        self.gap_violation = self.gap_violation.max(summary.gap_violation);
+        self.slip_violation = self.slip_violation.max(summary.slip_violation);
+        self.solver_residual = self.solver_residual.max(summary.residual);
+        self.n_newton = self.n_newton.max(summary.n_newton);
+        self.n_failed += counts[0];
+        self.n_substituted += counts[1];
+        self.n_linearized += counts[2];
+        self.n_held += counts[3];
+        self.n_pivots += summary.n_pivots;
+        self.energy_limited += summary.limited;
         let gain: f64 =
             summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
-        report.energy.dissipated += summary.work - gain;
-        if span.is_last() {
-            self.note_end(summary, reserve, sets, flex_bodies);
+        self.energy.dissipated += summary.work - gain;
+        if part.span.is_last() {
+            self.energy.kinetic += summary.end_energy[0] + summary.pending;
+            self.energy.elastic += summary.end_energy[1];
+            self.energy.swing += summary.swing;
+            let gravity = from_rapier(names.sets.gravity);
+            self.add_momentum(part.island, gravity, names.flex_bodies);
         }
     }
 
-    /// Notes where and how fast the island's members end the step.
-    fn note_end(
-        &mut self,
-        summary: &IslandSummary,
-        reserve: f64,
-        sets: &RapierSets<'_>,
-        flex_bodies: &FlexBodySet,
-    ) {
-        for &(block, handle) in &self.gatherer.bodies {
-            if let Block::Rigid(block) = &self.island.blocks[block] {
-                self.landings.push(Landing::new(handle, block));
+    fn add_contacts(&mut self, part: &SolvedPart<'_>, names: Names<'_, '_>) {
+        for contact in &part.island.contacts {
+            if !contact.is_closed() {
+                continue;
             }
-        }
-        self.links.note(&self.gatherer.links, &self.island);
-        let n_flex = self.island.flex_index.iter().flatten().count().max(1);
-        for &index in self.island.flex_index.iter().flatten() {
-            self.reserves.push((index, reserve / n_flex as f64));
-        }
-        let energy = &mut self.report.energy;
-        energy.kinetic += summary.end_energy[0] + summary.pending;
-        energy.elastic += summary.end_energy[1];
-        energy.swing += summary.swing;
-        self.report_momentum(from_rapier(sets.gravity), flex_bodies);
-    }
-
-    /// Keeps what contacts of sleepers will be asked for when they wake, and what the report says of them.
-    pub(super) fn keep_sleepers(&mut self, sets: &RapierSets<'_>) {
-        let claims = &self.claims;
-        let sleeps = |owner| claims.sleeps(sets, owner);
-        self.gatherer.keep(sleeps);
-        self.memory
-            .keep(|key| sleeps(key.contactor) || sleeps(key.target));
-        self.report.keep_contacts(|participant| {
-            sleeps(match participant {
-                Participant::Flex(body) => Owner::Flex(body.into_raw_parts().0),
-                Participant::Rigid(collider) => Owner::Collider(collider.into_raw_parts().0),
-            })
-        });
-    }
-
-    /// Keeps the carriers of bodies that move awake.
-    pub(super) fn keep_awake(&self, sets: &mut RapierSets<'_>, flex_bodies: &FlexBodySet) {
-        for &(index, _) in &self.reserves {
-            let block = self.gatherer.block(index);
-            if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(index)) {
-                let is_attached = flex_bodies.is_attached(handle);
-                keep_awake(body, block.velocities(), is_attached, sets);
-            }
+            let law = part.island.candidates[contact.candidate].law;
+            self.complementarity_residual = self
+                .complementarity_residual
+                .max(contact.kinematics.gap.abs());
+            self.cone.note(contact.multiplier, law.friction);
+            self.contacts.extend(part.contact_report(contact, names));
         }
     }
 
-    /// Wakes carriers that rapier has put to sleep while their bodies move.
-    pub(super) fn wake_moving(&self, sets: &mut RapierSets<'_>, flex_bodies: &FlexBodySet) {
-        for &(index, _) in &self.reserves {
-            let block = self.gatherer.block(index);
-            if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(index)) {
-                let is_attached = flex_bodies.is_attached(handle);
-                wake_moving(body, block.velocities(), is_attached, sets);
-            }
-        }
-    }
-
-    fn report_residuals(&mut self, slot: usize) {
-        let contact = &self.island.contacts[slot];
-        let law = self.island.candidates[contact.candidate].law;
-        let report = &mut self.report;
-        report.complementarity_residual = report
-            .complementarity_residual
-            .max(contact.kinematics.gap.abs());
-        report.cone.note(contact.multiplier, law.friction);
-    }
-
-    /// Notes the force of a contact for events.
-    fn note_pressed(
-        &mut self,
-        slot: usize,
-        (step, span): (Step, Span),
-        sets: &RapierSets<'_>,
-        flex_bodies: &FlexBodySet,
-    ) {
-        let contact = &self.island.contacts[slot];
-        let force = contact.force(step.dt).map(|force| span.share() * force);
-        if !contact.is_closed() && force == [0.0; 2] {
-            return;
-        }
-        let key = self.island.candidates[contact.candidate].key;
-        let collider = |owner| match owner {
-            Owner::Flex(index) => flex_bodies
-                .at_index(index)
-                .map(|(_, body)| body.collider_handle()),
-            Owner::Collider(index) => sets
-                .colliders
-                .get_unknown_gen(index)
-                .map(|(_, handle)| handle),
-        };
-        if let (Some(contactor), Some(target)) = (collider(key.contactor), collider(key.target)) {
-            let point = PressedPoint {
-                contactor,
-                target,
-                position: contact.kinematics.position,
-                normal: contact.kinematics.normal,
-                gap: contact.gap(),
-                force,
-                is_closed: contact.is_closed(),
-                was_above: false,
+    /// Adds what contacts pressed in earlier parts of the step, the contacts from the `first` on, to those of the last part, from `own` on:
+    /// one that has opened since stays with what it gave.
+    fn join_contacts(&mut self, first: usize, own: usize) {
+        let earlier: Vec<ContactReport> = self.contacts.drain(first..own).collect();
+        let n_own = self.contacts.len();
+        for contact in earlier {
+            let of_pair = |one: &&mut ContactReport| {
+                (one.contactor, one.target) == (contact.contactor, contact.target)
             };
-            self.events.note(point, sets);
+            let away = |one: &ContactReport| {
+                let [x, y] = [0, 1].map(|axis| one.position[axis] - contact.position[axis]);
+                x * x + y * y
+            };
+            let found = self.contacts[first..n_own].iter_mut();
+            let nearest = found
+                .filter(of_pair)
+                .min_by(|one, other| away(one).total_cmp(&away(other)));
+            let Some(nearest) = nearest else {
+                self.contacts.push(contact);
+                continue;
+            };
+            let force = contact.force();
+            let [nx, ny] = nearest.normal;
+            nearest.normal_force += force[0] * nx + force[1] * ny;
+            nearest.tangential_force += force[1] * nx - force[0] * ny;
         }
     }
 
-    /// What the user knows an owner as.
-    pub(super) fn participant(
-        owner: Owner,
-        sets: &RapierSets<'_>,
-        flex_bodies: &FlexBodySet,
-    ) -> Option<Participant> {
-        match owner {
-            Owner::Flex(index) => flex_bodies
-                .at_index(index)
-                .map(|(handle, _)| Participant::Flex(handle)),
-            Owner::Collider(index) => sets
-                .colliders
-                .get_unknown_gen(index)
-                .map(|(_, handle)| Participant::Rigid(handle)),
+    /// Adds the reactions of earlier parts of the step, from the `first` on, to those of the last part, from `own` on.
+    fn join_joints(&mut self, first: usize, own: usize) {
+        let earlier: Vec<JointReport> = self.joints.drain(first..own).collect();
+        for before in earlier {
+            let mut found = self.joints[first..].iter_mut();
+            if let Some(now) = found.find(|now| now.joint == before.joint) {
+                now.force[0] += before.force[0];
+                now.force[1] += before.force[1];
+                now.torque += before.torque;
+            } else {
+                self.joints.push(before);
+            }
         }
-    }
-
-    fn contact_report(
-        &self,
-        contact: &ActiveContact,
-        (step, span): (Step, Span),
-        sets: &RapierSets<'_>,
-        flex_bodies: &FlexBodySet,
-    ) -> Option<ContactReport> {
-        let key = self.island.candidates[contact.candidate].key;
-        let participant = |owner| Self::participant(owner, sets, flex_bodies);
-        let [normal_force, tangential_force] =
-            contact.force(step.dt).map(|force| span.share() * force);
-        Some(ContactReport {
-            position: contact.kinematics.position.into(),
-            normal: contact.kinematics.normal.into(),
-            gap: contact.gap(),
-            normal_force,
-            tangential_force,
-            sticks: contact.status[1] == Status::Stick,
-            contactor: participant(key.contactor)?,
-            target: participant(key.target)?,
-        })
     }
 
     /// Adds the island's momentum and potential energy.
-    fn report_momentum(&mut self, gravity: Vec2, flex_bodies: &FlexBodySet) {
-        for (block, index) in self.island.blocks.iter().zip(&self.island.flex_index) {
-            let report = &mut self.report;
+    fn add_momentum(&mut self, island: &Island, gravity: Vec2, flex_bodies: &FlexBodySet) {
+        for (block, index) in island.blocks.iter().zip(&island.flex_index) {
             match (block, index) {
                 (Block::Flex(block), Some(index)) => {
                     let scale = flex_bodies
                         .at_index(*index)
                         .map_or(1.0, |(_, body)| body.gravity_scale());
                     let momentum = block.momentum();
-                    report.momentum[0] += momentum.linear.x;
-                    report.momentum[1] += momentum.linear.y;
-                    report.angular_momentum += momentum.angular;
-                    report.energy.potential -= scale * gravity.dot(&momentum.first_moment);
+                    self.momentum[0] += momentum.linear.x;
+                    self.momentum[1] += momentum.linear.y;
+                    self.angular_momentum += momentum.angular;
+                    self.energy.potential -= scale * gravity.dot(&momentum.first_moment);
                 }
                 (Block::Rigid(block), _) if !block.is_prescribed() => {
                     let [mass, mass_y, inertia] = block.mass();
                     let motion = block.current();
                     let momentum = Vec2::new(mass * motion.velocity.x, mass_y * motion.velocity.y);
-                    report.momentum[0] += momentum.x;
-                    report.momentum[1] += momentum.y;
-                    report.angular_momentum +=
-                        inertia * motion.spin + cross(motion.centre, momentum);
-                    report.energy.potential -= mass.max(mass_y) * gravity.dot(&motion.centre);
+                    self.momentum[0] += momentum.x;
+                    self.momentum[1] += momentum.y;
+                    self.angular_momentum += inertia * motion.spin + cross(motion.centre, momentum);
+                    self.energy.potential -= mass.max(mass_y) * gravity.dot(&motion.centre);
                 }
                 _ => {}
             }

@@ -1,6 +1,9 @@
-//! Reports are cleared, and kept, with their buffers.
+//! Writing reports: they are cleared with their buffers, and told what belongs to no island.
 
+use super::participant::Participant;
+use super::quality::Unsolved;
 use super::report::StepReport;
+use crate::coupling::RapierSets;
 
 impl StepReport {
     /// Forgets the islands' solutions of a step that is solved again.
@@ -43,5 +46,44 @@ impl StepReport {
             ..Self::default()
         };
         self.energy.dissipated = dissipated;
+    }
+
+    /// Keeps the contacts of the step before whose bodies `sleep`.
+    pub(super) fn keep_contacts(&mut self, sleeps: impl Fn(Participant) -> bool) {
+        let kept = self
+            .contacts_before
+            .iter()
+            .filter(|contact| sleeps(contact.contactor) || sleeps(contact.target));
+        self.contacts.extend(kept);
+    }
+
+    /// The contacts of the step before, all of them, where nothing was solved.
+    pub(super) fn keep_all_contacts(&mut self) {
+        std::mem::swap(&mut self.contacts, &mut self.contacts_before);
+    }
+
+    /// Adds what rapier's last step disabled.
+    pub(super) fn note_quarantine(&mut self, sets: &RapierSets<'_>) {
+        let quarantine = sets.physics_pipeline.quarantine();
+        self.quarantined_bodies
+            .extend_from_slice(quarantine.bodies());
+        self.quarantined_colliders
+            .extend_from_slice(quarantine.colliders());
+    }
+
+    /// Tells that something was not solved.
+    pub(super) fn tell(&mut self, unsolved: Unsolved) {
+        self.quality = self.quality.max(unsolved.quality);
+        self.gap_violation = self.gap_violation.max(unsolved.overlap);
+        self.unsolved.push(unsolved);
+    }
+
+    /// Tells of an island that was not solved, once, whatever the number of its parts.
+    pub(super) fn tell_again(&mut self, unsolved: Unsolved) {
+        let Some(before) = self.unsolved.last_mut() else {
+            return;
+        };
+        self.quality = self.quality.max(unsolved.quality);
+        before.join(unsolved);
     }
 }

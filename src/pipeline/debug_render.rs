@@ -1,6 +1,7 @@
 //! Flexible bodies as lines, for any backend of rapier's debug renderer.
 
-use super::report::{Held, Participant, StepReport};
+use super::participant::{Held, Participant};
+use super::report::StepReport;
 use crate::body::{FlexBody, FlexBodySet};
 use crate::fe::model::ModelError;
 use crate::math::{Vec2, node_vec, perp, to_rapier};

@@ -1,7 +1,7 @@
 //! Why a step was not taken.
 
+use super::participant::Participant;
 use super::quality::Quality;
-use super::report::Participant;
 use crate::body::{AttachmentHandle, FlexBodyError, FlexBodyHandle};
 use crate::coupling::{GatherError, ShapeFault};
 use crate::integrator::IntegratorError;

@@ -1,18 +1,15 @@
 //! The pipeline: settings and buffers, no state of its own but the memory of contacts and claimed bodies.
 
-use super::clock::Clock;
 use super::error::StepError;
-use super::joint_accounts::drop_orphans;
+use super::islands::Solver;
+use super::outcome::Outcome;
 use super::report::StepReport;
 use super::settings::FlexParameters;
 use crate::body::{FlexBodyHandle, FlexBodySet};
-use crate::constraint::contact::ContactMemory;
-use crate::coupling::{
-    Claims, EventBook, Gatherer, HookGate, JointImpulse, Landing, LinkBook, Masters, RapierSets,
-    Trespasser, WorldChange, hand_back, land, rests, stop_if_asleep, sync_settings, wake_disturbed,
-    write_impulses, write_surface,
-};
-use crate::kkt::Island;
+use crate::coupling::{Claims, EventBook, Lent, Memory, RapierSets, Trespassers};
+use crate::integrator::Beta2;
+use crate::kkt::{ContactMethod, ImpactTreatment};
+use crate::linalg::complementarity::Method;
 use crate::rapier::prelude::*;
 
 /// Steps a rapier world together with its flexible bodies.
@@ -44,20 +41,13 @@ pub struct FlexPipeline {
     /// How steps are taken; may be changed between any two of them.
     pub parameters: FlexParameters,
     pub(super) claims: Claims,
-    pub(super) gatherer: Gatherer,
-    pub(super) masters: Masters,
-    pub(super) links: LinkBook,
-    pub(super) memory: ContactMemory,
-    pub(super) island: Island,
-    pub(super) landings: Vec<Landing>,
-    pub(super) reserves: Vec<(u32, f64)>,
-    pub(super) joint_impulses: Vec<JointImpulse>,
-    /// Components with flexible bodies, and whether some of these are of large strain.
-    pub(super) components: Vec<(usize, bool)>,
+    pub(super) solver: Solver,
+    pub(super) memory: Memory,
     pub(super) events: EventBook,
+    pub(super) outcome: Outcome,
     pub(super) report: StepReport,
-    /// What nobody has claimed and rapier's own step has left in a flexible body.
-    pub(super) trespassers: Vec<Trespasser>,
+    pub(super) lent: Lent,
+    pub(super) trespassers: Trespassers,
     /// Bodies taken out of the world in this step.
     pub(super) sick: Vec<FlexBodyHandle>,
 }
@@ -74,18 +64,13 @@ impl FlexPipeline {
         Self {
             parameters: FlexParameters::default(),
             claims: Claims::default(),
-            gatherer: Gatherer::default(),
-            masters: Masters::default(),
-            links: LinkBook::default(),
-            memory: ContactMemory::default(),
-            island: Island::default(),
-            landings: Vec::new(),
-            reserves: Vec::new(),
-            joint_impulses: Vec::new(),
-            components: Vec::new(),
+            solver: Solver::default(),
+            memory: Memory::default(),
             events: EventBook::default(),
+            outcome: Outcome::default(),
             report: StepReport::default(),
-            trespassers: Vec::new(),
+            lent: Lent::default(),
+            trespassers: Trespassers::default(),
             sick: Vec::new(),
         }
     }
@@ -185,153 +170,61 @@ impl FlexPipeline {
         Ok(&self.report)
     }
 
-    /// One try of a step.
-    pub(super) fn try_step(
-        &mut self,
-        sets: &mut RapierSets<'_>,
-        flex_bodies: &mut FlexBodySet,
-    ) -> Result<(), StepError> {
-        self.report.clear();
-        let (user, hooks) = (sets.events, sets.hooks);
-        if flex_bodies.is_empty() {
-            if self.events.is_empty() {
-                sets.step();
-            } else {
-                sets.step_through(hooks, &self.events.gate(user, None));
-                self.events.tell(sets);
-            }
-            return Ok(());
-        }
-        let mut clock = Clock::start();
-        let dissipated = self.report.energy.dissipated;
-        let step = self.check(sets)?;
-        drop_orphans(sets, flex_bodies);
-        let change = self.claims.look_for_changes(sets, flex_bodies);
-        self.check_colliders(sets)?;
-        let is_quiet = step.dt > 0.0 && change == WorldChange::None;
-        if is_quiet && self.claims.is_all_asleep(sets, flex_bodies) {
-            self.step_asleep(sets, flex_bodies.len());
-            return Ok(());
-        }
-        self.check_bodies(step.dt, sets, flex_bodies)?;
-        self.claims.note_world(sets);
-        sync_settings(flex_bodies, sets.colliders);
-        wake_disturbed(sets, flex_bodies, change == WorldChange::Everywhere);
-        let is_changed = change == WorldChange::Somewhere;
-        if is_changed {
-            self.wake_for_changes(sets, flex_bodies);
-        }
-        self.claims.look_ahead(sets, flex_bodies);
-        while self.claims.wake_met(sets) {
-            self.claims.look_ahead(sets, flex_bodies);
-        }
-        self.report.n_asleep = self.claims.n_asleep();
-        if let Some(joint) = self.claims.joint_to_carrier(sets) {
-            return Err(StepError::CarrierJoint(joint));
-        }
-        let is_detected = step.dt == 0.0
-            || is_changed
-            || self.claims.needs_detection(sets)
-            || self.claims.has_attached_bodies(sets);
-        clock.lap(&mut self.report.times.claim);
-        self.report.is_detected = is_detected;
-        if is_detected {
-            if !is_changed {
-                self.detect(sets);
-                self.report.note_quarantine(sets);
-            }
-            clock.lap(&mut self.report.times.rapier);
-            if step.dt == 0.0 {
-                // The tree may be out to be optimized: a detection step without changes puts it back for queries.
-                self.detect(sets);
-                self.events.tell_detected(sets);
-                return Ok(());
-            }
-            self.claims.sweep(sets);
-        }
-        self.claims.walk(sets);
-        self.gatherer.retain(sets, flex_bodies);
-        self.note_newcomers(sets, flex_bodies);
-        clock.lap(&mut self.report.times.claim);
-        if let Err(error) = self.solve_and_look(step, sets, flex_bodies, &mut clock) {
-            let is_detected = self.report.is_detected;
-            self.undo(flex_bodies, dissipated);
-            if is_detected {
-                // As above.
-                self.detect(sets);
-            }
-            return Err(error);
-        }
-        self.keep_awake(sets, flex_bodies);
-        hand_back(&mut self.landings, sets);
-        self.links.lend(step, &self.claims, sets);
-        clock.lap(&mut self.report.times.hand_back);
-        let gate = self.hook_gate(hooks, true);
-        sets.step_through(&gate, &self.events.gate(user, Some(&self.claims)));
-        self.report.note_quarantine(sets);
-        clock.lap(&mut self.report.times.rapier);
-        self.wake_moving(sets, flex_bodies);
-        land(&self.landings, self.leads(step), sets, &mut self.masters);
-        self.links.take_back(sets);
-        write_impulses(&self.joint_impulses, sets);
-        self.commit_attachments(flex_bodies);
-        self.commit(sets, flex_bodies);
-        self.note_overbent(flex_bodies);
-        self.note_trespassers(sets, flex_bodies);
-        self.events.tell(sets);
-        clock.lap(&mut self.report.times.hand_back);
-        Ok(())
+    /// Chooses the member of the Beta-2 family.
+    ///
+    /// An explicit one (`β0 = 0`, [`Beta2::central_difference`]) needs a lumped mass; contact forces then are multipliers at
+    /// the forward increment, and the [treatment of impacts](Self::with_impact) does not matter. Steps longer than the
+    /// critical one of a body are refused, see [`Self::insisting`].
+    pub fn with_integrator(mut self, integrator: Beta2) -> Self {
+        self.parameters.integrator = integrator;
+        self
     }
 
-    /// Rapier's step without length: what it stops is not told before the full step confirms it.
-    pub(super) fn detect(&self, sets: &mut RapierSets<'_>) {
-        let gate = self.hook_gate(sets.hooks, false);
-        sets.detect_through(&gate, &self.events.gate(sets.events, None));
+    /// Chooses what is done on impact.
+    pub fn with_impact(mut self, impact: ImpactTreatment) -> Self {
+        self.parameters.impact = impact;
+        self
     }
 
-    pub(super) fn hook_gate<'a>(
-        &'a self,
-        user: &'a dyn PhysicsHooks,
-        is_full: bool,
-    ) -> HookGate<'a> {
-        HookGate {
-            user,
-            book: &self.gatherer.hooks,
-            claims: &self.claims,
-            links: &self.links,
-            is_full,
-        }
+    /// Chooses how the laws of contact are enforced: by Lagrange multipliers, or for comparison by the constraint functions of
+    /// ADINA. Steps in which the latter fail are counted, see [`StepReport::n_failed`](super::StepReport::n_failed).
+    pub fn with_contact_method(mut self, method: ContactMethod) -> Self {
+        self.parameters.contact_method = method;
+        self
     }
 
-    /// Makes the solved motions the committed ones and writes the surfaces.
-    fn commit(&mut self, sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet) {
-        if self.claims.n_asleep() > 0 {
-            self.keep_sleepers(sets);
-        }
-        self.memory.turn_over();
-        self.gatherer.turn_over(true);
-        for &(index, reserve) in &self.reserves {
-            let Some(body) = flex_bodies.at_index_mut(index) else {
-                continue;
-            };
-            body.set_energy_reserve(reserve);
-            if let Some(block) = self.gatherer.block(index) {
-                block.commit(body.state_mut());
-                block.write_contact_force(body.contact_force_mut());
-                let under_way = &self.gatherer.under_way;
-                under_way.average(index, body.contact_force_mut());
-                block.write_reactions(body.reaction_mut());
-            }
-            let is_still = rests(body, sets);
-            write_surface(
-                body,
-                is_still,
-                sets.colliders,
-                sets.broad_phase,
-                sets.integration_parameters,
-            );
-            stop_if_asleep(body, sets.bodies);
-            body.greet();
-        }
+    /// Chooses the solver of the contact problems: the active set, a direct method, by default;
+    /// [`Method::GaussSeidel`] for the modified Gauss–Seidel method of Carpenter, Taylor and Katona.
+    pub fn with_contact_solver(mut self, method: Method) -> Self {
+        self.parameters.contact_solver = method;
+        self
+    }
+
+    /// Takes steps longer than the critical one of a conditionally stable integrator instead of refusing them.
+    ///
+    /// The critical step of a body is that of a safe bound, so a step a little longer may be stable; one much longer makes the highest
+    /// frequencies grow until numbers are no longer finite. The same goes for rigid bodies that are light on the surface of an
+    /// explicit body.
+    pub fn insisting(mut self) -> Self {
+        self.parameters.insists = true;
+        self
+    }
+
+    /// Refuses steps that are not [solved](super::Quality::Solved), with [`StepError::Unsolved`](super::StepError::Unsolved), instead of
+    /// taking them and telling of it in the report.
+    pub fn refusing_unsolved(mut self) -> Self {
+        self.parameters.refuses_unsolved = true;
+        self
+    }
+
+    /// Approach velocity (m/s) below which restitution is ignored, so that resting contacts do not bounce.
+    pub fn with_restitution_threshold(mut self, threshold: f64) -> Self {
+        self.parameters.restitution_threshold = threshold;
+        self
+    }
+
+    /// The integrator.
+    pub fn integrator(&self) -> Beta2 {
+        self.parameters.integrator
     }
 }

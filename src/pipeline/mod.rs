@@ -9,17 +9,22 @@ mod cutback;
 mod debug_render;
 mod error;
 mod flex_pipeline;
+mod islands;
 mod joint_accounts;
+mod names;
 mod notes;
+mod outcome;
 mod overbent;
+mod participant;
 mod quality;
-mod quarantine;
 mod report;
-mod rest;
 mod settings;
 #[cfg(feature = "serde-serialize")]
 mod snapshot;
 mod solve;
+mod solved;
+mod step;
+mod unsolved;
 
 #[cfg(feature = "debug-render")]
 pub use debug_render::FlexDebugRender;
@@ -27,10 +32,9 @@ pub use error::StepError;
 pub use flex_pipeline::FlexPipeline;
 pub use notes::InsertionNote;
 pub use overbent::Overbent;
+pub use participant::{Held, Participant};
 pub use quality::{Quality, Unsolved};
-pub use report::{
-    ContactReport, EnergyReport, Held, JointReport, Participant, StageTimes, StepReport,
-};
+pub use report::{ContactReport, EnergyReport, JointReport, StageTimes, StepReport};
 pub use settings::FlexParameters;
 #[cfg(feature = "serde-serialize")]
 pub use snapshot::{Snapshot, SnapshotError};

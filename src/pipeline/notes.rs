@@ -1,9 +1,8 @@
 //! What a body's description asked for and is likely a mistake, told in the report of its first step.
 
-use super::flex_pipeline::FlexPipeline;
-use super::report::Participant;
+use super::participant::Participant;
 use crate::body::{FlexBodyHandle, FlexBodySet};
-use crate::coupling::{ClaimedPair, RapierSets};
+use crate::coupling::{ClaimedPair, Claims, RapierSets, overlaps_of_newcomers};
 use std::fmt;
 
 /// Something about a body that has just been inserted. Nothing is refused: the step was taken.
@@ -46,47 +45,48 @@ impl fmt::Display for InsertionNote {
     }
 }
 
-impl FlexPipeline {
-    /// Notes what is odd about bodies that take their first step.
-    pub(super) fn note_newcomers(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
-        let mut bodies = self.claims.flex.iter();
-        let is_new = |index| {
-            flex_bodies
-                .at_index(index)
-                .is_some_and(|(_, body)| body.is_new())
-        };
-        if !bodies.any(|flex| is_new(flex.index)) {
-            return;
-        }
-        let handle = |flex: usize| {
-            let index = self.claims.flex[flex].index;
-            flex_bodies.at_index(index).map(|(handle, _)| handle)
-        };
-        let notes = &mut self.report.insertion_notes;
-        for flex in &self.claims.flex {
-            if let Some((body, found)) = flex_bodies.at_index(flex.index)
-                && found.is_new()
-                && found.n_idle_pins() > 0
-            {
-                notes.push(InsertionNote::NothingPinned {
-                    body,
-                    n_calls: found.n_idle_pins(),
-                });
-            }
-        }
-        for pair in self.claims.overlaps_of_newcomers(sets, flex_bodies) {
-            let (body, with) = match pair {
-                ClaimedPair::FlexRigid(flex, other) => {
-                    (handle(flex), Some(Participant::Rigid(other)))
-                }
-                ClaimedPair::FlexFlex(one, other) => {
-                    (handle(one), handle(other).map(Participant::Flex))
-                }
-                ClaimedPair::RigidRigid(..) => continue,
-            };
-            if let (Some(body), Some(with)) = (body, with) {
-                notes.push(InsertionNote::Overlap { body, with });
-            }
+/// What is odd about bodies that take their first step.
+pub(super) fn notes_of_newcomers(
+    claims: &Claims,
+    sets: &RapierSets<'_>,
+    flex_bodies: &FlexBodySet,
+) -> Vec<InsertionNote> {
+    let mut notes = Vec::new();
+    let mut bodies = claims.flex.iter();
+    let is_new = |index| {
+        flex_bodies
+            .at_index(index)
+            .is_some_and(|(_, body)| body.is_new())
+    };
+    if !bodies.any(|flex| is_new(flex.index)) {
+        return notes;
+    }
+    let handle = |flex: usize| {
+        let index = claims.flex[flex].index;
+        flex_bodies.at_index(index).map(|(handle, _)| handle)
+    };
+    for flex in &claims.flex {
+        if let Some((body, found)) = flex_bodies.at_index(flex.index)
+            && found.is_new()
+            && found.n_idle_pins() > 0
+        {
+            notes.push(InsertionNote::NothingPinned {
+                body,
+                n_calls: found.n_idle_pins(),
+            });
         }
     }
+    for pair in overlaps_of_newcomers(claims, sets, flex_bodies) {
+        let (body, with) = match pair {
+            ClaimedPair::FlexRigid(flex, other) => (handle(flex), Some(Participant::Rigid(other))),
+            ClaimedPair::FlexFlex(one, other) => {
+                (handle(one), handle(other).map(Participant::Flex))
+            }
+            ClaimedPair::RigidRigid(..) => continue,
+        };
+        if let (Some(body), Some(with)) = (body, with) {
+            notes.push(InsertionNote::Overlap { body, with });
+        }
+    }
+    notes
 }

@@ -1,6 +1,5 @@
 //! Bodies that are bent or stretched beyond what small strains describe: every equation of the step holds, but for another body.
 
-use super::flex_pipeline::FlexPipeline;
 use crate::body::{FlexBodyHandle, FlexBodySet};
 use std::fmt;
 
@@ -30,19 +29,21 @@ impl fmt::Display for Overbent {
     }
 }
 
-impl FlexPipeline {
-    /// Tells of the bodies of this step that are beyond small strains.
-    pub(super) fn note_overbent(&mut self, flex_bodies: &FlexBodySet) {
-        for &(index, _) in &self.reserves {
-            let Some((handle, body)) = flex_bodies.at_index(index) else {
-                continue;
-            };
-            if let Some(neglected_strain) = body.neglected_beyond(TOLD) {
-                self.report.overbent.push(Overbent {
-                    body: handle,
-                    neglected_strain,
-                });
-            }
+/// Adds the bodies, of those at some slots of the set, that are beyond small strains.
+pub(super) fn list_overbent(
+    indices: impl Iterator<Item = u32>,
+    flex_bodies: &FlexBodySet,
+    found: &mut Vec<Overbent>,
+) {
+    for index in indices {
+        let Some((handle, body)) = flex_bodies.at_index(index) else {
+            continue;
+        };
+        if let Some(neglected_strain) = body.neglected_beyond(TOLD) {
+            found.push(Overbent {
+                body: handle,
+                neglected_strain,
+            });
         }
     }
 }

@@ -1,9 +1,6 @@
 //! How well a step was solved: the one place where a user sees that something was cut short.
 
-use super::flex_pipeline::FlexPipeline;
-use super::report::Participant;
-use crate::body::FlexBodySet;
-use crate::coupling::RapierSets;
+use super::participant::Participant;
 use crate::kkt::IslandSummary;
 
 /// How well a step, or an island of it, was solved.
@@ -53,86 +50,40 @@ impl IslandSummary {
     }
 }
 
-impl FlexPipeline {
-    /// Notes that members have left the boxes they were looked for in for good: what they meet there is not known.
-    pub(super) fn note_unseen(&mut self, flex_bodies: &FlexBodySet) {
-        let claimed = self.claims.flex.iter();
-        let flexible = claimed.filter_map(|flex| flex_bodies.at_index(flex.index));
-        self.report.quality = Quality::Unfinished;
-        self.report.unsolved.push(Unsolved {
-            quality: Quality::Unfinished,
-            bodies: flexible
-                .map(|(handle, _)| Participant::Flex(handle))
-                .collect(),
-            overlap: self.report.gap_violation,
-        });
-    }
-
-    /// Notes what rapier's own step has left in flexible bodies: nothing was solved there, and the step has been taken.
-    pub(super) fn note_trespassers(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
-        let known = self.report.gap_violation;
-        let mut found = std::mem::take(&mut self.trespassers);
-        found.clear();
-        self.claims
-            .list_trespassers(sets, flex_bodies, known, &mut found);
-        for one in &found {
-            self.report.quality = Quality::Unfinished;
-            self.report.gap_violation = self.report.gap_violation.max(one.depth);
-            self.report.unsolved.push(Unsolved {
-                quality: Quality::Unfinished,
-                bodies: vec![
-                    Participant::Flex(one.body),
-                    Participant::Rigid(one.collider),
-                ],
-                overlap: one.depth,
-            });
-        }
-        self.trespassers = found;
-    }
-
-    /// Notes an island that was not solved in one piece.
-    pub(super) fn note_quality(
-        &mut self,
-        summary: &IslandSummary,
-        sets: &RapierSets<'_>,
-        flex_bodies: &FlexBodySet,
-    ) {
-        let quality = summary.quality();
-        self.report.quality = self.report.quality.max(quality);
-        if quality == Quality::Solved {
-            return;
-        }
-        let flexible = self.island.flex_index.iter().flatten();
-        let flexible = flexible.filter_map(|&index| flex_bodies.at_index(index));
-        let mut bodies: Vec<Participant> = flexible
-            .map(|(handle, _)| Participant::Flex(handle))
-            .collect();
-        let depth = |slot: &usize| -self.island.contacts[*slot].gap();
-        let worst = (0..self.island.contacts.len()).max_by(|a, b| depth(a).total_cmp(&depth(b)));
-        if let Some(slot) = worst {
-            let key = self.island.candidates[self.island.contacts[slot].candidate].key;
-            for owner in key.owners() {
-                let participant = Self::participant(owner, sets, flex_bodies);
-                bodies.extend(participant.filter(|one| !bodies.contains(one)));
+impl Unsolved {
+    /// Adds what is told of another part of the same island.
+    pub(super) fn join(&mut self, part: Self) {
+        self.quality = self.quality.max(part.quality);
+        self.overlap = self.overlap.max(part.overlap);
+        let known = self.bodies.len();
+        for body in part.bodies {
+            if !self.bodies[..known].contains(&body) {
+                self.bodies.push(body);
             }
         }
-        let unsolved = &mut self.report.unsolved;
-        // An island is told of once, whatever the number of its parts.
-        let is_told = std::mem::replace(&mut self.gatherer.under_way.is_told, true);
-        if let Some(before) = unsolved.last_mut().filter(|_| is_told) {
-            before.quality = before.quality.max(quality);
-            before.overlap = before.overlap.max(summary.gap_violation);
-            let new = bodies
-                .into_iter()
-                .filter(|one| !before.bodies.contains(one));
-            let new: Vec<Participant> = new.collect();
-            before.bodies.extend(new);
-            return;
-        }
-        unsolved.push(Unsolved {
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Participant, Quality, Unsolved};
+    use crate::rapier::prelude::ColliderHandle;
+
+    fn unsolved(quality: Quality, colliders: &[u32], overlap: f64) -> Unsolved {
+        let handle = |&index: &u32| ColliderHandle::from_raw_parts(index, 0);
+        let bodies = colliders.iter().map(handle).map(Participant::Rigid);
+        Unsolved {
             quality,
-            bodies,
-            overlap: summary.gap_violation,
-        });
+            bodies: bodies.collect(),
+            overlap,
+        }
+    }
+
+    /// The parts of an island's step are told of as one: the worst of them, and every body once.
+    #[test]
+    fn parts_of_an_island_are_told_of_as_one() {
+        let mut told = unsolved(Quality::Cut, &[1, 2], 2e-3);
+        told.join(unsolved(Quality::Unfinished, &[2, 3], 1e-3));
+        assert_eq!(told, unsolved(Quality::Unfinished, &[1, 2, 3], 2e-3));
     }
 }

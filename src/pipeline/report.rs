@@ -2,23 +2,10 @@
 
 use super::notes::InsertionNote;
 use super::overbent::Overbent;
+use super::participant::{Held, Participant};
 use super::quality::{Quality, Unsolved};
-use crate::body::{AttachmentHandle, FlexBodyHandle};
-use crate::coupling::RapierSets;
-use crate::rapier::prelude::{ColliderHandle, ImpulseJointHandle, RigidBodyHandle};
-
-/// One side of a contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde-serialize",
-    derive(serde::Serialize, serde::Deserialize)
-)]
-pub enum Participant {
-    /// A flexible body.
-    Flex(FlexBodyHandle),
-    /// A collider of a rigid body, or one without a body.
-    Rigid(ColliderHandle),
-}
+use crate::body::FlexBodyHandle;
+use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
 
 /// One contact at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,19 +44,6 @@ impl ContactReport {
             self.normal_force * ny + self.tangential_force * nx,
         ]
     }
-}
-
-/// What holds without touching.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(
-    feature = "serde-serialize",
-    derive(serde::Serialize, serde::Deserialize)
-)]
-pub enum Held {
-    /// An impulse joint of rapier.
-    Joint(ImpulseJointHandle),
-    /// An attachment of a flexible body.
-    Attachment(AttachmentHandle),
 }
 
 /// Reaction of one joint of claimed bodies, or of one attachment.
@@ -417,28 +391,5 @@ impl StepReport {
             sum[1] += sign * force[1];
         }
         sum
-    }
-
-    /// Keeps the contacts of the step before whose bodies `sleep`.
-    pub(super) fn keep_contacts(&mut self, sleeps: impl Fn(Participant) -> bool) {
-        let kept = self
-            .contacts_before
-            .iter()
-            .filter(|contact| sleeps(contact.contactor) || sleeps(contact.target));
-        self.contacts.extend(kept);
-    }
-
-    /// The contacts of the step before, all of them, where nothing was solved.
-    pub(super) fn keep_all_contacts(&mut self) {
-        std::mem::swap(&mut self.contacts, &mut self.contacts_before);
-    }
-
-    /// Adds what rapier's last step disabled.
-    pub(super) fn note_quarantine(&mut self, sets: &RapierSets<'_>) {
-        let quarantine = sets.physics_pipeline.quarantine();
-        self.quarantined_bodies
-            .extend_from_slice(quarantine.bodies());
-        self.quarantined_colliders
-            .extend_from_slice(quarantine.colliders());
     }
 }

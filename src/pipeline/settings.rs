@@ -1,15 +1,15 @@
 //! What a user chooses of a pipeline.
 
 use super::error::StepError;
-use super::flex_pipeline::FlexPipeline;
 use crate::integrator::Beta2;
 use crate::kkt::{ContactMethod, ImpactTreatment};
 use crate::linalg::complementarity::Method;
+use crate::system::Step;
 
 /// Halvings of a step that may be asked for.
 const MOST_CUTBACKS: usize = 10;
 
-/// How a [`FlexPipeline`] takes its steps, as rapier's `IntegrationParameters` say it of rapier: plain values, read at the beginning of each
+/// How a [`FlexPipeline`](super::FlexPipeline) takes its steps, as rapier's `IntegrationParameters` say it of rapier: plain values, read at the beginning of each
 /// step.
 ///
 /// The `with_*` methods of the pipeline set the same values.
@@ -26,11 +26,11 @@ const MOST_CUTBACKS: usize = 10;
     derive(serde::Serialize, serde::Deserialize)
 )]
 pub struct FlexParameters {
-    /// The member of the Beta-2 family; [`Beta2::damped`]`(0.9)` by default. See [`FlexPipeline::with_integrator`].
+    /// The member of the Beta-2 family; [`Beta2::damped`]`(0.9)` by default. See [`FlexPipeline::with_integrator`](super::FlexPipeline::with_integrator).
     pub integrator: Beta2,
     /// What is done on impact; stabilized by default.
     pub impact: ImpactTreatment,
-    /// How the laws of contact are enforced; by Lagrange multipliers by default. See [`FlexPipeline::with_contact_method`].
+    /// How the laws of contact are enforced; by Lagrange multipliers by default. See [`FlexPipeline::with_contact_method`](super::FlexPipeline::with_contact_method).
     pub contact_method: ContactMethod,
     /// The solver that contact problems are given to first; the active set by default.
     pub contact_solver: Method,
@@ -51,9 +51,9 @@ pub struct FlexParameters {
     /// budget ends there, and [`StepReport::quality`](super::StepReport::quality) tells of it. Flexible bodies rest
     /// [`FlexBody::contact_offset`](crate::body::FlexBody::contact_offset) apart. Pairs shown to hooks and what overlaps to begin with are not led.
     pub feasible_path: bool,
-    /// Whether steps longer than the critical one are taken all the same; no by default. See [`FlexPipeline::insisting`].
+    /// Whether steps longer than the critical one are taken all the same; no by default. See [`FlexPipeline::insisting`](super::FlexPipeline::insisting).
     pub insists: bool,
-    /// Whether steps that are not solved are refused; no by default. See [`FlexPipeline::refusing_unsolved`].
+    /// Whether steps that are not solved are refused; no by default. See [`FlexPipeline::refusing_unsolved`](super::FlexPipeline::refusing_unsolved).
     pub refuses_unsolved: bool,
 }
 
@@ -108,64 +108,17 @@ impl FlexParameters {
         }
         Ok(())
     }
-}
 
-impl FlexPipeline {
-    /// Chooses the member of the Beta-2 family.
-    ///
-    /// An explicit one (`β0 = 0`, [`Beta2::central_difference`]) needs a lumped mass; contact forces then are multipliers at
-    /// the forward increment, and the [treatment of impacts](Self::with_impact) does not matter. Steps longer than the
-    /// critical one of a body are refused, see [`Self::insisting`].
-    pub fn with_integrator(mut self, integrator: Beta2) -> Self {
-        self.parameters.integrator = integrator;
-        self
+    /// Whether surfaces are led along a feasible path.
+    pub(super) fn leads(&self, step: Step) -> bool {
+        self.feasible_path && !step.is_explicit() && self.contact_method == ContactMethod::Lagrange
     }
 
-    /// Chooses what is done on impact.
-    pub fn with_impact(mut self, impact: ImpactTreatment) -> Self {
-        self.parameters.impact = impact;
-        self
-    }
-
-    /// Chooses how the laws of contact are enforced: by Lagrange multipliers, or for comparison by the constraint functions of
-    /// ADINA. Steps in which the latter fail are counted, see [`StepReport::n_failed`](super::StepReport::n_failed).
-    pub fn with_contact_method(mut self, method: ContactMethod) -> Self {
-        self.parameters.contact_method = method;
-        self
-    }
-
-    /// Chooses the solver of the contact problems: the active set, a direct method, by default;
-    /// [`Method::GaussSeidel`] for the modified Gauss–Seidel method of Carpenter, Taylor and Katona.
-    pub fn with_contact_solver(mut self, method: Method) -> Self {
-        self.parameters.contact_solver = method;
-        self
-    }
-
-    /// Takes steps longer than the critical one of a conditionally stable integrator instead of refusing them.
-    ///
-    /// The critical step of a body is that of a safe bound, so a step a little longer may be stable; one much longer makes the highest
-    /// frequencies grow until numbers are no longer finite. The same goes for rigid bodies that are light on the surface of an
-    /// explicit body.
-    pub fn insisting(mut self) -> Self {
-        self.parameters.insists = true;
-        self
-    }
-
-    /// Refuses steps that are not [solved](super::Quality::Solved), with [`StepError::Unsolved`](super::StepError::Unsolved), instead of
-    /// taking them and telling of it in the report.
-    pub fn refusing_unsolved(mut self) -> Self {
-        self.parameters.refuses_unsolved = true;
-        self
-    }
-
-    /// Approach velocity (m/s) below which restitution is ignored, so that resting contacts do not bounce.
-    pub fn with_restitution_threshold(mut self, threshold: f64) -> Self {
-        self.parameters.restitution_threshold = threshold;
-        self
-    }
-
-    /// The integrator.
-    pub fn integrator(&self) -> Beta2 {
-        self.parameters.integrator
+    /// How often the step of an island may be halved.
+    pub(super) fn most_cutbacks(&self, has_large: bool) -> usize {
+        match has_large {
+            true => self.max_cutbacks_large,
+            false => self.max_cutbacks,
+        }
     }
 }

@@ -9,10 +9,21 @@ use super::step::Step;
 use crate::integrator::Weights;
 use crate::math::{Mat2, Vec2, perp};
 
-/// A rigid body of an island: free (dynamic), prescribed (fixed and kinematic), or a link of a multibody, which moves by an inverse
-/// mass of its whole multibody and by no law of its own.
+/// What a rigid body is in an island, and how it answers forces.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    /// Dynamic: by its own mass.
+    Free,
+    /// Fixed or kinematic: not at all, its motion is given.
+    Prescribed,
+    /// A link: by the inverse mass of its multibody; it has no mass of its own.
+    Link(LinkResponse),
+}
+
+/// A rigid body of an island: free (dynamic), prescribed (fixed and kinematic), or a link of a multibody.
 #[derive(Clone, Copy, Debug)]
 pub struct RigidBlock {
+    kind: Kind,
     pub(super) start: RigidMotion,
     pub(super) current: RigidMotion,
     free: RigidMotion,
@@ -30,9 +41,6 @@ pub struct RigidBlock {
     /// How long damping at the end of the step acts (s).
     slowing: f64,
     pub(super) dt: f64,
-    is_prescribed: bool,
-    /// How a link of a multibody answers; such a block has no mass of its own.
-    link: Option<LinkResponse>,
     /// Stiffness against turning within the step (N m/rad), and the free angle and inverse inertia without it.
     twist: f64,
     untwisted: [f64; 2],
@@ -62,6 +70,7 @@ impl RigidBlock {
     /// A body whose motion over the step is given.
     pub fn prescribed(start: RigidMotion, end: RigidMotion) -> Self {
         Self {
+            kind: Kind::Prescribed,
             start,
             current: start,
             free: end,
@@ -75,8 +84,6 @@ impl RigidBlock {
             weights: Weights::default(),
             slowing: 0.0,
             dt: 0.0,
-            is_prescribed: true,
-            link: None,
             twist: 0.0,
             untwisted: [0.0; 2],
             damped_velocity: [0.0; 3],
@@ -129,6 +136,7 @@ impl RigidBlock {
             .inverse_mass
             .map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 });
         Self {
+            kind: Kind::Free,
             start,
             current: start,
             free,
@@ -142,8 +150,6 @@ impl RigidBlock {
             weights,
             slowing: own.b1,
             dt,
-            is_prescribed: false,
-            link: None,
             twist: 0.0,
             untwisted: [0.0; 2],
             damped_velocity: v,
@@ -153,10 +159,9 @@ impl RigidBlock {
     /// A link of a multibody. It keeps its velocity and gives way to nothing until [`RigidBlock::set_link_response`] tells it more.
     pub fn link(start: RigidMotion, weights: Weights, dt: f64) -> Self {
         Self {
+            kind: Kind::Link(LinkResponse::default()),
             weights,
             dt,
-            is_prescribed: false,
-            link: Some(LinkResponse::default()),
             ..Self::prescribed(start, start)
         }
     }
@@ -172,23 +177,26 @@ impl RigidBlock {
         self.smooth_start = acceleration;
         self.smooth_end = acceleration;
         self.smooth_free = acceleration;
-        self.link = Some(response);
+        self.kind = Kind::Link(response);
     }
 
     /// How a link answers and what it has been given, if this is one.
     pub fn link_response(&self) -> Option<&LinkResponse> {
-        self.link.as_ref()
+        match &self.kind {
+            Kind::Link(link) => Some(link),
+            Kind::Free | Kind::Prescribed => None,
+        }
     }
 
     /// Whether its energy is not that of the island: its motion is given, or another solver's joints drive it.
     pub fn is_driven(&self) -> bool {
-        self.is_prescribed || self.link.is_some()
+        !matches!(self.kind, Kind::Free)
     }
 
     /// What a wrench does, `A⁻¹ f` (m/s², rad/s²).
     #[inline]
     fn answer(&self, wrench: [f64; 3]) -> [f64; 3] {
-        match &self.link {
+        match self.link_response() {
             None => std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]),
             Some(link) => link.answer(wrench),
         }
@@ -208,7 +216,7 @@ impl RigidBlock {
     ///
     /// Not the free motion: under a heavy neighbour that misses the neighbour's force, and may be anywhere.
     pub fn drift(&self) -> RigidMotion {
-        if self.is_prescribed {
+        if self.is_prescribed() {
             return self.free;
         }
         RigidMotion {
@@ -220,7 +228,7 @@ impl RigidBlock {
 
     /// How far the body has turned beyond what its own spin would have done (rad).
     pub fn excess_turn(&self) -> f64 {
-        if self.is_prescribed {
+        if self.is_prescribed() {
             return 0.0;
         }
         let turned = (self.current.angle - self.start.angle).abs();
@@ -229,7 +237,7 @@ impl RigidBlock {
 
     /// Whether the motion is given.
     pub fn is_prescribed(&self) -> bool {
-        self.is_prescribed
+        matches!(self.kind, Kind::Prescribed)
     }
 
     /// Mass in x, y and inertia (kg, kg, kg m²); zero along locked axes and for prescribed bodies.
@@ -239,7 +247,7 @@ impl RigidBlock {
 
     /// See [`super::Block::compliance`], for two levers.
     pub fn compliance(&self, at: Vec2, from: Vec2, of: Response) -> Mat2 {
-        match &self.link {
+        match self.link_response() {
             None => mobility(&self.inverse_effective, at, from),
             Some(link) => link.compliance(at, from, of),
         }
@@ -247,7 +255,7 @@ impl RigidBlock {
 
     /// How the unit wrench `at` moves along under the unit wrench `from`, `G A⁻¹ Gᵀ` (1/kg).
     pub fn mobility_between(&self, at: [f64; 3], from: [f64; 3], of: Response) -> f64 {
-        if let Some(link) = &self.link {
+        if let Some(link) = self.link_response() {
             return link.mobility_between(at, from, of);
         }
         let terms = at.iter().zip(from).zip(&self.inverse_effective);
@@ -280,7 +288,7 @@ impl RigidBlock {
     ///
     /// `mobility` is what the multipliers move positions by, over `A⁻¹` (s²).
     pub fn stiffen(&mut self, twist: f64, mobility: f64) {
-        if self.is_prescribed || self.inverse_effective[2] <= 0.0 {
+        if self.is_prescribed() || self.inverse_effective[2] <= 0.0 {
             return;
         }
         self.twist = twist;
@@ -314,7 +322,7 @@ impl RigidBlock {
         } else {
             self.dt * self.dt
         };
-        let step: [f64; 3] = match &self.link {
+        let step: [f64; 3] = match self.link_response() {
             None => std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]),
             Some(link) => link.answer(wrench).map(|change| b0 * link.reach * change),
         };
@@ -340,7 +348,7 @@ impl RigidBlock {
         let change = self.answer(wrench);
         let b1 = self.weights.b1;
         let lasts = self.weights != Weights::within(self.dt);
-        if let Some(link) = &mut self.link {
+        if let Kind::Link(link) = &mut self.kind {
             link.begin(wrench, b1, lasts);
         }
         self.current.velocity = self.free.velocity + b1 * Vec2::new(change[0], change[1]);
@@ -370,7 +378,7 @@ impl RigidBlock {
 
     /// Whether no damping acts and no axis is locked.
     pub(super) fn moves_freely(&self) -> bool {
-        !self.is_prescribed
+        !self.is_prescribed()
             && self.inverse_effective == self.inverse_mass
             && self.inverse_mass.iter().all(|inverse| *inverse > 0.0)
     }
@@ -391,7 +399,7 @@ impl RigidBlock {
         let change = self.answer(impulse);
         self.current.velocity += Vec2::new(change[0], change[1]);
         self.current.spin += change[2];
-        if let Some(link) = &mut self.link {
+        if let Kind::Link(link) = &mut self.kind {
             link.add_impulse(impulse);
         }
     }
@@ -399,7 +407,7 @@ impl RigidBlock {
     /// Adds to the smooth end acceleration the response to a wrench.
     pub fn add_smooth_acceleration(&mut self, wrench: [f64; 3]) {
         let change = self.answer(wrench);
-        if let Some(link) = &mut self.link {
+        if let Kind::Link(link) = &mut self.kind {
             link.add_lasting(wrench);
         }
         for (sum, change) in self.smooth_end.iter_mut().zip(change) {
@@ -411,7 +419,7 @@ impl RigidBlock {
     pub fn respond(&self, lever: Vec2, wrench: [f64; 3], of: Response) -> Vec2 {
         let change = self.answer(wrench);
         let along = Vec2::new(change[0], change[1]) + change[2] * perp(lever);
-        match &self.link {
+        match self.link_response() {
             Some(link) if of == Response::Position => link.reach * along,
             _ => along,
         }
@@ -424,7 +432,7 @@ impl RigidBlock {
 
     /// Mobility of the body as if it were alone, `n·M⁻¹·n` at a lever (1/kg).
     pub fn rigid_mobility(&self, lever: Vec2, direction: Vec2) -> f64 {
-        if let Some(link) = &self.link {
+        if let Some(link) = self.link_response() {
             let between = link.compliance(lever, lever, Response::Velocity);
             return direction.dot(&(between * direction));
         }

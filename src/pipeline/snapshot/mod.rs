@@ -11,6 +11,7 @@ mod wire;
 pub use error::SnapshotError;
 
 use super::flex_pipeline::FlexPipeline;
+use super::islands::Solver;
 use super::report::StepReport;
 use super::settings::FlexParameters;
 use crate::body::{FlexBodySet, SetRecord, SetRecordError};
@@ -211,32 +212,25 @@ struct PipelineRecord {
 
 impl PipelineRecord {
     fn of(flex: &FlexPipeline) -> Self {
+        let pool = flex.solver.pool();
         Self {
             parameters: flex.parameters,
-            memory: flex.memory.clone(),
-            coupling: CouplingRecord::of(
-                &flex.claims,
-                &flex.events,
-                (&flex.masters, &flex.links),
-                &flex.gatherer,
-            ),
+            memory: flex.memory.contacts.clone(),
+            coupling: CouplingRecord::of(&flex.claims, &flex.events, &flex.memory, pool),
             report: flex.report.clone(),
         }
     }
 
     fn build(self, flex_bodies: &FlexBodySet) -> Result<FlexPipeline, SnapshotError> {
-        let coupling = self.coupling.build(flex_bodies);
-        let (claims, events, (masters, links), gatherer) =
+        let coupling = self.coupling.build(self.memory, flex_bodies);
+        let (claims, events, memory, pool) =
             coupling.ok_or(SnapshotError::Inconsistent("explicit bodies"))?;
         let mut flex = FlexPipeline::new();
         flex.parameters = self.parameters;
-        flex.memory = self.memory;
-        flex.memory.list_pressed();
         flex.claims = claims;
         flex.events = events;
-        flex.masters = masters;
-        flex.links = links;
-        flex.gatherer = gatherer;
+        flex.memory = memory;
+        flex.solver = Solver::with_pool(pool);
         flex.report = self.report;
         Ok(flex)
     }

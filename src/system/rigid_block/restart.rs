@@ -1,6 +1,6 @@
 //! Taking a rigid block back within its step, and ending the step elsewhere than forces lead.
 
-use super::RigidBlock;
+use super::{Kind, RigidBlock};
 use crate::math::Vec2;
 use crate::system::RigidMotion;
 
@@ -40,7 +40,7 @@ impl RigidBlock {
 
     /// Ends the step where it began, without velocities, unless the motion is given.
     pub fn hold(&mut self) {
-        if !self.is_prescribed {
+        if !self.is_prescribed() {
             self.current = RigidMotion {
                 velocity: Vec2::zeros(),
                 spin: 0.0,
@@ -48,7 +48,7 @@ impl RigidBlock {
             };
             self.free = self.current;
             self.smooth_end = [0.0; 3];
-            if let Some(link) = &mut self.link {
+            if let Kind::Link(link) = &mut self.kind {
                 link.take_back();
             }
         }

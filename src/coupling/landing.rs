@@ -1,0 +1,29 @@
+//! Where and how fast claimed rigid bodies end the step.
+
+use crate::rapier::prelude::RigidBodyHandle;
+use crate::system::{RigidBlock, RigidMotion};
+
+/// A claimed body on its way through rapier's step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Landing {
+    /// The body.
+    pub handle: RigidBodyHandle,
+    /// Where and how fast it must end.
+    pub motion: RigidMotion,
+    /// Its smooth acceleration.
+    pub acceleration: [f64; 3],
+    /// What of it the user's forces and gravity give to the body alone.
+    pub drive: [f64; 3],
+}
+
+impl Landing {
+    /// Notes the end of a claimed body's step.
+    pub fn new(handle: RigidBodyHandle, block: &RigidBlock) -> Self {
+        Self {
+            handle,
+            motion: *block.current(),
+            acceleration: block.smooth_end,
+            drive: block.drive(),
+        }
+    }
+}

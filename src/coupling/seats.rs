@@ -1,0 +1,115 @@
+//! Seats: which block of an island a body is.
+
+use super::gather_settings::GatherSettings;
+use super::links::{LinkBlock, Push, foreign_block, pushes_of};
+use super::sets::RapierSets;
+use crate::kkt::Island;
+use crate::rapier::prelude::*;
+use crate::system::{Block, FlexBlock, RigidBlock};
+use std::collections::HashMap;
+
+/// The members of the island that is gathered, or was gathered last.
+#[derive(Debug, Default)]
+pub(crate) struct Seats {
+    /// Blocks of flexible bodies, by their slots in the roster.
+    flex: HashMap<usize, usize>,
+    /// Blocks of rigid bodies, claimed or not.
+    rigid: HashMap<RigidBodyHandle, usize>,
+    claimed: Vec<(usize, RigidBodyHandle)>,
+    links: Vec<LinkBlock>,
+}
+
+impl Seats {
+    /// Begins with an empty island.
+    pub fn clear(&mut self) {
+        self.flex.clear();
+        self.rigid.clear();
+        self.claimed.clear();
+        self.links.clear();
+    }
+
+    /// Claimed rigid bodies, with their blocks.
+    pub fn claimed(&self) -> &[(usize, RigidBodyHandle)] {
+        &self.claimed
+    }
+
+    /// Links of multibodies.
+    pub fn links(&self) -> &[LinkBlock] {
+        &self.links
+    }
+
+    /// What the island, once solved, has done to its links.
+    pub fn pushes<'a>(&'a self, island: &'a Island) -> impl Iterator<Item = Push> + 'a {
+        pushes_of(&self.links, island)
+    }
+
+    /// The block of a claimed flexible body.
+    pub fn flex_block(&self, flex: usize) -> Option<usize> {
+        self.flex.get(&flex).copied()
+    }
+
+    /// Adds a flexible body: by its slot in the roster and its index in the set.
+    pub fn add_flex(
+        &mut self,
+        (flex, index): (usize, u32),
+        block: Box<FlexBlock>,
+        island: &mut Island,
+    ) {
+        island.blocks.push(Block::Flex(block));
+        island.flex_index.push(Some(index));
+        self.flex.insert(flex, island.blocks.len() - 1);
+    }
+
+    /// Adds a claimed rigid body.
+    pub fn add_claimed(&mut self, handle: RigidBodyHandle, block: RigidBlock, island: &mut Island) {
+        let block = self.add_rigid(block, Some(handle), island);
+        self.claimed.push((block, handle));
+    }
+
+    /// Adds what moves as a rigid body: one of rapier's, or what has no body. Returns its block.
+    fn add_rigid(
+        &mut self,
+        block: RigidBlock,
+        handle: Option<RigidBodyHandle>,
+        island: &mut Island,
+    ) -> usize {
+        let is_link = block.link_response().is_some();
+        island.blocks.push(Block::Rigid(block));
+        island.flex_index.push(None);
+        let index = island.blocks.len() - 1;
+        if let Some(handle) = handle {
+            self.rigid.insert(handle, index);
+            if is_link {
+                self.links.push(LinkBlock {
+                    block: index,
+                    handle,
+                });
+            }
+        }
+        index
+    }
+}
+
+/// An island that is being filled.
+pub(super) struct OpenIsland<'a, 'r> {
+    pub settings: &'a GatherSettings,
+    pub sets: &'a RapierSets<'r>,
+    pub seats: &'a mut Seats,
+    pub island: &'a mut Island,
+}
+
+impl OpenIsland<'_, '_> {
+    /// The block of a rigid body: its own if it is claimed, or one that moves as rapier says, added when first asked for.
+    pub fn block_of(&mut self, handle: RigidBodyHandle) -> Option<usize> {
+        if let Some(&block) = self.seats.rigid.get(&handle) {
+            return Some(block);
+        }
+        let block = foreign_block(handle, self.settings, self.sets)?;
+        Some(self.seats.add_rigid(block, Some(handle), self.island))
+    }
+
+    /// Adds what moves as a rigid body and is none of rapier's; returns its block.
+    pub fn add_rigid(&mut self, block: RigidBlock) -> usize {
+        self.seats.add_rigid(block, None, self.island)
+    }
+}

@@ -1,0 +1,72 @@
+//! Waking: sleepers that something awake may meet in the step wake before they touch.
+
+use super::changes::Changes;
+use super::places::{loosened, swept_box};
+use super::roster::Roster;
+use super::sets::RapierSets;
+use super::sleep::reaches;
+use super::strikes::Strikes;
+use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
+use crate::rapier::prelude::*;
+
+/// Wakes sleepers that something awake may meet in the step; returns whether one woke, so that the look-ahead has to begin anew.
+pub(super) fn wake_met(
+    sets: &mut RapierSets<'_>,
+    flex: &Roster,
+    changes: &Changes,
+    strikes: &mut Strikes,
+) -> bool {
+    if flex.asleep().is_empty() {
+        return false;
+    }
+    let dt = sets.integration_parameters.dt;
+    let fall = sets.gravity.length() * dt * dt;
+    let margin = sets.integration_parameters.prediction_distance() + fall;
+    let mut woken = Vec::new();
+    for one in flex {
+        list_met(flex, sets, &loosened(one.swept, margin), &mut woken);
+    }
+    for (handle, collider) in changes.unsettled(sets) {
+        if is_awake(sets, collider) && flex.slot_of(handle).is_none() {
+            let swept = swept_box(sets.bodies, collider, dt);
+            list_met(flex, sets, &loosened(swept, margin), &mut woken);
+        }
+    }
+    let surfaces = flex.asleep().iter().map(|sleeper| sleeper.surface);
+    strikes.meet(sets, (flex, changes), surfaces, |slot, _, _| {
+        let carrier = flex.asleep()[slot].carrier;
+        if !woken.contains(&carrier) {
+            woken.push(carrier);
+        }
+    });
+    let mut has_woken = false;
+    for &carrier in &woken {
+        sets.islands.wake_up(sets.bodies, carrier, true);
+        // Rapier wakes no body that the user has made a fixed one.
+        has_woken |= sets
+            .bodies
+            .get(carrier)
+            .is_some_and(|body| !body.is_sleeping());
+    }
+    has_woken
+}
+
+/// Lists the sleepers whose surface a box reaches.
+fn list_met(flex: &Roster, sets: &RapierSets<'_>, near: &Aabb, woken: &mut Vec<RigidBodyHandle>) {
+    for sleeper in flex.asleep() {
+        if near.intersects(&sleeper.surface)
+            && !woken.contains(&sleeper.carrier)
+            && reaches(sets, sleeper.collider, near)
+        {
+            woken.push(sleeper.carrier);
+        }
+    }
+}
+
+/// Whether a collider belongs to a body that may move.
+fn is_awake(sets: &RapierSets<'_>, collider: &Collider) -> bool {
+    let parent = collider.parent().and_then(|parent| sets.bodies.get(parent));
+    collider.is_enabled()
+        && !collider.is_sensor()
+        && parent.is_some_and(|body| !body.is_fixed() && !body.is_sleeping())
+}

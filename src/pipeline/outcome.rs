@@ -1,0 +1,110 @@
+//! What the solved islands of a step want to commit, before anything is.
+
+use super::solved::{Entry, SolvedPart};
+use crate::body::FlexBodySet;
+use crate::constraint::joint::{JointOwner, Measure};
+use crate::coupling::{FlexPool, JointImpulse, Landing, Push, RapierSets, keep_awake, wake_moving};
+use crate::rapier::prelude::ImpulseJointHandle;
+use crate::system::Block;
+
+/// The ends of the members of all islands of a step.
+#[derive(Debug, Default)]
+pub(super) struct Outcome {
+    /// Flexible bodies, by their slots in the set, with the energy that contact may return to them (J).
+    pub flexible: Vec<(u32, f64)>,
+    /// Where claimed rigid bodies end.
+    pub landings: Vec<Landing>,
+    /// What links of multibodies were pushed by.
+    pub pushes: Vec<Push>,
+    /// Impulses on rapier's joints.
+    pub joint_impulses: Vec<JointImpulse>,
+}
+
+impl Outcome {
+    /// Begins anew.
+    pub fn clear(&mut self) {
+        self.flexible.clear();
+        self.landings.clear();
+        self.pushes.clear();
+        self.joint_impulses.clear();
+    }
+
+    /// Enters a part of an island's step as solved; with the last one its members end.
+    pub fn enter(&mut self, part: &SolvedPart<'_>, entry: &Entry) {
+        self.add_joint_impulses(part, entry);
+        if !part.span.is_last() {
+            return;
+        }
+        let island = part.island;
+        for &(block, handle) in part.seats.claimed() {
+            if let Block::Rigid(block) = &island.blocks[block] {
+                self.landings.push(Landing::new(handle, block));
+            }
+        }
+        self.pushes.extend(part.seats.pushes(island));
+        let n_flex = island.flex_index.iter().flatten().count().max(1);
+        for &index in island.flex_index.iter().flatten() {
+            self.flexible.push((index, part.reserve / n_flex as f64));
+        }
+    }
+
+    /// Adds the impulses of a part to those of the parts before it.
+    fn add_joint_impulses(&mut self, part: &SolvedPart<'_>, entry: &Entry) {
+        let dt = part.step.dt;
+        for tie in &part.island.ties {
+            let JointOwner::Impulse(index, generation) = tie.row.key.owner else {
+                continue;
+            };
+            let handle = ImpulseJointHandle::from_raw_parts(index, generation);
+            let impulse = dt * tie.force(dt);
+            let row = tie.row.key.row;
+            let mut noted = self.joint_impulses[entry.first_impulse..].iter_mut();
+            let known = if part.span.is_first() {
+                None
+            } else {
+                noted.find(|one| one.handle == handle && one.row == row)
+            };
+            match known {
+                Some(known) => known.impulse += impulse,
+                None => self.joint_impulses.push(JointImpulse {
+                    handle,
+                    row,
+                    is_world: matches!(tie.row.measure, Measure::Along(_)),
+                    impulse,
+                }),
+            }
+        }
+    }
+
+    /// Keeps the carriers of bodies that move awake.
+    pub fn keep_awake(
+        &self,
+        pool: &FlexPool,
+        sets: &mut RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) {
+        for &(index, _) in &self.flexible {
+            let block = pool.block(index);
+            if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(index)) {
+                let is_attached = flex_bodies.is_attached(handle);
+                keep_awake(body, block.velocities(), is_attached, sets);
+            }
+        }
+    }
+
+    /// Wakes carriers that rapier has put to sleep while their bodies move.
+    pub fn wake_moving(
+        &self,
+        pool: &FlexPool,
+        sets: &mut RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) {
+        for &(index, _) in &self.flexible {
+            let block = pool.block(index);
+            if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(index)) {
+                let is_attached = flex_bodies.is_attached(handle);
+                wake_moving(body, block.velocities(), is_attached, sets);
+            }
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! A part of an island's step as it was solved, and what is read off it.
+
+use super::names::Names;
+use super::report::ContactReport;
+use crate::constraint::contact::{ContactMemory, Remembered};
+use crate::constraint::joint::JointMemory;
+use crate::coupling::{PressedPoint, Seats, Span};
+use crate::kkt::{ActiveContact, Island, IslandSummary};
+use crate::linalg::complementarity::Status;
+use crate::system::Step;
+
+/// A part of the step of an island, as solved.
+pub(super) struct SolvedPart<'a> {
+    pub island: &'a Island,
+    pub seats: &'a Seats,
+    pub summary: &'a IslandSummary,
+    pub step: Step,
+    pub span: Span,
+    /// Energy that contact may return after it (J).
+    pub reserve: f64,
+}
+
+impl SolvedPart<'_> {
+    /// Notes the multipliers that whatever is solved next begins with.
+    pub fn remember(&self, contacts: &mut ContactMemory, joints: &mut JointMemory) {
+        for contact in &self.island.contacts {
+            let state = Remembered {
+                normal: contact.multiplier[0],
+                tangent: contact.multiplier[1],
+                lasting: contact.lasting(),
+                feature: contact.kinematics.feature,
+            };
+            contacts.remember(self.island.candidates[contact.candidate].key, state);
+        }
+        for tie in &self.island.ties {
+            joints.remember(tie.row.key, tie.multiplier);
+        }
+    }
+
+    /// Force of a contact (N), as a share of the step's.
+    fn force(&self, contact: &ActiveContact) -> [f64; 2] {
+        let force = contact.force(self.step.dt);
+        force.map(|force| self.span.share() * force)
+    }
+
+    /// A contact as events tell of it, if it presses or is closed.
+    pub fn pressed(&self, contact: &ActiveContact, names: Names<'_, '_>) -> Option<PressedPoint> {
+        let force = self.force(contact);
+        if !contact.is_closed() && force == [0.0; 2] {
+            return None;
+        }
+        let key = self.island.candidates[contact.candidate].key;
+        Some(PressedPoint {
+            contactor: names.collider(key.contactor)?,
+            target: names.collider(key.target)?,
+            position: contact.kinematics.position,
+            normal: contact.kinematics.normal,
+            gap: contact.gap(),
+            force,
+            is_closed: contact.is_closed(),
+            was_above: false,
+        })
+    }
+
+    /// A closed contact as the report tells of it.
+    pub fn contact_report(
+        &self,
+        contact: &ActiveContact,
+        names: Names<'_, '_>,
+    ) -> Option<ContactReport> {
+        let key = self.island.candidates[contact.candidate].key;
+        let [normal_force, tangential_force] = self.force(contact);
+        Some(ContactReport {
+            position: contact.kinematics.position.into(),
+            normal: contact.kinematics.normal.into(),
+            gap: contact.gap(),
+            normal_force,
+            tangential_force,
+            sticks: contact.status[1] == Status::Stick,
+            contactor: names.participant(key.contactor)?,
+            target: names.participant(key.target)?,
+        })
+    }
+}
+
+/// What has been entered of one island, whose step may be taken in parts.
+pub(super) struct Entry {
+    /// Where its contacts and joints begin in the report.
+    pub first_contact: usize,
+    pub first_joint: usize,
+    /// Where its impulses on rapier's joints begin in the outcome.
+    pub first_impulse: usize,
+    /// Parts that are over.
+    pub n_parts: usize,
+    /// Whether the report tells that one of the parts was not solved.
+    pub is_told: bool,
+    /// What it has been counted for in the report.
+    counted: [bool; 4],
+}
+
+impl Entry {
+    /// Of an island of which nothing has been entered: where its contacts and joints begin in the report, and its impulses.
+    pub fn begin([first_contact, first_joint, first_impulse]: [usize; 3]) -> Self {
+        Self {
+            first_contact,
+            first_joint,
+            first_impulse,
+            n_parts: 0,
+            is_told: false,
+            counted: [false; 4],
+        }
+    }
+
+    /// What of this happens for the first time in the step of the island: it is counted once, whatever the number of its parts.
+    pub fn count(&mut self, happened: [bool; 4]) -> [usize; 4] {
+        let pairs = self.counted.iter_mut().zip(happened);
+        let mut new = [0; 4];
+        for ((counted, happened), new) in pairs.zip(&mut new) {
+            *new = usize::from(happened && !*counted);
+            *counted |= happened;
+        }
+        new
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Entry;
+
+    /// An island whose step is taken in parts counts once for what happens in several of them.
+    #[test]
+    fn what_happens_in_two_parts_of_a_step_is_counted_once() {
+        let mut entry = Entry::begin([0; 3]);
+        assert_eq!(entry.count([true, false, false, false]), [1, 0, 0, 0]);
+        assert_eq!(entry.count([true, false, true, false]), [0, 0, 1, 0]);
+        assert_eq!(entry.count([true, false, true, false]), [0; 4]);
+    }
+}
