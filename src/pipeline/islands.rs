@@ -76,6 +76,7 @@ impl Solver {
         books: &mut Books<'_>,
     ) -> Result<(), StepError> {
         self.under_way.begin_step();
+        self.island.begin_step();
         self.list_components(task.claims, flex_bodies);
         let factorizations = self.gatherer.pool.n_factorizations();
         for slot in 0..self.components.len() {
@@ -101,7 +102,6 @@ impl Solver {
     }
 
     fn list_components(&mut self, claims: &Claims, flex_bodies: &FlexBodySet) {
-        self.island.begin_step();
         self.components.clear();
         for (flex, own) in claims.flex.iter().enumerate() {
             let body = flex_bodies.at_index(own.index);
