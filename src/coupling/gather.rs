@@ -59,6 +59,8 @@ pub(crate) struct Gatherer {
     pub bodies: Vec<(usize, RigidBodyHandle)>,
     /// Links of multibodies in the island.
     pub links: Vec<LinkBlock>,
+    /// Flexible bodies of the island whose surfaces cross themselves where the step begins.
+    pub crossed: Vec<u32>,
 }
 
 /// What all islands of a step have in common.
@@ -165,6 +167,7 @@ impl Gatherer {
             let pair = claims.pairs[slot];
             self.add_pair(pair, settings, sets, claims, island)?;
         }
+        self.add_own_pairs(settings, sets, claims, island)?;
         self.add_joints(settings, sets, flex_bodies, claims, island)?;
         self.finish_links(settings, book, sets, island)
     }

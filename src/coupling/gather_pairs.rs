@@ -143,6 +143,38 @@ impl Gatherer {
         Ok(())
     }
 
+    /// Keeps surfaces of the island apart from themselves, after all others; but for sensors, which touch nothing, and bodies of small strain:
+    /// before these are bent so far that they meet themselves, they are no longer described.
+    pub(super) fn add_own_pairs(
+        &mut self,
+        settings: &GatherSettings,
+        sets: &RapierSets<'_>,
+        claims: &Claims,
+        island: &mut Island,
+    ) -> Result<(), GatherError> {
+        self.crossed.clear();
+        if !settings.uses_path {
+            return Ok(());
+        }
+        island.path.begin_own();
+        for (flex, own) in claims.flex.iter().enumerate() {
+            let Some(block) = self.flex_block(flex) else {
+                continue;
+            };
+            let collider = sets.colliders.get(own.collider);
+            let is_large = matches!(&island.blocks[block], Block::Flex(body) if body.is_large());
+            if !is_large || collider.is_none_or(Collider::is_sensor) {
+                continue;
+            }
+            let law = law_of(sets.colliders, own.collider, own.collider)?;
+            let owner = Owner::Flex(own.index);
+            if !ways::flex_own(island, block, owner, law, &mut self.flex_cores) {
+                self.crossed.push(own.index);
+            }
+        }
+        Ok(())
+    }
+
     /// Leads a flexible block along a path that keeps it apart from a collider; see [`ways::flex_rigid`].
     fn lead(
         &mut self,

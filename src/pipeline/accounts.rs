@@ -45,6 +45,12 @@ impl FlexPipeline {
             self.note_pressed(slot, (step, span), sets, flex_bodies);
         }
         self.note_joints((step, span), first_impulse, flex_bodies);
+        if span.is_first() {
+            let crossed = self.gatherer.crossed.iter();
+            let crossed = crossed.filter_map(|&index| flex_bodies.at_index(index));
+            let handles = crossed.map(|(handle, _)| handle);
+            self.report.self_crossing.extend(handles);
+        }
         if !span.is_first() {
             self.report.join_contacts(first_contact, owns[0]);
             self.report.join_joints(first_joint, owns[1]);
@@ -161,6 +167,10 @@ impl FlexPipeline {
             return;
         }
         let key = self.island.candidates[contact.candidate].key;
+        // Rapier knows no events of a collider with itself.
+        if key.contactor == key.target {
+            return;
+        }
         let collider = |owner| match owner {
             Owner::Flex(index) => flex_bodies
                 .at_index(index)
