@@ -26,7 +26,7 @@ fn shortest_edge(model: &Model) -> f64 {
 }
 
 impl FlexBody {
-    /// Distance at which the surface closes with terrain that has no thickness (m): a hundredth of its shortest edge, more only where rapier's
+    /// Distance at which the surface closes with itself and with terrain that has no thickness (m): a hundredth of its shortest edge, more only where rapier's
     /// numbers hold no such distance. Other flexible bodies, and rigid ones with an inside, it touches; these are drawn inwards by as much for
     /// the path that keeps them apart.
     pub fn contact_offset(&self) -> f64 {

@@ -94,6 +94,7 @@ impl Gatherer {
             self.pairs
                 .add(pair, claims, &agitation, memory, &mut open)?;
         }
+        self.pairs.add_own(claims, &mut open)?;
         let last = if settings.span.is_first() {
             &memory.joints
         } else {

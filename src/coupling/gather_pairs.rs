@@ -186,6 +186,37 @@ impl PairGatherer {
         Ok(())
     }
 
+    /// Keeps surfaces of the island apart from themselves, after all others; but for sensors, which touch nothing, and bodies of small strain:
+    /// before these are bent so far that they meet themselves, they are no longer described.
+    pub fn add_own(
+        &mut self,
+        claims: &Claims,
+        open: &mut OpenIsland<'_, '_>,
+    ) -> Result<(), GatherError> {
+        let OpenIsland { settings, sets, .. } = *open;
+        if !settings.uses_path {
+            return Ok(());
+        }
+        open.island.path.begin_own();
+        for (flex, own) in claims.flex.iter().enumerate() {
+            let Some(block) = open.seats.flex_block(flex) else {
+                continue;
+            };
+            let collider = sets.colliders.get(own.collider);
+            let body = &open.island.blocks[block];
+            let is_large = matches!(body, Block::Flex(body) if body.is_large());
+            if !is_large || collider.is_none_or(Collider::is_sensor) {
+                continue;
+            }
+            let law = law_of(sets.colliders, own.collider, own.collider)?;
+            let owner = Owner::Flex(own.index);
+            if !ways::flex_own(open.island, block, owner, law, &mut self.flex_cores) {
+                open.seats.add_crossed(own.index);
+            }
+        }
+        Ok(())
+    }
+
     /// Leads a flexible block along a path that keeps it apart from a collider; see [`ways::flex_rigid`].
     fn lead(
         &mut self,

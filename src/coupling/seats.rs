@@ -17,6 +17,8 @@ pub(crate) struct Seats {
     rigid: HashMap<RigidBodyHandle, usize>,
     claimed: Vec<(usize, RigidBodyHandle)>,
     links: Vec<LinkBlock>,
+    /// Flexible bodies whose surfaces cross themselves where the step begins, by their slots in the set.
+    crossed: Vec<u32>,
 }
 
 impl Seats {
@@ -26,6 +28,7 @@ impl Seats {
         self.rigid.clear();
         self.claimed.clear();
         self.links.clear();
+        self.crossed.clear();
     }
 
     /// Claimed rigid bodies, with their blocks.
@@ -36,6 +39,16 @@ impl Seats {
     /// Links of multibodies.
     pub fn links(&self) -> &[LinkBlock] {
         &self.links
+    }
+
+    /// Flexible bodies whose surfaces cross themselves where the step begins, by their slots in the set.
+    pub fn crossed(&self) -> &[u32] {
+        &self.crossed
+    }
+
+    /// Notes that the surface of a flexible body crosses itself.
+    pub fn add_crossed(&mut self, index: u32) {
+        self.crossed.push(index);
     }
 
     /// What the island, once solved, has done to its links.

@@ -5,7 +5,7 @@ use super::draft::Guest;
 pub(super) use super::draft::{Draft, RigidSurface};
 use super::flex_cores::{FlexCore, FlexCores, Inset, offset_of};
 use super::outlines::Piece;
-use crate::constraint::contact::ContactLaw;
+use crate::constraint::contact::{ContactLaw, Owner};
 use crate::kkt::{Island, Way};
 use crate::math::rotation;
 use crate::system::{Block, FlexBlock};
@@ -156,6 +156,42 @@ pub(super) fn flex_flex(
         }
     }
     Err(0.0)
+}
+
+/// Keeps the surface of a flexible block apart from itself; returns whether it is to begin with.
+///
+/// It closes at the offset, or where it is nearer to itself at rest at half of that: what is at rest then touches nothing, and has half of the
+/// way left that it may go.
+pub(super) fn flex_own(
+    island: &mut Island,
+    block: usize,
+    owner: Owner,
+    law: ContactLaw,
+    cores: &mut FlexCores,
+) -> bool {
+    // As it is drawn for rigid bodies, where it is.
+    let inset = Inset {
+        length: 0.0,
+        is_forced: true,
+    };
+    let Some(core) = cores.core(block, inset, island) else {
+        return false;
+    };
+    let Block::Flex(body) = &island.blocks[block] else {
+        return false;
+    };
+    let (offset, clearance) = (offset_of(body), body.clearance());
+    let closing = (offset + law.skin).min(0.5 * clearance);
+    let margin = offset.min(closing);
+    let way = Way {
+        members: [core.member; 2],
+        owners: [owner; 2],
+        law,
+        closing,
+        margin,
+        reach: REACH * margin,
+    };
+    clearance > 0.0 && island.path.add_own_way(way, body, clearance)
 }
 
 /// Distance of cores at which a contact closes, and the part of it that the path may use up (m).

@@ -3,11 +3,13 @@
 mod around;
 mod kept;
 mod meetings;
+mod own;
 mod retreat;
 mod rows;
 
 pub(super) use self::kept::KeptBase;
 use self::meetings::Meeting;
+use self::own::OwnWay;
 use self::retreat::LastWay;
 use crate::constraint::contact::{ContactLaw, ContactMemory, Owner};
 use crate::math::{Vec2, rotation};
@@ -104,6 +106,13 @@ pub struct FeasiblePath {
     /// Vertices at which forces have slid off within the step.
     meetings: Vec<Meeting>,
     last_way: LastWay,
+    /// Surfaces that are kept apart from themselves, whose ways are the last ones, and the placements that these are compared with.
+    own: Vec<OwnWay>,
+    references: Vec<Vec2>,
+    /// Number of points, the first ones, of surfaces that meet others, once these have been added.
+    n_shared: Option<usize>,
+    /// Whether there is a path to follow: ways of surfaces with themselves alone ask for one where they are near.
+    is_led: bool,
 }
 
 impl FeasiblePath {
@@ -115,11 +124,15 @@ impl FeasiblePath {
         self.points.clear();
         self.near.clear();
         self.farthest_tip = 0.0;
+        self.own.clear();
+        self.references.clear();
+        self.n_shared = None;
+        self.is_led = false;
     }
 
-    /// Whether no surfaces are kept apart.
+    /// Whether there is no path to follow: no surfaces are kept apart, or only from themselves, where they are not near.
     pub(super) fn is_empty(&self) -> bool {
-        self.ways.is_empty()
+        !self.is_led
     }
 
     /// Number of ways so far.
@@ -131,6 +144,7 @@ impl FeasiblePath {
     pub(crate) fn truncate(&mut self, first: usize) {
         self.ways.truncate(first);
         self.pairs.truncate(first);
+        self.is_led = !self.ways.is_empty();
     }
 
     /// Adds the surface of a flexible block.
@@ -231,9 +245,11 @@ impl FeasiblePath {
             closing: way.closing,
             margin: way.margin,
             least,
+            is_asleep: false,
         };
         self.pairs.push(pair);
         self.ways.push(way);
+        self.is_led = true;
         true
     }
 
@@ -245,12 +261,6 @@ impl FeasiblePath {
                 blocks.push(way.members.map(|member| self.carriers[member].block));
             }
         }
-    }
-
-    /// Smallest margin of the ways (m).
-    pub(super) fn least_margin(&self) -> f64 {
-        let margins = self.ways.iter().map(|way| way.margin);
-        margins.fold(f64::INFINITY, f64::min)
     }
 
     /// Margin of the way of a near pair (m).
@@ -285,6 +295,7 @@ impl FeasiblePath {
                 },
             });
         }
+        self.forget_own();
         let n_points = self.surfaces.points().len();
         self.last_way
             .forget([n_points, self.base.len(), self.nodes.len()]);
@@ -297,10 +308,11 @@ impl FeasiblePath {
             let base = self.base[self.carriers[member].block];
             self.aim(member, (base.centre, base.angle), blocks);
         }
+        let own = self.wake_on_way();
         let impact =
             self.search
                 .time_of_impact(&self.surfaces, &self.motion, &self.pairs, &mut self.hits);
-        let part = impact.t.min(1.0).min(self.turning_part(blocks));
+        let part = impact.t.min(own).min(self.turning_part(blocks));
         self.look_back(part);
         self.go(part, blocks);
         part >= 1.0

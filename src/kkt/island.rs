@@ -261,6 +261,8 @@ pub struct Island {
     pub(super) statuses: Vec<Status>,
     pub(super) wrenches: Vec<[f64; 3]>,
     pub(super) groups: Vec<usize>,
+    /// Blocks with contacts of their own surface.
+    pub(super) touch_themselves: Vec<bool>,
     /// Whether overlaps that the step began with are left alone.
     pub(super) ignores_overlaps: bool,
     /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.

@@ -1,4 +1,4 @@
-//! Angular momentum of bodies that touch each other and nothing else.
+//! Angular momentum of bodies that touch each other, or themselves, and nothing else.
 //!
 //! The multipliers of a contact have no resultant and no couple, so linear momentum is kept to rounding. Angular momentum
 //! `Σ (x - C) × m (v - V) + L` is not: a contact that closes within the step acts at the levers of the step's end, and
@@ -10,10 +10,12 @@ use crate::math::{Vec2, cross, perp};
 use crate::system::Moments;
 
 impl Island {
-    /// Restores the angular momentum of every group of free bodies that touch.
+    /// Restores the angular momentum of every group of free bodies that touch, each other or themselves.
     pub(super) fn balance_angular_momentum(&mut self) {
         self.groups.clear();
         self.groups.extend(0..self.blocks.len());
+        self.touch_themselves.clear();
+        self.touch_themselves.resize(self.blocks.len(), false);
         let closed = self.contacts.iter().filter(|contact| contact.is_closed());
         let pressed = closed.map(|contact| self.candidates[contact.candidate].pair.blocks());
         let tied = self.ties.iter().map(|tie| {
@@ -24,6 +26,7 @@ impl Island {
             .chain(self.pressed_before.iter().copied())
             .chain(tied)
         {
+            self.touch_themselves[pair[0]] |= pair[0] == pair[1];
             let [one, other] = pair.map(|block| root(&self.groups, block));
             self.groups[one.max(other)] = one.min(other);
         }
@@ -32,7 +35,7 @@ impl Island {
         }
         for block in 0..self.groups.len() {
             let has_partner = self.groups[block + 1..].contains(&block);
-            if self.groups[block] == block && has_partner {
+            if self.groups[block] == block && (has_partner || self.touch_themselves[block]) {
                 self.balance_group(block);
             }
         }

@@ -63,7 +63,11 @@ impl Island {
             if !is_solved || self.is_astray() {
                 self.fall_back(settings, memory, tolerance, summary);
             }
-        } else {
+            if self.path.has_met_itself(&self.blocks) {
+                self.start_again(settings, tolerance, memory);
+            }
+        }
+        if !self.path.is_empty() {
             match self.follow_path(settings, memory, tolerance, summary) {
                 Passed::Solved => {}
                 Passed::Arrived => summary.is_cut = true,

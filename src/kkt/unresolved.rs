@@ -35,9 +35,13 @@ impl Island {
         let normal = kinematics.normal;
         let along = |of: Mat2| normal.dot(&(of * normal));
         let (mut rigid, mut actual, mut springs) = (0.0, 0.0, 0.0);
+        // A body that meets itself has no rigid motion against itself.
+        let is_own = kinematics.is_own();
         for a in kinematics.attachments() {
             let block = &self.blocks[a.block];
-            rigid += a.weight.abs() * block.rigid_mobility(a.grip, normal);
+            if !is_own {
+                rigid += a.weight.abs() * block.rigid_mobility(a.grip, normal);
+            }
             for b in kinematics.attachments() {
                 if a.block == b.block {
                     let weight = a.weight * b.weight;

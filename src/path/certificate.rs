@@ -127,11 +127,19 @@ fn check(search: &mut Search, surfaces: &Surfaces, [one, other]: [usize; 2], rea
         reach,
         |first, second| {
             let [ends, others] = [first, second].map(|edge| surfaces.edges()[edge]);
-            // Within one member each pair once, and not the edges that share a point by being neighbours.
-            if one == other && (second <= first || ends.iter().any(|end| others.contains(end))) {
+            // Within one member each pair once.
+            if one == other && second <= first {
                 return;
             }
+            let are_neighbours = one == other && ends.iter().any(|end| others.contains(end));
             let (ends, others) = (surfaces.ends(first), surfaces.ends(second));
+            if are_neighbours {
+                match fold([first, second], surfaces) {
+                    Some(distance) => square = square.min(distance),
+                    None => found.n_touching += 1,
+                }
+                return;
+            }
             match meet(ends, others) {
                 Some(Overlap::Crossing) => found.n_crossings += 1,
                 Some(_) => found.n_touching += 1,
@@ -171,6 +179,27 @@ fn n_parts_inside(search: &Search, surfaces: &Surfaces, of: usize, around: usize
     points
         .filter(|&p| search.contains(surfaces, around, p) && winding(surfaces, around, p) != 0)
         .count()
+}
+
+/// The square of the distance from the ends that two neighbours do not share to the other edge (m²); `None` where such an end lies on it:
+/// neighbours share their common end, and must not lie on each other.
+fn fold([one, other]: [usize; 2], surfaces: &Surfaces) -> Option<f64> {
+    let mut square = f64::INFINITY;
+    for [of, on] in [[one, other], [other, one]] {
+        let ends = surfaces.ends(on);
+        let met = surfaces.edges()[on];
+        for end in surfaces.edges()[of] {
+            if met.contains(&end) {
+                continue;
+            }
+            let point = surfaces.points()[end as usize];
+            if side(ends[0], ends[1], point) == 0.0 && Bounds::of(ends).contains(point) {
+                return None;
+            }
+            square = square.min(square_distance(point, ends));
+        }
+    }
+    Some(square)
 }
 
 /// How often the edges of a member go round a point that lies on none of them, counter-clockwise.

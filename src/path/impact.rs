@@ -63,7 +63,7 @@ impl Path {
         self.search.refresh(extent);
         for (index, pair) in pairs.iter().enumerate() {
             let is_still = |member: usize| surfaces.members()[member].kind == MotionKind::Still;
-            if is_still(pair.one) && is_still(pair.other) {
+            if pair.is_asleep || is_still(pair.one) && is_still(pair.other) {
                 continue;
             }
             let least = self.list_candidates(extent, surfaces, pair);

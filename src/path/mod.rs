@@ -18,6 +18,7 @@
 mod advance;
 mod bounds;
 mod certificate;
+mod clearance;
 mod distance;
 mod impact;
 mod motion;
@@ -33,6 +34,7 @@ mod tests;
 // What a step ends with is checked by the tests; a step of its own does not pay for it yet.
 #[cfg(test)]
 pub use certificate::Certificate;
+pub use clearance::clearance;
 pub use impact::Hit;
 pub use motion::Motion;
 pub use near::{NearPair, Target};
@@ -56,7 +58,7 @@ const KEPT_OF_LEAST: f64 = 0.99;
 const NO_APPROACH: f64 = 1e-6;
 
 /// Two members that are asked against each other. Both the same: a member against itself, without the edges that meet in
-/// the point.
+/// the point. Of these, the two ends are asked against each other, so that no edge vanishes: it could come out the other way round.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MemberPair {
     /// Index of the first member.
@@ -71,6 +73,8 @@ pub struct MemberPair {
     pub margin: f64,
     /// Distance that they have had before all motions (m).
     pub least: f64,
+    /// Whether they are known to stay apart by more than is asked for next: then they are passed over.
+    pub is_asleep: bool,
 }
 
 impl MemberPair {

@@ -58,6 +58,9 @@ impl Path {
         let extent = Extent::of(surfaces);
         self.search.refresh(extent);
         for (index, pair) in pairs.iter().enumerate() {
+            if pair.is_asleep {
+                continue;
+            }
             let first = rows.len();
             let within = pair.closing + reach;
             // A vertex against a vertex is found from both sides; the first tells it.
@@ -100,6 +103,7 @@ impl Asked<'_> {
         let vertices = surfaces.edges()[edge];
         let own = self.pair.one == self.pair.other;
         if own && vertices.contains(&(point as u32)) {
+            self.list_ends(point, edge, rows);
             return;
         }
         let (position, ends) = (surfaces.points()[point], surfaces.ends(edge));
@@ -125,24 +129,42 @@ impl Asked<'_> {
             if !is_first || !beside.is_beyond(end) || own && vertex <= point {
                 continue;
             }
-            if self.in_cone(position, vertex) && self.in_cone(surfaces.points()[vertex], point) {
-                let (normal, distance) = direction(surfaces.points()[vertex], position);
-                self.push(
-                    point,
-                    Target::Vertex(vertex),
-                    Foot {
-                        xi: 0.0,
-                        normal,
-                        distance,
-                    },
-                    rows,
-                );
-            }
+            self.list_vertices(point, vertex, None, rows);
         }
     }
 
-    fn in_cone(&self, position: Vec2, vertex: usize) -> bool {
-        self.surfaces.edges_at(vertex).iter().all(|&edge| {
+    /// Lists the other end of an edge of the same member that ends in the point, which is as any other vertex but for that edge.
+    fn list_ends(&self, point: usize, edge: usize, rows: &mut Vec<NearPair>) {
+        let [from, to] = self.surfaces.edges()[edge].map(|end| end as usize);
+        if from.min(to) == point && from != to {
+            self.list_vertices(point, from.max(to), Some(edge), rows);
+        }
+    }
+
+    /// Lists two vertices if each lies in the other's cone, an edge between them not asked.
+    fn list_vertices(
+        &self,
+        point: usize,
+        vertex: usize,
+        between: Option<usize>,
+        rows: &mut Vec<NearPair>,
+    ) {
+        let [position, met] = [point, vertex].map(|one| self.surfaces.points()[one]);
+        if self.in_cone(position, vertex, between) && self.in_cone(met, point, between) {
+            let (normal, distance) = direction(met, position);
+            let foot = Foot {
+                xi: 0.0,
+                normal,
+                distance,
+            };
+            self.push(point, Target::Vertex(vertex), foot, rows);
+        }
+    }
+
+    fn in_cone(&self, position: Vec2, vertex: usize, between: Option<usize>) -> bool {
+        let asked = self.surfaces.edges_at(vertex).iter();
+        let mut asked = asked.filter(|&&edge| between != Some(edge as usize));
+        asked.all(|&edge| {
             let end = usize::from(self.surfaces.edges()[edge as usize][0] as usize != vertex);
             Beside::of(position, self.surfaces.ends(edge as usize)).is_beyond(end)
         })
@@ -209,5 +231,7 @@ impl Asked<'_> {
     }
 }
 
+#[cfg(test)]
+mod own_tests;
 #[cfg(test)]
 mod tests;

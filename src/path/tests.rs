@@ -29,6 +29,7 @@ fn crowd(random: &mut Random) -> (Surfaces, Vec<MemberPair>) {
                 closing: 0.01,
                 margin: 0.01,
                 least: f64::INFINITY,
+                is_asleep: false,
             });
         }
     }

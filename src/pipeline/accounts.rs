@@ -49,7 +49,11 @@ impl StepReport {
         let (n_contacts, n_joints) = (self.contacts.len(), self.joints.len());
         self.add_contacts(part, names);
         self.joints.extend(JointReport::all_of(part, names));
-        if !part.span.is_first() {
+        if part.span.is_first() {
+            let crossed = part.seats.crossed().iter();
+            let bodies = crossed.filter_map(|&index| names.flex_bodies.at_index(index));
+            self.self_crossing.extend(bodies.map(|(handle, _)| handle));
+        } else {
             self.join_contacts(entry.first_contact, n_contacts);
             self.join_joints(entry.first_joint, n_joints);
         }

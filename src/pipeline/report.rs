@@ -180,6 +180,8 @@ pub struct StepReport {
     /// Told anew of every step.
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pub(super) overbent: Vec<Overbent>,
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
+    pub(super) self_crossing: Vec<FlexBodyHandle>,
     pub(super) gap_violation: f64,
     pub(super) slip_violation: f64,
     pub(super) complementarity_residual: f64,
@@ -249,6 +251,11 @@ impl StepReport {
     /// motion is solved, but is that of another body.
     pub fn overbent(&self) -> &[Overbent] {
         &self.overbent
+    }
+
+    /// Flexible bodies of large strain whose surfaces crossed themselves where the step began: nothing keeps these out of themselves before they are apart again.
+    pub fn self_crossing(&self) -> &[FlexBodyHandle] {
+        &self.self_crossing
     }
 
     /// Largest overlap at the contacts that the step was solved with (m), measured where it ended, in `f64`, or of what rapier's own step has left in
@@ -379,13 +386,10 @@ impl StepReport {
     pub fn force_on(&self, participant: Participant) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for contact in &self.contacts {
-            let sign = if contact.contactor == participant {
-                1.0
-            } else if contact.target == participant {
-                -1.0
-            } else {
-                continue;
-            };
+            // What a body does to itself sums to nothing.
+            let [as_point, as_target] =
+                [contact.contactor, contact.target].map(|one| one == participant);
+            let sign = f64::from(as_point) - f64::from(as_target);
             let force = contact.force();
             sum[0] += sign * force[0];
             sum[1] += sign * force[1];

@@ -50,6 +50,10 @@ impl SolvedPart<'_> {
             return None;
         }
         let key = self.island.candidates[contact.candidate].key;
+        // Rapier knows no events of a collider with itself.
+        if key.contactor == key.target {
+            return None;
+        }
         Some(PressedPoint {
             contactor: names.collider(key.contactor)?,
             target: names.collider(key.target)?,

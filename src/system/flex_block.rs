@@ -6,6 +6,7 @@
 use super::compliance::Compliance;
 use super::explicit_block::Explicit;
 use super::flex_impulse::Impulses;
+use super::flex_path::clearance_of;
 use super::flex_surface::FollowingSurface;
 use super::large_block::Large;
 use super::step::{FlexLoad, Step};
@@ -34,6 +35,8 @@ pub struct FlexBlock {
     pub(super) extent: f64,
     /// Largest side of the reference placement's box (m).
     pub(super) size: f64,
+    /// Least distance of the surface from itself at rest (m).
+    pub(super) clearance: f64,
     pub(super) effective: BlockMatrix,
     pub(super) factor: BlockCholesky,
     pub(super) factored_for: Option<Weights>,
@@ -141,6 +144,7 @@ impl FlexBlock {
             is_fixed,
             extent,
             size: size_of(model.rest_positions()),
+            clearance: clearance_of(&model),
             factor,
             effective,
             factored_for: None,

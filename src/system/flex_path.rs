@@ -2,13 +2,20 @@
 
 use super::flex_block::FlexBlock;
 use crate::body::{Frame, FrameMotion};
+use crate::fe::model::Model;
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::math::{Vec2, node_vec, rotation, set_node_vec};
+use crate::path::clearance;
 
 impl FlexBlock {
     /// `A` in the frame, pinned dofs taken out.
     pub fn effective(&self) -> &BlockMatrix {
         &self.effective
+    }
+
+    /// Least distance of the surface from itself at rest (m).
+    pub fn clearance(&self) -> f64 {
+        self.clearance
     }
 
     /// Operations of one factorization of `A`, roughly.
@@ -72,4 +79,18 @@ impl FlexBlock {
         }
         self.inertia = self.inertia_of(&self.displacement);
     }
+}
+
+/// Least distance of a model's surface from itself at rest (m).
+pub(super) fn clearance_of(model: &Model) -> f64 {
+    let boundary = model.mesh().boundary();
+    let nodes = boundary.nodes().iter();
+    let points: Vec<Vec2> = nodes
+        .map(|&node| node_vec(model.rest_positions(), node))
+        .collect();
+    // Segment k starts at boundary node k.
+    let edges: Vec<[u32; 2]> = (0..boundary.segments().len())
+        .map(|segment| [segment as u32, boundary.next_segment(segment) as u32])
+        .collect();
+    clearance(&points, &edges)
 }

@@ -61,6 +61,14 @@ impl Kinematics {
             .sum()
     }
 
+    /// Whether one block alone takes part, which meets itself.
+    pub fn is_own(&self) -> bool {
+        let [first, others @ ..] = self.attachments() else {
+            return false;
+        };
+        !others.is_empty() && others.iter().all(|a| a.block == first.block)
+    }
+
     /// Whether only rigid blocks take part.
     pub fn is_rigid(&self, blocks: &[Block]) -> bool {
         self.attachments()

@@ -27,6 +27,10 @@ impl FeasiblePath {
             };
             self.aim(member, start, blocks);
         }
+        if way >= self.first_own() {
+            self.pairs[way].is_asleep = false;
+            self.follow_shape(way - self.first_own());
+        }
         let pair = &self.pairs[way..=way];
         let impact = self
             .search

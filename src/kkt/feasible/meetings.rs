@@ -51,7 +51,12 @@ impl FeasiblePath {
         let Some([point, met]) = self.slid_over(from) else {
             return;
         };
-        let is_first = self.members_of(from)[0] == self.ways[from.pair].members[0];
+        // Of one surface, the lower vertex stands for the first member.
+        let is_first = if from.pair >= self.first_own() {
+            point < met
+        } else {
+            self.members_of(from)[0] == self.ways[from.pair].members[0]
+        };
         let (vertices, sign) = if is_first {
             ([point, met], 1.0)
         } else {

@@ -54,10 +54,12 @@ impl LastWay {
 impl FeasiblePath {
     /// Notes the way of a pass before a part of it is gone.
     pub(super) fn look_back(&mut self, part: f64) {
+        let n_followed = self.n_followed();
         let last = &mut self.last_way;
         std::mem::swap(&mut last.now, &mut last.before);
         last.now.clear();
-        let ways = self.motion.ends().iter().zip(self.surfaces.points());
+        let points = &self.surfaces.points()[..n_followed];
+        let ways = self.motion.ends().iter().zip(points);
         last.now.extend(ways.map(|(end, point)| end - point));
         let (mut along, mut square) = (0.0, 0.0);
         if last.before.len() == last.now.len() {

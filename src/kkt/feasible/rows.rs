@@ -17,6 +17,7 @@ impl FeasiblePath {
     pub(in crate::kkt) fn list_near(&mut self) {
         let reaches = self.ways.iter().map(|way| way.reach);
         let farthest = reaches.fold(0.0, f64::max) + 2.0 * self.farthest_tip;
+        self.wake_at_base();
         let mut near = std::mem::take(&mut self.near);
         self.search
             .near(&self.surfaces, &self.pairs, farthest, &mut near);
@@ -25,6 +26,7 @@ impl FeasiblePath {
             near.distance - self.corner(near).max(0.0) <= way.closing + way.reach
         });
         self.near = near;
+        self.note_own();
     }
 
     /// What is near at the base.

@@ -19,6 +19,7 @@ fn certify(surfaces: &Surfaces) -> Certificate {
         closing: 0.1,
         margin: 0.1,
         least: f64::INFINITY,
+        is_asleep: false,
     };
     let mut path = Path::new();
     let certificate = path.certificate(surfaces, &[pair]);
@@ -168,6 +169,7 @@ fn a_member_against_itself_may_cross_but_not_touch_its_neighbours() {
         closing: 0.01,
         margin: 0.01,
         least: f64::INFINITY,
+        is_asleep: false,
     };
     let mut bow = square([0.0, 0.0], 1.0);
     let mut surfaces = Surfaces::new();
@@ -177,6 +179,19 @@ fn a_member_against_itself_may_cross_but_not_touch_its_neighbours() {
     surfaces.truncate(0);
     surfaces.add_chain(MotionKind::Flexible, true, &bow, true);
     assert_eq!(Path::new().certificate(&surfaces, &[pair]).n_crossings, 1);
+    // A corner that folds: as far as its neighbour's end is from the other edge, and not at all where that lies on it.
+    for height in [0.012, 0.0] {
+        surfaces.truncate(0);
+        let fold = [[0.6, height], [0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
+        let fold = fold.map(|[x, y]| Vec2::new(x, y));
+        surfaces.add_chain(MotionKind::Flexible, true, &fold, true);
+        let found = Path::new().certificate(&surfaces, &[pair]);
+        // The last edge ends there too.
+        assert_eq!(found.n_touching, if height > 0.0 { 0 } else { 2 });
+        if height > 0.0 {
+            assert!((found.least_gap - 0.2).abs() < 1e-12, "{found:?}");
+        }
+    }
 }
 
 #[test]

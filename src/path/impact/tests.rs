@@ -29,6 +29,7 @@ impl Scene {
                 closing: 0.01,
                 margin: 0.01,
                 least: f64::INFINITY,
+                is_asleep: false,
             },
         }
     }
@@ -80,6 +81,7 @@ impl Scene {
                 closing,
                 margin,
                 least: f64::INFINITY,
+                is_asleep: false,
             };
             return Self {
                 surfaces,
@@ -421,6 +423,7 @@ fn every_pair_that_is_stopped_tells_its_own_time() {
         closing: 0.01,
         margin: 0.01,
         least: f64::INFINITY,
+        is_asleep: false,
     });
     let mut hits = Vec::new();
     let toi = Path::new().time_of_impact(&surfaces, &motion, &pairs, &mut hits);

@@ -10,6 +10,7 @@ const PAIR: MemberPair = MemberPair {
     closing: 0.01,
     margin: 0.01,
     least: f64::INFINITY,
+    is_asleep: false,
 };
 
 fn rows(surfaces: &Surfaces, reach: f64) -> Vec<NearPair> {
@@ -315,24 +316,6 @@ fn corners_exactly_over_the_joints_of_a_floor_have_one_row_each() {
         );
         assert!(rows.iter().all(|row| (row.distance - 0.01).abs() < 1e-13));
     }
-}
-
-#[test]
-fn a_member_against_itself_leaves_out_neighbours() {
-    // A hairpin: two long legs, .1 apart.
-    let hairpin = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.1], [0.0, 0.1]].map(|[x, y]| Vec2::new(x, y));
-    let mut surfaces = Surfaces::new();
-    surfaces.add_chain(MotionKind::Flexible, false, &hairpin, false);
-    let mut rows = Vec::new();
-    Path::new().near(
-        &surfaces,
-        &[MemberPair { other: 0, ..PAIR }],
-        0.2,
-        &mut rows,
-    );
-    // The free ends are in each other's cones; corners joined by an edge are not, near as they are.
-    let found: Vec<_> = rows.iter().map(|row| (row.point, row.target)).collect();
-    assert_eq!(found, [(0, Target::Vertex(3))]);
 }
 
 #[test]
