@@ -19,7 +19,6 @@ use super::position::PARTING_RATE;
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointGrip;
-use crate::linalg::cone::SETTLING;
 use crate::math::exp;
 use crate::system::Block;
 
@@ -120,17 +119,13 @@ impl Island {
         let mut turned = self.correct();
         let mut n_stopped = 0;
         let mut has_left = false;
-        let mut guessed = f64::INFINITY;
         for pass in 0..PASSES_PER_ITERATION * settings.max_newton {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let is_eased = pass >= self.n_exact_passes(settings);
-            if is_guess {
-                guessed = self.measure_guess();
-            }
-            let near = self.enough(is_eased, guessed, NEAR * tolerance);
-            let misleads = is_guess && guessed > near;
+            let near = self.enough(is_eased, NEAR * tolerance);
+            let misleads = is_guess && self.measure_guess() > near;
             let mut arrives = false;
             let mut error = 0.0;
             if !self.is_finite() || has_left && self.leads_around() {
@@ -153,7 +148,7 @@ impl Island {
             let enough = if is_guess {
                 tolerance
             } else {
-                self.enough(is_eased, guessed, tolerance)
+                self.enough(is_eased, tolerance)
             };
             let is_close = if is_eased {
                 arrives && turned.way <= enough && self.shortfall(true) <= CLOSE_ENOUGH
@@ -220,17 +215,12 @@ impl Island {
     }
 
     /// How far the laws may be from holding at the end of a pass (m).
-    ///
-    /// Where contacts are many that is no more than a share of what the forces of the last step were off: what comes to rest is solved the
-    /// finer the less it moves.
-    ///
-    /// - `guessed`: how far the laws were from holding under these forces (m).
-    fn enough(&self, is_eased: bool, guessed: f64, tolerance: f64) -> f64 {
+    fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
         let margin = self.path.least_margin();
         if is_eased {
             CLOSE_ENOUGH * margin
         } else if self.has_many_rows() {
-            tolerance.max((LARGE_TOLERANCE * margin).min(SETTLING * guessed))
+            tolerance.max(LARGE_TOLERANCE * margin)
         } else if self.has_large() {
             tolerance.max(CURVED_TOLERANCE * margin)
         } else {
