@@ -32,7 +32,7 @@ const LET_GO: u8 = 2;
 pub(super) struct Turned {
     /// Of the one that has turned farthest (rad).
     pub angle: f64,
-    /// By how much that moves what is farthest from the middle of its body, at most (m).
+    /// By how much that changes the places that were found, at most (m).
     pub way: f64,
 }
 
@@ -171,7 +171,8 @@ impl Island {
                 Block::Flex(block) => {
                     let angle = block.solve();
                     turned.angle = turned.angle.max(angle);
-                    turned.way = turned.way.max(0.5 * angle * block.size());
+                    let way = angle * block.turning_share() * block.size();
+                    turned.way = turned.way.max(way);
                 }
                 Block::Rigid(block) => block.set_position_increment(*wrench),
             }

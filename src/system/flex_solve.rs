@@ -234,6 +234,18 @@ impl FlexBlock {
         turned * (self.reach() / self.size).min(1.0)
     }
 
+    /// Share of its size by which a turn of the frame that [`solve`](Self::solve) has found changes the places that it found (-).
+    ///
+    /// Forces have turned against the displacements, as far as these reach, and the spin has changed with the turn by `2 δθ/dt`: what it
+    /// presses outwards by answers within `dt²/4 · 2 ω 2δθ/dt · r = dt ω δθ r`, with Coriolis' forces by less than four times that.
+    pub fn turning_share(&self) -> f64 {
+        let turn = self.step.dt * self.frame.spin.abs();
+        if self.is_large() || turn <= AT_REST {
+            return 1.0;
+        }
+        (self.reach() / self.size + 2.0 * turn).min(1.0)
+    }
+
     /// Applies the increments to displacements and rates in the frame.
     fn advance_displacements(&mut self) {
         let Weights { b0, b1 } = self.step.weights;
