@@ -19,7 +19,7 @@ use super::position::PARTING_RATE;
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointGrip;
-use crate::math::exp;
+use crate::math::{exp, is_held};
 use crate::system::Block;
 
 /// Passes of a step that stop short of where the forces lead. Every one of them goes on with forces that do not know what comes after: bodies
@@ -197,6 +197,14 @@ impl Island {
                 let motion = block.current();
                 motion.centre.iter().all(|x| x.is_finite()) && motion.angle.is_finite()
             }
+        })
+    }
+
+    /// Whether the blocks' iterate is where rapier's numbers reach.
+    pub(super) fn is_in_range(&self) -> bool {
+        self.blocks.iter().all(|block| match block {
+            Block::Flex(block) => block.positions().iter().all(|x| is_held(*x)),
+            Block::Rigid(block) => block.current().centre.iter().all(|x| is_held(*x)),
         })
     }
 

@@ -63,7 +63,8 @@ impl Island {
             if !is_solved || self.is_astray() {
                 self.fall_back(settings, memory, tolerance, summary);
             }
-            if self.path.has_met_itself(&self.blocks) {
+            // What is out of range ends its body's step, and is told by name.
+            if self.is_in_range() && self.path.has_met_itself(&self.blocks) {
                 self.start_again(settings, tolerance, memory);
             }
         }
