@@ -179,6 +179,133 @@ fn what_a_sudden_force_throws_beyond_where_it_was_looked_for_is_seen() {
     }
 }
 
+/// A block of .4 m that a sudden force throws down.
+struct Throw {
+    scene: Scene,
+    block: FlexBodyHandle,
+}
+
+impl Throw {
+    /// With its lower side at a height (m).
+    fn new(mut scene: Scene, height: f64) -> Self {
+        let block = scene.flexible(
+            FlexBodyBuilder::rectangle([0.4, 0.4], [4, 4])
+                .material(elastic(1e8, 1000.0, 1e-3))
+                .translation([0.0, height]),
+        );
+        Self { scene, block }
+    }
+
+    /// Takes a step in which it would move by `way` to twice that, if it were free (m); returns where its lowest node ends (m), and how often
+    /// the step was solved.
+    fn down(&mut self, way: f64) -> (f64, usize) {
+        let (scene, dt) = (&mut self.scene, 1.0 / 60.0);
+        scene.step();
+        let body = scene.bodies.get_mut(self.block).expect("it is there");
+        let force = -way / (0.25 * dt * dt) * body.mass() / body.n_nodes() as f64;
+        for node in 0..body.n_nodes() {
+            body.set_nodal_force(node, [0.0, force])
+                .expect("the node is there");
+        }
+        let n_solves = scene
+            .try_step()
+            .expect("nothing is wrong with it")
+            .n_solves();
+        let heights = scene.body(self.block).positions().chunks_exact(2);
+        let lowest = heights.map(|at| at[1]).fold(f64::INFINITY, f64::min);
+        (lowest, n_solves)
+    }
+}
+
+/// It falls past a wall that has nothing in its way, and its box is left all the same.
+#[test]
+fn what_is_thrown_at_nothing_is_not_solved_again() {
+    let mut scene = Scene::in_free_space(1.0 / 60.0);
+    scene.fixed(ColliderBuilder::cuboid(0.1, 5.0).translation(vec2(2.0, 0.0)));
+    let mut throw = Throw::new(scene, 0.0);
+    let (lowest, n_solves) = throw.down(2.0);
+    assert!(lowest < -1.0, "thrown to {lowest} m");
+    assert_eq!(n_solves, 1);
+}
+
+/// What is near enough to be a neighbour from the beginning is kept away from all of it, however far the block is thrown.
+#[test]
+fn what_is_thrown_at_a_neighbour_is_not_solved_again() {
+    let mut scene = Scene::in_free_space(1.0 / 60.0);
+    scene.fixed(ColliderBuilder::cuboid(5.0, 0.5).translation(vec2(0.0, -0.5)));
+    let mut throw = Throw::new(scene, 0.02);
+    let (lowest, n_solves) = throw.down(2.0);
+    assert!(lowest > -1e-9, "thrown to {lowest} m");
+    assert_eq!(n_solves, 1);
+}
+
+/// Boxes tell nothing of a half-space, which is everywhere: it is no neighbour for that.
+#[test]
+fn what_is_thrown_at_something_is_solved_again() {
+    let dt = 1.0 / 60.0;
+    let line = vec![vec2(-5.0, 0.0), vec2(0.0, 0.0), vec2(5.0, 0.0)];
+    let sleeper = RigidBodyBuilder::dynamic().sleeping(true);
+    let lift = |centre: f64| vec2(0.0, centre);
+    for (name, collider, body) in [
+        (
+            "half-space",
+            ColliderBuilder::new(SharedShape::halfspace(vec2(0.0, 1.0))),
+            None,
+        ),
+        ("chain", ColliderBuilder::polyline(line, None), None),
+        (
+            "box that sleeps",
+            ColliderBuilder::cuboid(5.0, 0.5),
+            Some(sleeper),
+        ),
+        (
+            "box on its way up",
+            ColliderBuilder::cuboid(0.5, 0.5).density(1e5),
+            Some(RigidBodyBuilder::kinematic_velocity_based().linvel(lift(0.1))),
+        ),
+    ] {
+        let mut scene = Scene::in_free_space(dt);
+        match body {
+            Some(body) => {
+                scene.world.insert(body.translation(lift(-0.5)), collider);
+            }
+            None => {
+                scene.fixed(collider);
+            }
+        }
+        let mut throw = Throw::new(scene, 0.7);
+        let (lowest, n_solves) = throw.down(2.0);
+        assert!(n_solves > 1, "{name}: solved once, lowest at {lowest} m");
+        let report = throw.scene.report();
+        let is_met = !report.contacts().is_empty();
+        assert!(is_solved(report) && is_met, "{name}: lowest at {lowest} m");
+    }
+}
+
+/// A flexible body that sleeps takes no part in a step, and is woken by what is thrown at it.
+#[test]
+fn what_is_thrown_at_a_sleeping_body_wakes_it_within_the_step() {
+    let mut scene = Scene::in_free_space(1.0 / 60.0);
+    let sleeper = scene.flexible(
+        FlexBodyBuilder::rectangle([2.0, 0.4], [10, 2])
+            .material(elastic(1e8, 1000.0, 1e-3))
+            .translation([-0.8, -0.4]),
+    );
+    let carrier = scene.body(sleeper).rigid_body_handle();
+    let falls_asleep = (0..300).any(|_| {
+        scene.step();
+        scene.world.bodies[carrier].is_sleeping()
+    });
+    assert!(falls_asleep, "it is at rest");
+    let mut throw = Throw::new(scene, 0.7);
+    let (lowest, n_solves) = throw.down(2.0);
+    assert!(n_solves > 1, "solved once, lowest at {lowest} m");
+    let report = throw.scene.report();
+    let is_met = !report.contacts().is_empty();
+    assert!(is_solved(report) && is_met, "lowest at {lowest} m");
+    assert_eq!(report.n_asleep(), 0);
+}
+
 /// Rapier sweeps every fast body along the chord of its step, and would stop this ball at the hub that it goes round on its arc.
 #[test]
 fn a_ball_that_is_led_around_a_hub_is_not_stopped_on_the_chord() {

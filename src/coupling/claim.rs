@@ -27,9 +27,9 @@ pub(crate) struct Claims {
     pub(super) excess: Real,
     pub(super) changes: Changes,
     pub(super) walk: Walk,
-    attached: Attached,
+    pub(super) attached: Attached,
     sweep: Sweep,
-    strikes: Strikes,
+    pub(super) strikes: Strikes,
 }
 
 /// The stages, in their order.
@@ -77,7 +77,8 @@ impl Claims {
 
     /// Wakes sleepers that something awake may meet in the step; returns whether one woke, so that the look-ahead has to begin anew.
     pub fn wake_met(&mut self, sets: &mut RapierSets<'_>) -> bool {
-        wake_met(sets, &self.flex, &self.changes, &mut self.strikes)
+        let (flex, strikes) = (&self.flex, &mut self.strikes);
+        wake_met(sets, flex, &self.changes, strikes, self.excess)
     }
 
     /// Meets the boxes of the flexible bodies with what is around them; returns whether anything was met of which only a detection step

@@ -74,6 +74,17 @@ pub(super) fn land(
     masters.turn_over(sets.bodies);
 }
 
+/// Pose of a body where it was led to.
+pub(super) fn end_pose(body: &RigidBody, landing: &Landing) -> Pose {
+    let turn = math::rotation(landing.motion.angle);
+    let rotation = Rotation {
+        re: turn.m11 as Real,
+        im: turn.m21 as Real,
+    };
+    let origin = landing.motion.centre - turn * local_centre(body);
+    Pose::from_parts(to_rapier(origin), rotation)
+}
+
 /// Puts a body where it was led to, if rapier has stopped it on the way.
 fn put_where_led(landing: &Landing, sets: &mut RapierSets<'_>) {
     let Some(body) = sets.bodies.get_mut(landing.handle) else {
@@ -89,15 +100,7 @@ fn put_where_led(landing: &Landing, sets: &mut RapierSets<'_>) {
     if is_there || !body.is_enabled() || body.is_sleeping() {
         return;
     }
-    let turn = math::rotation(motion.angle);
-    let rotation = Rotation {
-        re: turn.m11 as Real,
-        im: turn.m21 as Real,
-    };
-    let pose = Pose::from_parts(
-        to_rapier(motion.centre - turn * local_centre(body)),
-        rotation,
-    );
+    let pose = end_pose(body, landing);
     body.set_position(pose, false);
     for &handle in body.colliders() {
         let Some(collider) = sets.colliders.get_mut(handle) else {

@@ -118,6 +118,11 @@ impl OutlineCache {
     }
 }
 
+/// Whether a shape is one convex piece, which is drawn as a whole wherever it is drawn.
+pub(super) fn is_convex_piece(shape: &dyn Shape) -> bool {
+    matches!(outline_of(shape).pieces[..], [Piece::Convex { .. }])
+}
+
 fn outline_of(shape: &dyn Shape) -> Outline {
     let mut outline = Outline::default();
     add_shape(shape, Pose2::identity(), &mut outline.pieces);

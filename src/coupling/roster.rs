@@ -25,6 +25,8 @@ pub(crate) struct ClaimedFlex {
     pub travel: Real,
     /// Size of a boundary segment (m).
     pub edge: f64,
+    /// By how much the box is larger than where its velocity takes it (m).
+    pub slack: Real,
     /// What it pushes; its surface in rapier pushes nothing.
     pub solver_groups: InteractionGroups,
 }
@@ -38,12 +40,14 @@ impl ClaimedFlex {
         let skin = body.contact_settings().contact_skin;
         let recoil = recoil(body.state(), body.mass()) * dt;
         let edge = edge + 2.0 * recoil;
+        let slack = (0.5 * edge + fall + skin) as Real;
         Self {
             index,
             collider: body.collider_handle(),
-            swept: loosened(swept, (0.5 * edge + fall + skin) as Real),
+            swept: loosened(swept, slack),
             travel: travel + recoil as Real,
             edge,
+            slack,
             solver_groups: body.contact_settings().solver_groups,
         }
     }

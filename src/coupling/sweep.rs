@@ -221,7 +221,7 @@ fn meets_unsettled(sets: &RapierSets<'_>, flex: &Roster, changes: &Changes) -> b
 }
 
 /// How far the fastest body that is awake goes in the step (m), after the detection step.
-fn farthest_travel(sets: &RapierSets<'_>, flex: &Roster) -> Real {
+pub(super) fn farthest_travel(sets: &RapierSets<'_>, flex: &Roster) -> Real {
     let dt = sets.integration_parameters.dt;
     let awake = sets.islands.active_bodies();
     awake

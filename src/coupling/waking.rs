@@ -6,15 +6,19 @@ use super::roster::Roster;
 use super::sets::RapierSets;
 use super::sleep::reaches;
 use super::strikes::Strikes;
+use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
 
 /// Wakes sleepers that something awake may meet in the step; returns whether one woke, so that the look-ahead has to begin anew.
+///
+/// - `excess`: by how much the boxes have grown in this step (m).
 pub(super) fn wake_met(
     sets: &mut RapierSets<'_>,
     flex: &Roster,
     changes: &Changes,
     strikes: &mut Strikes,
+    excess: Real,
 ) -> bool {
     if flex.asleep().is_empty() {
         return false;
@@ -29,7 +33,8 @@ pub(super) fn wake_met(
     for (handle, collider) in changes.unsettled(sets) {
         if is_awake(sets, collider) && flex.slot_of(handle).is_none() {
             let swept = swept_box(sets.bodies, collider, dt);
-            list_met(flex, sets, &loosened(swept, margin), &mut woken);
+            let around = margin + excess;
+            list_met(flex, sets, &loosened(swept, around), &mut woken);
         }
     }
     let surfaces = flex.asleep().iter().map(|sleeper| sleeper.surface);

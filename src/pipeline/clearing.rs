@@ -18,6 +18,7 @@ impl StepReport {
             contacts_before: before.contacts_before,
             overbent: before.overbent,
             n_asleep: before.n_asleep,
+            n_solves: before.n_solves,
             is_detected: before.is_detected,
             times: before.times,
             quarantined_flex_bodies: before.quarantined_flex_bodies,

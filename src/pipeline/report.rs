@@ -201,6 +201,8 @@ pub struct StepReport {
     pub(super) n_pivots: usize,
     /// What was spent is no state.
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
+    pub(super) n_solves: usize,
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pub(super) n_factorizations: u64,
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pub(super) times: StageTimes,
@@ -288,6 +290,12 @@ impl StepReport {
     /// Energy the impact treatment took out of this step (J).
     pub fn energy_limited(&self) -> f64 {
         self.energy_limited
+    }
+
+    /// Times that the step was solved: once, and again where a member was thrown beyond where it was looked for, at something that was not in
+    /// the problem there; zero where all sleep.
+    pub fn n_solves(&self) -> usize {
+        self.n_solves
     }
 
     /// Islands solved.

@@ -7,7 +7,7 @@ use super::flex_pipeline::FlexPipeline;
 use super::islands::Task;
 use super::quality::Unsolved;
 use crate::body::FlexBodySet;
-use crate::coupling::RapierSets;
+use crate::coupling::{Ends, RapierSets};
 use crate::system::Step;
 
 /// Times that a step is solved again because members have left the boxes they were looked for in: each time with more of what is there.
@@ -25,7 +25,22 @@ impl FlexPipeline {
         let dissipated = self.report.energy.dissipated;
         for look in 0..=MOST_LOOKS {
             self.solve_islands(step, sets, flex_bodies, clock)?;
-            if !self.looks_again(sets) {
+            self.report.n_solves += 1;
+            let ends = Ends {
+                pool: self.solver.pool(),
+                landings: &self.outcome.landings,
+            };
+            let excess = self.claims.left_by(&ends, sets);
+            if excess == 0.0 {
+                break;
+            }
+            // Only then does the tree know everything that is there.
+            if !self.report.is_detected {
+                self.detect(sets);
+                self.report.note_quarantine(sets);
+                self.report.is_detected = true;
+            }
+            if !self.claims.meets_more(&ends, sets) {
                 break;
             }
             if look == MOST_LOOKS {
@@ -34,15 +49,12 @@ impl FlexPipeline {
                 self.report.tell(unseen);
                 break;
             }
+            self.claims.widen(excess, sets, flex_bodies);
+            self.report.n_asleep = self.claims.flex.asleep().len();
             for (_, body) in flex_bodies.iter_mut() {
                 body.forget_start();
             }
             self.report.forget_solution(dissipated);
-            if !self.report.is_detected {
-                self.detect(sets);
-                self.report.note_quarantine(sets);
-                self.report.is_detected = true;
-            }
             self.claims.sweep(sets);
             self.claims.walk(sets);
         }
@@ -56,13 +68,6 @@ impl FlexPipeline {
             });
         }
         Ok(())
-    }
-
-    /// Whether members have left the boxes they were looked for in; these have grown then.
-    fn looks_again(&mut self, sets: &RapierSets<'_>) -> bool {
-        let (solver, landings) = (&self.solver, &self.outcome.landings);
-        self.claims
-            .widen(|index| solver.block(index), landings, sets)
     }
 
     /// Solves every component; commits nothing.
