@@ -158,8 +158,14 @@ impl Solver {
         };
         let seats = &self.gatherer.seats;
         let solved = self.island.solve(&settings, memory, &mut reserve);
-        let summary =
-            solved.map_err(|error| name_bodies(error, &self.island, seats, flex_bodies))?;
+        let summary = match solved {
+            Ok(summary) => summary,
+            Err(error) => {
+                // What is out of range is to blame for numbers that are none.
+                check_finite(&self.island, seats, flex_bodies)?;
+                return Err(name_bodies(error, &self.island, seats, flex_bodies));
+            }
+        };
         // Where a step was left that is taken again in parts does not matter.
         if !(settings.may_be_cut && summary.is_unsolved()) {
             check_finite(&self.island, seats, flex_bodies)?;
