@@ -35,7 +35,7 @@ const CURVED_TOLERANCE: f64 = 1e-6;
 /// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
 const PASSES_PER_ITERATION: usize = 2;
 
-/// The same where contacts are many: passes that go on for longer change what nobody sees.
+/// The same where contacts are many: after these passes their laws need hold no better either.
 const FEW_PASSES: usize = 6;
 
 /// Share of its way's margin by which a true gap or slip may miss what the law asks for (-).
