@@ -55,6 +55,29 @@ fn ground_force(scene: &Scene, answer: &Answer) -> f64 {
     on_ground.map(|(_, p)| p[0]).sum()
 }
 
+/// What gives way by a share of its own mobility does so by a little more or less as its geometry moves by rounding.
+#[test]
+fn a_factor_serves_although_weights_move_by_rounding() {
+    let mut scene = pile(1, 10, |_| 1.0, 0.0);
+    for row in &mut scene.rows {
+        row.give = row.scale.map(|own| 1e-6 * own);
+    }
+    let mut solver = ConeSolver::default();
+    let n = scene.rows.len();
+    let mut answer = solve_with(&mut solver, &scene, &vec![[0.0; 2]; n], &vec![0.0; n]);
+    answer = solve_with(&mut solver, &scene, &answer.p, &answer.slip);
+    for (index, row) in scene.rows.iter_mut().enumerate() {
+        row.give = row.give.map(|give| give * (1.0 + 1e-9 * index as f64));
+    }
+    scene.load.iter_mut().for_each(|load| *load *= 1.0 + 1e-7);
+    let again = solve_with(&mut solver, &scene, &answer.p, &answer.slip);
+    assert!(
+        again.outcome.is_solved && again.outcome.n_factorizations == 0,
+        "{:?}",
+        again.outcome
+    );
+}
+
 #[test]
 fn a_pile_of_a_hundred_rests_on_its_weight_and_costs_nothing_twice() {
     let scene = pile(10, 10, |_| 1.0, 0.0);
