@@ -7,7 +7,6 @@
 mod layout;
 
 use super::delassus::compliance;
-use super::follow::LARGE_TOLERANCE;
 use super::island::{Island, KktError};
 use super::joint_system::Rows;
 use crate::constraint::joint::unit_wrench;
@@ -396,7 +395,7 @@ impl Island {
             Response::Acceleration | Response::ByMass => asked.unit * asked.unit,
         };
         // A fifth of what a pass accepts.
-        solver.settings.gap_tolerance = 0.2 * LARGE_TOLERANCE * self.path.least_margin() / unit;
+        solver.settings.gap_tolerance = 0.2 * self.large_tolerance() / unit;
         solver.settings.slip_tolerance = 1e-4;
         solver.settings.tolerance = 1e-6;
         solver.scales_start = asked.of == Response::Velocity;

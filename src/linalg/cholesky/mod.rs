@@ -88,6 +88,9 @@ pub enum CholeskyError {
 pub struct Selection {
     /// For each panel.
     is_wanted: Vec<bool>,
+    /// For each node and position, while it is made.
+    is_wanted_node: Vec<bool>,
+    is_wanted_position: Vec<bool>,
 }
 
 /// The Cholesky factor of a [`BlockMatrix`], refilled as often as its values change.
@@ -266,31 +269,69 @@ impl BlockCholesky {
     /// # Panics
     /// Like [`solve_many_in_place`](Self::solve_many_in_place), and if the selection was made by another analysis.
     pub fn solve_many_for(&mut self, selection: &Selection, columns: &mut [f64], n_columns: usize) {
-        assert!(
-            selection.is_wanted.len() == self.panels.panels.len(),
-            "the selection was made by another analysis: select the nodes with this one"
-        );
+        self.assert_own(selection);
         self.solve_columns(columns, n_columns, &selection.is_wanted);
     }
 
-    /// Finds out which part of the factor the unknowns of these nodes depend on.
+    /// Finds out which part of the factor the unknowns of these nodes depend on, and it on the columns of theirs in the matrix.
     ///
     /// # Panics
     /// If a node does not exist.
     pub fn select(&self, nodes: impl IntoIterator<Item = usize>) -> Selection {
-        let mut is_wanted_node = vec![false; self.node_at.len()];
+        let mut selection = Selection::default();
+        self.select_into(nodes, &mut selection);
+        selection
+    }
+
+    /// Like [`select`](Self::select), in memory that is there already.
+    ///
+    /// # Panics
+    /// If a node does not exist.
+    pub fn select_into(&self, nodes: impl IntoIterator<Item = usize>, selection: &mut Selection) {
+        let Selection {
+            is_wanted,
+            is_wanted_node,
+            is_wanted_position,
+        } = selection;
+        is_wanted_node.clear();
+        is_wanted_node.resize(self.node_at.len(), false);
         nodes
             .into_iter()
             .for_each(|node| is_wanted_node[node] = true);
-        let mut is_wanted_position: Vec<bool> = self
-            .node_at
-            .iter()
-            .map(|&node| is_wanted_node[node as usize])
-            .collect();
-        let mut is_wanted = Vec::new();
-        self.panels
-            .close_upwards(&mut is_wanted_position, &mut is_wanted);
-        Selection { is_wanted }
+        is_wanted_position.clear();
+        is_wanted_position.extend(
+            self.node_at
+                .iter()
+                .map(|&node| is_wanted_node[node as usize]),
+        );
+        self.panels.close_upwards(is_wanted_position, is_wanted);
+    }
+
+    /// Computes the same `L` to the last bit as [`factorize`](Self::factorize) does, if all values of the matrix that have changed since
+    /// the last call lie in rows and columns of the nodes selected. Allocates nothing.
+    ///
+    /// # Errors
+    /// As of [`factorize`](Self::factorize).
+    ///
+    /// # Panics
+    /// If there is no factor yet, or the selection was made by another analysis.
+    pub fn factorize_part(
+        &mut self,
+        selection: &Selection,
+        matrix: &BlockMatrix,
+    ) -> Result<(), CholeskyError> {
+        self.assert_ready(self.n_dofs(), 1);
+        self.assert_own(selection);
+        self.made_of.clear();
+        self.is_wanted.clone_from(&selection.is_wanted);
+        self.fill(matrix)
+    }
+
+    fn assert_own(&self, selection: &Selection) {
+        assert!(
+            selection.is_wanted.len() == self.panels.panels.len(),
+            "the selection was made by another analysis: select the nodes with this one"
+        );
     }
 
     fn solve_columns(&mut self, columns: &mut [f64], n_columns: usize, is_wanted: &[bool]) {

@@ -40,6 +40,7 @@
 //! # Ok::<(), foil2d::linalg::cone::ConeError>(())
 //! ```
 
+mod correction;
 mod interior;
 mod law;
 mod problem;
@@ -61,10 +62,9 @@ use reduced::{Measure, Reduced};
 use sweep::Sweep;
 use system::System;
 
-/// Penalties of the proximal steps, times `W_ii`: warm, where few steps are wanted, and after the interior point, where
-/// a soft one finds its piece sooner. Stiffer ones only speed up the last digits.
-const WARM: [f64; 2] = [1e4, 1e6];
-const POLISH: [f64; 3] = [1e2, 1e4, 1e6];
+/// Penalties of the proximal steps, times `W_ii`, the next one where a step gains too little: a soft one finds its piece sooner, stiffer ones
+/// only speed up the last digits.
+const LEVELS: [f64; 3] = [1e2, 1e4, 1e6];
 /// Factorizations allowed to warm proximal steps until the residual is lower by [`GAIN`](proximal); few if they have failed the last time.
 const N_WARM: [usize; 2] = [12, 3];
 
@@ -265,6 +265,17 @@ impl ConeSolver {
             .status
             .resize(problem.rows.len(), ConeStatus::Open);
         self.restart(problem);
+        self.slide_open(problem);
+    }
+
+    /// Lets what carries no force at the start slide as it does there: with less dilation an open contact that slides looks as if it pressed.
+    fn slide_open(&mut self, problem: &ConeProblem) {
+        for (index, row) in problem.rows.iter().enumerate() {
+            if row.has_tangent() && self.start[index] == [0.0; 2] {
+                self.start_slip[index] = self.reduced.gap(problem, index, &self.state.a)[1].abs();
+            }
+        }
+        self.state.slip.clone_from(&self.start_slip);
     }
 
     fn restart(&mut self, problem: &ConeProblem) {
@@ -298,19 +309,19 @@ impl ConeSolver {
 
     /// Runs one solver after the other until one succeeds; whether the interior point was among them.
     fn improve(&mut self, problem: &ConeProblem) -> bool {
-        let begun = self.system.n_factorizations;
+        let (begun, n_changes) = (self.system.spent(), self.system.n_changes);
         let limit = begun + self.settings.max_factorizations;
         let n_most = self.settings.max_factorizations.div_ceil(2);
         let n_warm = N_WARM[usize::from(self.is_hard)].min(n_most);
-        let (ending, _) = self.approach(problem, &WARM, [n_warm, n_most]);
+        let (ending, _) = self.approach(problem, [n_warm, n_most]);
         // what stalls after it has gained may be slips that chase each other on the way
-        let is_late = self.system.n_factorizations > begun + n_warm;
+        let is_late = self.system.n_changes > n_changes + n_warm;
         self.is_hard = ending == Ending::Spent || ending == Ending::Stalled && is_late;
         if !self.is_hard {
             return false;
         }
         self.restart(problem);
-        let n_left = limit - self.system.n_factorizations.min(limit);
+        let n_left = limit - self.system.spent().min(limit);
         let suffices = self.interior.run(
             problem,
             &self.reduced,
@@ -322,8 +333,8 @@ impl ConeSolver {
         if suffices {
             return true;
         }
-        let n_left = limit - self.system.n_factorizations.min(limit);
-        let (ending, completed) = self.approach(problem, &POLISH, [n_left, n_left]);
+        let n_left = limit - self.system.spent().min(limit);
+        let (ending, completed) = self.approach(problem, [n_left, n_left]);
         if ending == Ending::Spent {
             self.sweep_instead(problem, completed);
         }
@@ -353,12 +364,7 @@ impl ConeSolver {
         }
     }
 
-    fn approach(
-        &mut self,
-        problem: &ConeProblem,
-        levels: &[f64],
-        n_allowed: [usize; 2],
-    ) -> (Ending, Measure) {
+    fn approach(&mut self, problem: &ConeProblem, n_allowed: [usize; 2]) -> (Ending, Measure) {
         let Self {
             proximal,
             reduced,
@@ -367,7 +373,7 @@ impl ConeSolver {
             settings,
             ..
         } = self;
-        proximal.run(problem, reduced, system, state, settings, levels, n_allowed)
+        proximal.run(problem, reduced, system, state, settings, n_allowed)
     }
 
     /// Makes `a` from the forces, judges both, and writes multipliers and slips.

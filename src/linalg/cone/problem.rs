@@ -203,6 +203,17 @@ impl ConeRow {
     }
 }
 
+/// `G x` of the row with these entries.
+pub(super) fn motion(entries: &[ConeEntry], x: &[f64]) -> [f64; 2] {
+    let mut motion = [0.0; 2];
+    for entry in entries {
+        let dofs = &x[2 * entry.node as usize..][..2];
+        motion[0] += entry.normal[0] * dofs[0] + entry.normal[1] * dofs[1];
+        motion[1] += entry.tangent[0] * dofs[0] + entry.tangent[1] * dofs[1];
+    }
+    motion
+}
+
 impl<'a> ConeProblem<'a> {
     /// Checks every number once, so that the solvers need not.
     pub(super) fn check(&self) -> Result<(), ConeError> {
@@ -272,13 +283,7 @@ impl<'a> ConeProblem<'a> {
 
     /// `G x` of one row.
     pub fn motion(&self, row: &ConeRow, x: &[f64]) -> [f64; 2] {
-        let mut motion = [0.0; 2];
-        for entry in self.entries_of(row) {
-            let dofs = &x[2 * entry.node as usize..][..2];
-            motion[0] += entry.normal[0] * dofs[0] + entry.normal[1] * dofs[1];
-            motion[1] += entry.tangent[0] * dofs[0] + entry.tangent[1] * dofs[1];
-        }
-        motion
+        motion(self.entries_of(row), x)
     }
 
     /// Adds `factor Gᵀ P` of one row to `out`.

@@ -12,7 +12,7 @@ use super::problem::{ConeProblem, ConeRow};
 use super::reduced::{Measure, Reduced};
 use super::slip::SlipIteration;
 use super::system::{Fit, System};
-use super::{ConeSettings, State};
+use super::{ConeSettings, LEVELS, State};
 use std::f64::consts::SQRT_2;
 
 /// Proximal steps at most, those that follow the slip included.
@@ -57,13 +57,16 @@ pub(super) struct Proximal {
     trial: Vec<[f64; 2]>,
     status: Vec<ConeStatus>,
     weights: Vec<[f64; 3]>,
-    /// `b` and its change along the Newton step; see [`project`].
-    lines: Vec<[[f64; 2]; 2]>,
     imbalance: Vec<f64>,
     /// The convex energy of which `imbalance` is the gradient.
     energy: f64,
+    /// `A a - load`, and `free + G a` of each row.
+    linear: Vec<f64>,
+    gaps: Vec<[f64; 2]>,
     step: Vec<f64>,
+    /// `A` and `G` times the step.
     product: Vec<f64>,
+    moved: Vec<[f64; 2]>,
     /// `A⁻¹ (load + Gᵀ P)`.
     settled: Vec<f64>,
     saved: Vec<[f64; 2]>,
@@ -92,7 +95,6 @@ impl Proximal {
     ///
     /// The measure is that of the last step completed, infinite if the budget did not last for one.
     ///
-    /// - `levels`: penalties times `W_ii`; the next one is taken where a step gains too little.
     #[expect(clippy::too_many_arguments, reason = "they are the solver's parts")]
     pub fn run(
         &mut self,
@@ -101,14 +103,11 @@ impl Proximal {
         system: &mut System,
         state: &mut State,
         settings: &ConeSettings,
-        levels: &[f64],
         [n_allowed, n_most]: [usize; 2],
     ) -> (Ending, Measure) {
-        let start = system.n_factorizations;
+        let (start, n_changes) = (system.spent(), system.n_changes);
         let mut limit = start + n_allowed.min(n_most);
         let mut renewed = f64::INFINITY;
-        let (mut level, mut is_lowered) = (0, false);
-        self.penalize(reduced, levels[0]);
         let mut refined: Option<Measure> = None;
         let (mut best, mut last, mut n_idle) = (f64::INFINITY, f64::INFINITY, 0);
         let mut measure = reduced.measure(
@@ -129,18 +128,20 @@ impl Proximal {
             refined = Some(measure);
         }
         self.status.clone_from(&state.status);
+        let (mut level, mut is_lowered) = (self.first_level(problem, reduced, system), false);
         self.slips.forget();
         let mut completed = Measure {
             residual: f64::INFINITY,
             ..measure
         };
         for _ in 0..MOST_STEPS {
-            let n_before = system.n_factorizations;
+            let n_before = system.n_changes;
             // what is solved is only refined as far as the factor at hand, or a first one, goes
             let most = match &refined {
-                Some(_) => (start + 1).min(limit).max(n_before),
+                Some(_) => (start + 1).min(limit).max(system.spent()),
                 None => limit,
             };
+            self.place(problem, reduced, state);
             let norm = match self.predict(problem, reduced, system, state, most) {
                 Some(norm) => norm,
                 None => self.evaluate(problem, reduced, state),
@@ -175,7 +176,7 @@ impl Proximal {
             let is_fine = measure.residual <= FINE * settings.tolerance
                 || refined.is_some_and(|best| measure.residual > 0.5 * best.residual);
             // where errors are admitted, only what rests is refined: what has changed its pieces goes on moving
-            let has_moved = reduced.enough > 0.0 && system.n_factorizations > start + 1;
+            let has_moved = reduced.enough > 0.0 && system.n_changes > n_changes + 1;
             let is_undilated = measure.relative_dilation <= settings.tolerance;
             if is_solved && (has_moved || is_fine && is_undilated) {
                 return (Ending::Solved, measure);
@@ -192,7 +193,7 @@ impl Proximal {
             let merit = measure.worst();
             if merit < GAIN * renewed {
                 renewed = merit;
-                limit = (system.n_factorizations + n_allowed).min(start + n_most);
+                limit = (system.spent() + n_allowed).min(start + n_most);
             }
             if merit < 0.9 * best {
                 (best, n_idle) = (merit, 0);
@@ -205,20 +206,20 @@ impl Proximal {
             // what a stiff penalty leaves is rounding, which it magnifies: a softer one finishes
             if n_idle == PATIENCE {
                 (level, n_idle, is_lowered) = (level - 1, 0, true);
-                self.penalize(reduced, levels[level]);
+                self.penalize(reduced, LEVELS[level]);
             }
             let is_slow = measure.residual > settings.tolerance && measure.residual > 0.2 * last;
             last = measure.residual;
-            let may_stiffen = system.n_factorizations == n_before
-                || levels.get(level + 1).is_some_and(|&next| next <= MODERATE);
+            let may_stiffen = system.n_changes == n_before
+                || LEVELS.get(level + 1).is_some_and(|&next| next <= MODERATE);
             if is_slow
                 && may_stiffen
                 && !is_lowered
-                && level + 1 < levels.len()
+                && level + 1 < LEVELS.len()
                 && refined.is_none()
             {
                 level += 1;
-                self.penalize(reduced, levels[level]);
+                self.penalize(reduced, LEVELS[level]);
                 (last, n_idle) = (f64::INFINITY, 0);
             }
             if measure.is_dilated
@@ -262,6 +263,18 @@ impl Proximal {
             .advance(&mut state.slip, &self.found, &self.slip_weights);
     }
 
+    /// The stiffest penalty that the factor at hand serves for, or else the softest one.
+    fn first_level(&mut self, problem: &ConeProblem, reduced: &Reduced, system: &System) -> usize {
+        for level in (0..LEVELS.len()).rev() {
+            self.penalize(reduced, LEVELS[level]);
+            self.weigh(problem);
+            if system.serves(&self.weights) {
+                return level;
+            }
+        }
+        0
+    }
+
     fn restore(&self, state: &mut State) -> Ending {
         state.forces.copy_from_slice(&self.saved);
         state.slip.copy_from_slice(&self.saved_slip);
@@ -303,33 +316,35 @@ impl Proximal {
                 return true;
             }
             self.weigh(problem);
-            match system.fit(problem, &self.weights) {
-                Fit::Exact => {
-                    // the piece it was made for has been solved: what is left is rounding
-                    if is_full {
-                        return true;
-                    }
-                }
-                Fit::Near if n_kept < MOST_KEPT => n_kept += 1,
-                _ if system.n_factorizations >= most => return false,
-                _ => {
-                    n_kept = 0;
-                    // `A` has a factor: what fails here is a penalty too stiff for the digits of a number
-                    if system.factorize(problem, &self.weights).is_err() {
-                        return false;
-                    }
-                }
-            }
-            let is_exact = n_kept == 0;
             self.step.clear();
             self.step.extend(self.imbalance.iter().map(|value| -value));
-            system.solve(&mut self.step);
+            let is_kept = n_kept < MOST_KEPT;
+            let fit = system.fit(problem, &self.weights);
+            // the piece it was made for has been solved: what is left is rounding
+            if fit == Fit::Exact && is_full {
+                return true;
+            }
+            let is_at_hand = fit == Fit::Exact || fit == Fit::Near && is_kept;
+            let is_corrected = !is_at_hand
+                && is_kept
+                && system.spent() < most
+                && system.solve_changed(&self.weights, &mut self.step);
+            if is_at_hand || is_corrected {
+                n_kept += usize::from(fit != Fit::Exact);
+            } else {
+                // `A` has a factor: what fails here is a penalty too stiff for the digits of a number
+                if system.spent() >= most || system.factorize(problem, &self.weights).is_err() {
+                    return false;
+                }
+                n_kept = 0;
+            }
+            let is_exact = n_kept == 0;
+            if !is_corrected {
+                system.solve(&mut self.step);
+            }
+            self.trace_step(problem);
             let length = self.search(problem, reduced, state);
-            state
-                .a
-                .iter_mut()
-                .zip(&self.step)
-                .for_each(|(a, step)| *a += length * step);
+            self.go(state, length);
             let before = norm;
             norm = self.evaluate(problem, reduced, state);
             is_full = is_exact && norm > 0.5 * before && (length - 1.0).abs() < 1e-6;
@@ -350,18 +365,47 @@ impl Proximal {
         false
     }
 
-    /// Finds `P(a)` and the imbalance `A a - load - Gᵀ P(a)`; returns its size as square root of an energy.
-    fn evaluate(&mut self, problem: &ConeProblem, reduced: &Reduced, state: &State) -> f64 {
-        self.imbalance.resize(reduced.load.len(), 0.0);
-        problem.matrix.multiply(&state.a, &mut self.imbalance);
-        self.imbalance
+    /// Finds `A a - load` and the gaps `free + G a` of the present `a`.
+    fn place(&mut self, problem: &ConeProblem, reduced: &Reduced, state: &State) {
+        self.linear.resize(reduced.load.len(), 0.0);
+        problem.matrix.multiply(&state.a, &mut self.linear);
+        self.linear
             .iter_mut()
             .zip(&reduced.load)
             .for_each(|(value, load)| *value -= load);
+        self.gaps.clear();
+        self.gaps
+            .extend((0..problem.rows.len()).map(|index| reduced.gap(problem, index, &state.a)));
+    }
+
+    /// Finds how both change along the step.
+    fn trace_step(&mut self, problem: &ConeProblem) {
+        self.product.resize(self.step.len(), 0.0);
+        problem.matrix.multiply(&self.step, &mut self.product);
+        self.moved.clear();
+        let moved = |row: &ConeRow| problem.motion(row, &self.step);
+        self.moved.extend(problem.rows.iter().map(moved));
+    }
+
+    /// Goes some part of the step, which has been traced.
+    fn go(&mut self, state: &mut State, length: f64) {
+        let add = |to: &mut [f64], by: &[f64]| {
+            to.iter_mut()
+                .zip(by)
+                .for_each(|(to, by)| *to += length * by);
+        };
+        add(&mut state.a, &self.step);
+        add(&mut self.linear, &self.product);
+        add(self.gaps.as_flattened_mut(), self.moved.as_flattened());
+    }
+
+    /// Finds `P(a)` and the imbalance `A a - load - Gᵀ P(a)`; returns its size as square root of an energy.
+    fn evaluate(&mut self, problem: &ConeProblem, reduced: &Reduced, state: &State) -> f64 {
+        self.imbalance.clone_from(&self.linear);
         self.energy = state
             .a
             .iter()
-            .zip(self.imbalance.iter().zip(&reduced.load))
+            .zip(self.linear.iter().zip(&reduced.load))
             .map(|(a, (value, load))| 0.5 * a * (value - load))
             .sum();
         self.trial.clear();
@@ -369,7 +413,7 @@ impl Proximal {
         for (index, row) in problem.rows.iter().enumerate() {
             let (force, status) = if reduced.resistance[index] > 0.0 {
                 let (b, metric) = (
-                    self.request(problem, reduced, state, index),
+                    self.request(row, state, index),
                     metric(row.give, self.penalty[index]),
                 );
                 let (force, status) = project(row, b, metric);
@@ -393,16 +437,9 @@ impl Proximal {
     }
 
     /// `b = P_k/D - (free + G a + mu sigma)`.
-    fn request(
-        &self,
-        problem: &ConeProblem,
-        reduced: &Reduced,
-        state: &State,
-        index: usize,
-    ) -> [f64; 2] {
-        let gap = reduced.gap(problem, index, &state.a);
-        let (force, inverse) = (state.forces[index], self.penalty[index]);
-        let dilation = problem.rows[index].friction() * state.slip[index];
+    fn request(&self, row: &ConeRow, state: &State, index: usize) -> [f64; 2] {
+        let (gap, force, inverse) = (self.gaps[index], state.forces[index], self.penalty[index]);
+        let dilation = row.friction() * state.slip[index];
         [
             force[0] * inverse - gap[0] - dilation,
             force[1] * inverse - gap[1],

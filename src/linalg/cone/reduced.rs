@@ -159,7 +159,7 @@ impl Reduced {
             let (force, mu, weight) =
                 (forces[index], row.friction(), self.resistance[index].sqrt());
             let mut w = self.slack(problem, index, a, force);
-            let slipped = w[1].abs();
+            let (slipped, overlap) = (w[1].abs(), (-w[0]).max(0.0));
             w[0] += mu * slip[index];
             let (mapped, now) = self.natural(row, index, force, w);
             status[index] = now;
@@ -167,22 +167,26 @@ impl Reduced {
                 .abs()
                 .max((force[1] - mapped[1]).abs());
             let term = weight * error / scale;
-            measure.miss = measure.miss.max(self.resistance[index] * error);
             // `f64::max` would pass over a NaN
-            measure.residual = if term.is_finite() {
-                measure.residual.max(term)
+            let (miss, term) = if term.is_finite() {
+                (self.resistance[index] * error, term)
             } else {
-                f64::INFINITY
+                (f64::INFINITY, f64::INFINITY)
             };
-            if row.has_tangent() && force[0] > 0.0 {
-                let error = (slipped - slip[index]).abs();
-                measure.dilation = measure.dilation.max(mu * error);
-                measure.relative_dilation =
-                    measure.relative_dilation.max(mu * error / (weight * scale));
-                let excess =
-                    mu * (error - settings.slip_tolerance * slipped) - settings.gap_tolerance;
-                measure.is_dilated |=
-                    excess > 0.0 && mu * error > settings.tolerance * weight * scale;
+            measure.miss = measure.miss.max(miss);
+            measure.residual = measure.residual.max(term);
+            if row.has_tangent() {
+                // more dilation than slip hides the overlap of what carries no force, any that is wrong leaves a gap under what slides
+                let (gap, admitted) = if force[0] > 0.0 {
+                    let error = (slipped - slip[index]).abs();
+                    (mu * error, mu * settings.slip_tolerance * slipped)
+                } else {
+                    (overlap.min(mu * (slip[index] - slipped).max(0.0)), 0.0)
+                };
+                measure.dilation = measure.dilation.max(gap);
+                measure.relative_dilation = measure.relative_dilation.max(gap / (weight * scale));
+                measure.is_dilated |= gap - admitted > settings.gap_tolerance
+                    && gap > settings.tolerance * weight * scale;
             }
         }
         measure

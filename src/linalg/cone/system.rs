@@ -1,12 +1,24 @@
 //! `H = A + Gᵀ S G` in one sparse factor, and the factor of `A` alone.
 
+use super::correction::{Correction, FactorRows};
 use super::problem::{ConeEntry, ConeProblem};
 use crate::linalg::block_matrix::BlockMatrix;
-use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
+use crate::linalg::cholesky::{BlockCholesky, CholeskyError, Selection};
 
 /// Difference of weights, relative to the larger one of its row, up to which they count as the same (-): a Newton step with the factor of the
 /// ones leaves no more than this share of an imbalance under the others.
 const ALIKE: f64 = 1e-2;
+
+/// Rows whose weights may differ from those of the factor at hand where it is corrected instead of made anew.
+const MOST_CHANGED: usize = 12;
+
+/// Substitutions that count as one factorization.
+const PER_FACTORIZATION: usize = 32;
+
+pub(super) fn are_alike(kept: &[f64; 3], asked: &[f64; 3]) -> bool {
+    let most = ALIKE * asked[0].abs().max(asked[2].abs());
+    (0..3).all(|k| (kept[k] - asked[k]).abs() <= most)
+}
 
 /// How the factor at hand fits the weights asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,7 +37,10 @@ struct Analysis {
     /// The values of `A` of which `bodies` is the factor, if `has_bodies`.
     matrix: BlockMatrix,
     bodies: BlockCholesky,
+    /// `H`.
     hull: BlockMatrix,
+    /// `A` in the pattern of `H`.
+    base: Vec<[f64; 4]>,
     factor: BlockCholesky,
     /// The place in `hull` of every block of `A`.
     matrix_places: Vec<u32>,
@@ -38,6 +53,12 @@ pub(super) struct System {
     has_bodies: bool,
     /// The place in `hull` of every pair of entries of every row, row after row.
     row_places: Vec<u32>,
+    /// The same, each of them once.
+    touched: Vec<u32>,
+    /// The part of the factor that rows change.
+    selection: Selection,
+    /// Whether `hull` and the factor hold nothing but `base` outside that part.
+    is_only_touched: bool,
     nodes: Vec<u32>,
     spans: Vec<(u32, u32)>,
     has_factor: bool,
@@ -46,8 +67,12 @@ pub(super) struct System {
     weights: Vec<[f64; 3]>,
     entries: Vec<ConeEntry>,
     values: Vec<[f64; 4]>,
+    correction: Correction,
+    right: Vec<f64>,
     pub n_factorizations: usize,
     pub n_analyses: usize,
+    /// Factors made or corrected.
+    pub n_changes: usize,
 }
 
 impl System {
@@ -67,10 +92,14 @@ impl System {
         };
         if !self.has_bodies || analysis.matrix.blocks() != problem.matrix.blocks() {
             self.has_bodies = false;
+            self.is_only_touched = false;
             analysis
                 .matrix
                 .blocks_mut()
                 .copy_from_slice(problem.matrix.blocks());
+            for (&place, block) in analysis.matrix_places.iter().zip(problem.matrix.blocks()) {
+                analysis.base[place as usize] = *block;
+            }
             analysis.bodies.refactorize(problem.matrix)?;
             self.has_bodies = true;
         }
@@ -95,6 +124,7 @@ impl System {
         self.analysis = Some(theirs.clone());
         self.has_bodies = other.has_bodies;
         self.has_factor = false;
+        self.is_only_touched = false;
         self.spans.clear();
     }
 
@@ -136,13 +166,18 @@ impl System {
             );
         }
         let factor = BlockCholesky::analyze(&hull);
+        let mut base = vec![[0.0; 4]; hull.blocks().len()];
+        for (&place, block) in matrix_places.iter().zip(matrix.blocks()) {
+            base[place as usize] = *block;
+        }
         self.spans.clear();
         self.has_factor = false;
+        self.is_only_touched = false;
         self.n_analyses += 1;
         match &mut self.analysis {
             Some(analysis) if has_pattern => {
-                (analysis.hull, analysis.factor, analysis.matrix_places) =
-                    (hull, factor, matrix_places);
+                (analysis.hull, analysis.base, analysis.factor) = (hull, base, factor);
+                analysis.matrix_places = matrix_places;
             }
             slot => {
                 self.has_bodies = false;
@@ -151,6 +186,7 @@ impl System {
                     matrix,
                     bodies,
                     hull,
+                    base,
                     factor,
                     matrix_places,
                 }));
@@ -172,6 +208,7 @@ impl System {
         }
         // weights are kept row by row: a factor belongs to the rows it was made of
         self.has_factor = false;
+        self.is_only_touched = false;
         self.spans.clear();
         self.row_places.clear();
         for row in problem.rows {
@@ -185,6 +222,13 @@ impl System {
                 }
             }
         }
+        self.touched.clone_from(&self.row_places);
+        self.touched.sort_unstable();
+        self.touched.dedup();
+        let touched_nodes = nodes.clone().map(|node| node as usize);
+        analysis
+            .factor
+            .select_into(touched_nodes, &mut self.selection);
         self.spans.extend(spans);
         self.nodes.clear();
         self.nodes.extend(nodes);
@@ -197,11 +241,7 @@ impl System {
             return Fit::None;
         }
         if self.weights != weights {
-            let is_near = |(kept, asked): (&[f64; 3], &[f64; 3])| {
-                let most = ALIKE * asked[0].max(asked[2]);
-                (0..3).all(|k| (kept[k] - asked[k]).abs() <= most)
-            };
-            let are_near = self.weights.iter().zip(weights).all(is_near);
+            let are_near = self.n_changed(weights) == 0;
             return if are_near { Fit::Near } else { Fit::None };
         }
         if self.is_own {
@@ -231,15 +271,15 @@ impl System {
         };
         self.has_factor = false;
         let Analysis {
-            hull,
-            factor,
-            matrix_places,
-            ..
+            hull, base, factor, ..
         } = &mut **analysis;
-        hull.fill_zero();
         let blocks = hull.blocks_mut();
-        for (&place, block) in matrix_places.iter().zip(problem.matrix.blocks()) {
-            blocks[place as usize] = *block;
+        if self.is_only_touched {
+            for &place in &self.touched {
+                blocks[place as usize] = base[place as usize];
+            }
+        } else {
+            blocks.copy_from_slice(base);
         }
         let mut places = self.row_places.iter();
         for (row, &[nn, nt, tt]) in problem.rows.iter().zip(weights) {
@@ -263,7 +303,14 @@ impl System {
             }
         }
         self.n_factorizations += 1;
-        factor.refactorize(hull)?;
+        self.n_changes += 1;
+        self.correction.forget();
+        if std::mem::replace(&mut self.is_only_touched, false) {
+            factor.factorize_part(&self.selection, hull)?;
+        } else {
+            factor.factorize(hull)?;
+        }
+        self.is_only_touched = true;
         self.weights.clear();
         self.weights.extend_from_slice(weights);
         if !self.is_own {
@@ -274,6 +321,57 @@ impl System {
         }
         (self.has_factor, self.is_own) = (true, true);
         Ok(())
+    }
+
+    /// Replaces `x` by `H⁻¹ x` for weights that differ from those of the factor at hand in few rows; false, with `x` as it was, where more
+    /// differ, or as good as nothing is left of some direction.
+    ///
+    /// The geometry stays that of the factor.
+    pub fn solve_changed(&mut self, weights: &[[f64; 3]], x: &mut [f64]) -> bool {
+        if !self.serves(weights) {
+            return false;
+        }
+        let Some(analysis) = &mut self.analysis else {
+            return false;
+        };
+        let rows = self.weights.iter().zip(weights).enumerate();
+        let is_new = self.correction.list_changed(
+            rows.filter(|(_, (kept, asked))| !are_alike(kept, asked))
+                .map(|(row, (kept, asked))| (row, [0, 1, 2].map(|k| asked[k] - kept[k]))),
+        );
+        let rows = FactorRows {
+            spans: &self.spans,
+            entries: &self.entries,
+        };
+        self.right.clear();
+        self.right.extend_from_slice(x);
+        analysis.factor.solve_in_place(x);
+        let is_solved = self.correction.apply(rows, &mut analysis.factor, x);
+        if is_solved {
+            self.n_changes += usize::from(is_new);
+        } else {
+            x.copy_from_slice(&self.right);
+        }
+        is_solved
+    }
+
+    /// Whether the factor at hand can be taken, or corrected, for these weights.
+    pub fn serves(&self, weights: &[[f64; 3]]) -> bool {
+        self.has_factor
+            && self.weights.len() == weights.len()
+            && self.n_changed(weights) <= MOST_CHANGED
+    }
+
+    /// What has been done, in factorizations.
+    pub fn spent(&self) -> usize {
+        self.n_factorizations
+            + (self.correction.n_substitutions + self.n_changes) / PER_FACTORIZATION
+    }
+
+    /// Rows whose weights are not those of the factor at hand.
+    fn n_changed(&self, weights: &[[f64; 3]]) -> usize {
+        let differs = |(kept, asked): &(&[f64; 3], &[f64; 3])| !are_alike(kept, asked);
+        self.weights.iter().zip(weights).filter(differs).count()
     }
 
     /// Replaces `x` by `H⁻¹ x`, with the last factor made.

@@ -3,6 +3,7 @@ use crate::linalg::block_matrix::BlockMatrix;
 
 mod blocks;
 mod chains;
+mod corrections;
 mod piles;
 mod random;
 mod soft;

@@ -21,17 +21,12 @@ impl Proximal {
         most: usize,
     ) -> Option<f64> {
         self.weigh(problem);
-        if system.fit(problem, &self.weights) == Fit::None
-            && (system.n_factorizations >= most
-                || system.factorize(problem, &self.weights).is_err())
-        {
-            return None;
-        }
-        reduced.total_load(problem, &[], &mut self.step);
+        self.step.clear();
+        self.step.extend(self.linear.iter().map(|value| -value));
         for (index, row) in problem.rows.iter().enumerate() {
             let (low, high) = row.bounds();
             let [nn, nt, tt] = self.weights[index];
-            let b = self.request(problem, reduced, state, index);
+            let b = self.request(row, state, index);
             let force = match self.status[index] {
                 _ if reduced.resistance[index] <= 0.0 => state.forces[index],
                 ConeStatus::SlipPositive if !row.has_tangent() => [high, 0.0],
@@ -40,22 +35,24 @@ impl Proximal {
             };
             problem.push(row, 1.0, force, &mut self.step);
         }
-        problem.matrix.multiply_add(-1.0, &state.a, &mut self.step);
-        system.solve(&mut self.step);
+        let is_solved = system.fit(problem, &self.weights) == Fit::None
+            && system.spent() < most
+            && system.solve_changed(&self.weights, &mut self.step);
+        if !is_solved {
+            if system.fit(problem, &self.weights) == Fit::None
+                && (system.spent() >= most || system.factorize(problem, &self.weights).is_err())
+            {
+                return None;
+            }
+            system.solve(&mut self.step);
+        }
         self.evaluate(problem, reduced, state);
         let before = self.energy;
-        state
-            .a
-            .iter_mut()
-            .zip(&self.step)
-            .for_each(|(a, step)| *a += step);
+        self.trace_step(problem);
+        self.go(state, 1.0);
         let norm = self.evaluate(problem, reduced, state);
         if self.energy > before {
-            state
-                .a
-                .iter_mut()
-                .zip(&self.step)
-                .for_each(|(a, step)| *a -= step);
+            self.go(state, -1.0);
             return None;
         }
         Some(norm)

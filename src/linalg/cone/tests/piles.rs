@@ -3,7 +3,12 @@
 use super::*;
 
 /// `columns × rows` unit boxes with two contacts on every face that touches; the lowest stand on the ground.
-fn pile(n_columns: usize, n_rows: usize, mass: impl Fn(usize) -> f64, disturb: f64) -> Scene {
+pub(super) fn pile(
+    n_columns: usize,
+    n_rows: usize,
+    mass: impl Fn(usize) -> f64,
+    disturb: f64,
+) -> Scene {
     let n = n_columns * n_rows;
     let masses: Vec<[f64; 2]> = (0..n)
         .map(|body| {

@@ -1,0 +1,135 @@
+//! Factors that are corrected where few weights have changed, and the warm start that makes it possible.
+
+use super::piles::pile;
+use super::*;
+use crate::linalg::cone::system::System;
+use crate::math::sin_cos;
+
+/// `[nn, nt, tt]` of a row on one of its pieces, by number.
+fn piece(row: &ConeRow, which: usize) -> [f64; 3] {
+    let (mu, weight) = (row.friction(), 100.0 / row.scale[0]);
+    match which % 4 {
+        0 => [0.0; 3],
+        1 => [weight, 0.0, weight],
+        2 => [weight, mu * weight, mu * mu * weight],
+        _ => [weight, -mu * weight, mu * mu * weight],
+    }
+}
+
+fn prepared(problem: &ConeProblem) -> System {
+    let mut system = System::default();
+    assert_eq!(system.prepare(problem), Ok(()));
+    system
+}
+
+/// Rows change their pieces one after the other, some of them back again; a factor of its own answers every time.
+#[test]
+fn a_corrected_factor_answers_like_a_new_one() -> Result<(), Box<dyn std::error::Error>> {
+    let scene = pile(5, 5, |_| 1.0, 0.01);
+    let problem = scene.problem();
+    let mut weights: Vec<[f64; 3]> = problem
+        .rows
+        .iter()
+        .enumerate()
+        .map(|(index, row)| piece(row, index))
+        .collect();
+    let mut system = prepared(&problem);
+    system.factorize(&problem, &weights)?;
+    let load: Vec<f64> = (0..problem.load.len())
+        .map(|dof| sin_cos(dof as f64).0)
+        .collect();
+    let changes = [(3, 1), (10, 2), (3, 0), (17, 1), (10, 3), (3, 3), (17, 1)];
+    for (index, which) in changes {
+        weights[index] = piece(&problem.rows[index], which);
+        let mut corrected = load.clone();
+        assert!(system.solve_changed(&weights, &mut corrected));
+        let mut fresh = prepared(&problem);
+        fresh.factorize(&problem, &weights)?;
+        let mut expected = load.clone();
+        fresh.solve(&mut expected);
+        let largest = expected
+            .iter()
+            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        for (x, y) in corrected.iter().zip(&expected) {
+            assert!((x - y).abs() < 1e-9 * largest, "{x} is not {y}");
+        }
+    }
+    assert_eq!(system.n_factorizations, 1);
+    Ok(())
+}
+
+/// More than a few rows are worth a factor; then nothing is touched.
+#[test]
+fn a_factor_of_other_rows_is_not_corrected() -> Result<(), Box<dyn std::error::Error>> {
+    let scene = pile(5, 5, |_| 1.0, 0.01);
+    let problem = scene.problem();
+    let all = |which| {
+        problem
+            .rows
+            .iter()
+            .map(|row| piece(row, which))
+            .collect::<Vec<_>>()
+    };
+    let mut system = prepared(&problem);
+    let mut x = vec![1.0; problem.load.len()];
+    assert!(!system.solve_changed(&all(0), &mut x));
+    system.factorize(&problem, &all(0))?;
+    assert!(!system.solve_changed(&all(1), &mut x));
+    assert!(x.iter().all(|&x| x == 1.0));
+    Ok(())
+}
+
+/// A factor whose part that rows change is made anew is the whole one, to the last bit: also after rows have come and gone, and after the
+/// matrix has changed.
+#[test]
+fn only_what_rows_touch_is_made_anew() -> Result<(), Box<dyn std::error::Error>> {
+    let mut scene = pile(4, 4, |_| 1.0, 0.01);
+    let mut system = System::default();
+    for round in 0..6 {
+        let mut part = scene.clone();
+        part.rows.truncate(scene.rows.len() - 3 * (round % 3));
+        if round == 4 {
+            scene.matrix.add_diagonal(2, [0.5, 0.25]);
+        }
+        let problem = part.problem();
+        system.prepare(&problem)?;
+        let mut fresh = prepared(&problem);
+        for shift in 0..3 {
+            let weights: Vec<[f64; 3]> = problem
+                .rows
+                .iter()
+                .enumerate()
+                .map(|(index, row)| piece(row, index + shift + round))
+                .collect();
+            system.factorize(&problem, &weights)?;
+            fresh.factorize(&problem, &weights)?;
+            let load: Vec<f64> = (0..problem.load.len())
+                .map(|dof| sin_cos(dof as f64).0)
+                .collect();
+            let (mut x, mut y) = (load.clone(), load);
+            system.solve(&mut x);
+            fresh.solve(&mut y);
+            let largest = y.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+            // the patterns of both may differ, and with them the order of additions
+            assert!(
+                x.iter()
+                    .zip(&y)
+                    .all(|(x, y)| (x - y).abs() < 1e-11 * largest)
+            );
+        }
+    }
+    Ok(())
+}
+
+/// A body that flies past another one, near and without a force, is solved before it is begun.
+#[test]
+fn an_open_contact_that_slides_costs_nothing() {
+    let mut scene = Scene::bodies(&[[2.0, 0.3]]);
+    let grips = Scene::grips(0, 1.0, [0.0, 1.0], [0.0, -0.5]);
+    let law = ConeLaw::Contact { friction: 0.5 };
+    scene.row(law, [1.0, -130.0], [0.5; 2], &grips);
+    let answer = solve(&scene);
+    assert!(answer.outcome.is_solved);
+    assert_eq!(answer.outcome.n_factorizations, 0);
+    assert_eq!(answer.p, [[0.0; 2]]);
+}
