@@ -29,10 +29,6 @@ const MOST_STOPS: usize = 20;
 /// Share of the margin within which the laws hold where the contacts are many (-): a thousandth moves no force that counts.
 pub(super) const LARGE_TOLERANCE: f64 = 1e-3;
 
-/// Part of what the laws miss under the forces of the last step that may be left of it where contacts are many, up to [`CLOSE_ENOUGH`] (-): what
-/// moves is solved as finely as it moves, and what comes to rest the finer the less it does.
-const LEFT_OVER: f64 = 1e-2;
-
 /// The same where bodies of large strain find their equilibrium to a residual (-).
 const CURVED_TOLERANCE: f64 = 1e-6;
 
@@ -129,10 +125,7 @@ impl Island {
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let is_eased = pass >= self.n_exact_passes(settings);
             let near = self.enough(is_eased, NEAR * tolerance);
-            if pass == 0 {
-                self.guess_error = self.measure_guess();
-            }
-            let misleads = is_guess && self.guess_error > near;
+            let misleads = is_guess && self.measure_guess() > near;
             let mut arrives = false;
             let mut error = 0.0;
             if !self.is_finite() || has_left && self.leads_around() {
@@ -235,18 +228,12 @@ impl Island {
         if is_eased {
             CLOSE_ENOUGH * margin
         } else if self.has_many_rows() {
-            tolerance.max(self.large_tolerance())
+            tolerance.max(LARGE_TOLERANCE * margin)
         } else if self.has_large() {
             tolerance.max(CURVED_TOLERANCE * margin)
         } else {
             tolerance
         }
-    }
-
-    /// How far the laws of many contacts may be from holding at the end of a pass (m).
-    pub(super) fn large_tolerance(&self) -> f64 {
-        let margin = self.path.least_margin();
-        (LEFT_OVER * self.guess_error).clamp(LARGE_TOLERANCE * margin, CLOSE_ENOUGH * margin)
     }
 
     /// Whether some block is of large strain, whose equilibrium is found to a residual.

@@ -193,8 +193,6 @@ impl ActiveContact {
 /// A set of blocks and candidates, and the buffers to solve them.
 #[derive(Debug, Default)]
 pub struct Island {
-    /// How far the laws are from holding under the forces of the last step (m).
-    pub(super) guess_error: f64,
     /// Members; taken over for the step and handed back after it.
     pub blocks: Vec<Block>,
     /// For each block the index of its body in the flexible set, if it is flexible.

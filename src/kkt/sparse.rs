@@ -7,6 +7,7 @@
 mod layout;
 
 use super::delassus::compliance;
+use super::follow::LARGE_TOLERANCE;
 use super::island::{Island, KktError};
 use super::joint_system::Rows;
 use crate::constraint::joint::unit_wrench;
@@ -21,9 +22,6 @@ use std::sync::Arc;
 
 /// Scalar rows up to which the dense problem is always the quicker one.
 const ALWAYS_DENSE: usize = 24;
-
-/// Factorizations that a sparse solve takes more often than the dense one takes its own: what makes them equal in the benches.
-const MORE_OFTEN: f64 = 4.0;
 
 /// Share of its own mobility that every row gives way by to its force (-): `w = (W + s D) p + b`, `D` the diagonal of `W`.
 ///
@@ -124,7 +122,7 @@ impl Island {
             }
         }
         let n = n_rows as f64;
-        n * n * n / 3.0 > MORE_OFTEN * operations
+        n * n * n / 3.0 > operations
     }
 
     /// Solves the rows, kinds and free motions at hand from the multipliers given; writes multipliers, statuses, responses and diagonals.
@@ -395,7 +393,7 @@ impl Island {
             Response::Acceleration | Response::ByMass => asked.unit * asked.unit,
         };
         // A fifth of what a pass accepts.
-        solver.settings.gap_tolerance = 0.2 * self.large_tolerance() / unit;
+        solver.settings.gap_tolerance = 0.2 * LARGE_TOLERANCE * self.path.least_margin() / unit;
         solver.settings.slip_tolerance = 1e-4;
         solver.settings.tolerance = 1e-6;
         solver.scales_start = asked.of == Response::Velocity;

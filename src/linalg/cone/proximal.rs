@@ -5,9 +5,10 @@
 //! stays. It need not be unique: redundant rows keep as much as they can of what they carried.
 
 mod line;
+mod merit;
 mod predict;
 
-use super::law::{ConeStatus, project, slope};
+use super::law::ConeStatus;
 use super::problem::{ConeProblem, ConeRow};
 use super::reduced::{Measure, Reduced};
 use super::slip::SlipIteration;
@@ -363,94 +364,5 @@ impl Proximal {
             }
         }
         false
-    }
-
-    /// Finds `A a - load` and the gaps `free + G a` of the present `a`.
-    fn place(&mut self, problem: &ConeProblem, reduced: &Reduced, state: &State) {
-        self.linear.resize(reduced.load.len(), 0.0);
-        problem.matrix.multiply(&state.a, &mut self.linear);
-        self.linear
-            .iter_mut()
-            .zip(&reduced.load)
-            .for_each(|(value, load)| *value -= load);
-        self.gaps.clear();
-        self.gaps
-            .extend((0..problem.rows.len()).map(|index| reduced.gap(problem, index, &state.a)));
-    }
-
-    /// Finds how both change along the step.
-    fn trace_step(&mut self, problem: &ConeProblem) {
-        self.product.resize(self.step.len(), 0.0);
-        problem.matrix.multiply(&self.step, &mut self.product);
-        self.moved.clear();
-        let moved = |row: &ConeRow| problem.motion(row, &self.step);
-        self.moved.extend(problem.rows.iter().map(moved));
-    }
-
-    /// Goes some part of the step, which has been traced.
-    fn go(&mut self, state: &mut State, length: f64) {
-        let add = |to: &mut [f64], by: &[f64]| {
-            to.iter_mut()
-                .zip(by)
-                .for_each(|(to, by)| *to += length * by);
-        };
-        add(&mut state.a, &self.step);
-        add(&mut self.linear, &self.product);
-        add(self.gaps.as_flattened_mut(), self.moved.as_flattened());
-    }
-
-    /// Finds `P(a)` and the imbalance `A a - load - Gᵀ P(a)`; returns its size as square root of an energy.
-    fn evaluate(&mut self, problem: &ConeProblem, reduced: &Reduced, state: &State) -> f64 {
-        self.imbalance.clone_from(&self.linear);
-        self.energy = state
-            .a
-            .iter()
-            .zip(self.linear.iter().zip(&reduced.load))
-            .map(|(a, (value, load))| 0.5 * a * (value - load))
-            .sum();
-        self.trial.clear();
-        self.status.clear();
-        for (index, row) in problem.rows.iter().enumerate() {
-            let (force, status) = if reduced.resistance[index] > 0.0 {
-                let (b, metric) = (
-                    self.request(row, state, index),
-                    metric(row.give, self.penalty[index]),
-                );
-                let (force, status) = project(row, b, metric);
-                self.energy += (0..2)
-                    .map(|k| force[k] * (b[k] - 0.5 * metric[k] * force[k]))
-                    .sum::<f64>();
-                (force, status)
-            } else {
-                (state.forces[index], ConeStatus::Open)
-            };
-            problem.push(row, -1.0, force, &mut self.imbalance);
-            self.trial.push(force);
-            self.status.push(status);
-        }
-        let energy = self
-            .imbalance
-            .iter()
-            .zip(&reduced.inverse_diagonal)
-            .map(|(value, inverse)| value * value * inverse);
-        energy.sum::<f64>().sqrt()
-    }
-
-    /// `b = P_k/D - (free + G a + mu sigma)`.
-    fn request(&self, row: &ConeRow, state: &State, index: usize) -> [f64; 2] {
-        let (gap, force, inverse) = (self.gaps[index], state.forces[index], self.penalty[index]);
-        let dilation = row.friction() * state.slip[index];
-        [
-            force[0] * inverse - gap[0] - dilation,
-            force[1] * inverse - gap[1],
-        ]
-    }
-
-    fn weigh(&mut self, problem: &ConeProblem) {
-        self.weights.clear();
-        let rows = problem.rows.iter().zip(&self.status).zip(&self.penalty);
-        self.weights.extend(
-            rows.map(|((row, &status), &penalty)| slope(row, status, metric(row.give, penalty))),
-        );
     }
 }
