@@ -23,6 +23,10 @@ use std::sync::Arc;
 /// Scalar rows up to which the dense problem is always the quicker one.
 const ALWAYS_DENSE: usize = 24;
 
+/// Operations that the dense problem of positions may take more often than the sparse one (-): its laws hold to rounding, and not to a thousandth of
+/// the margin.
+const WORTH: f64 = 4.0;
+
 /// Share of its own mobility that every row gives way by to its force (-): `w = (W + s D) p + b`, `D` the diagonal of `W`.
 ///
 /// Where a body fits between two that nothing moves, forces of any size press it and change nothing; an interior point goes to the middle of all
@@ -106,8 +110,18 @@ impl Island {
         self.sparse.forget_unused();
     }
 
-    /// Whether the scalar rows at hand are better solved as a sparse problem.
+    /// Whether the scalar rows at hand, of positions, are better solved as a sparse problem.
     pub(super) fn is_sparse(&self, n_rows: usize) -> bool {
+        self.takes_fewer(n_rows, WORTH)
+    }
+
+    /// The same of velocities and accelerations, whose laws hold as well in both.
+    pub(super) fn has_sparse_impulses(&self, n_rows: usize) -> bool {
+        self.takes_fewer(n_rows, 1.0)
+    }
+
+    /// Whether a sparse problem of so many scalar rows takes fewer operations than the dense one, `worth` times.
+    fn takes_fewer(&self, n_rows: usize, worth: f64) -> bool {
         if self.path.is_empty() || n_rows <= ALWAYS_DENSE {
             return false;
         }
@@ -122,7 +136,7 @@ impl Island {
             }
         }
         let n = n_rows as f64;
-        n * n * n / 3.0 > operations
+        n * n * n / 3.0 > worth * operations
     }
 
     /// Solves the rows, kinds and free motions at hand from the multipliers given; writes multipliers, statuses, responses and diagonals.
