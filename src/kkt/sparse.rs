@@ -6,25 +6,24 @@
 
 mod layout;
 
+use self::layout::Shape;
 use super::delassus::compliance;
 use super::follow::LARGE_TOLERANCE;
 use super::island::{Island, KktError};
 use super::joint_system::Rows;
 use crate::constraint::joint::unit_wrench;
-use crate::fe::model::Model;
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::complementarity::{RowKind, Status};
 use crate::linalg::cone::{
     ConeEntry, ConeLaw, ConeOutcome, ConeProblem, ConeRow, ConeSolver, ConeStatus,
 };
 use crate::system::{Block, Point, Response};
-use std::sync::Arc;
 
 /// Scalar rows up to which the dense problem is always the quicker one.
 const ALWAYS_DENSE: usize = 24;
 
-/// Operations that the dense problem of positions may take more often than the sparse one (-): its laws hold to rounding, and not to a thousandth of
-/// the margin.
+/// Operations that the dense problem may take more often than the sparse one takes for a factor (-): its laws hold to rounding, and not to a
+/// thousandth of the margin.
 const WORTH: f64 = 4.0;
 
 /// Share of its own mobility that every row gives way by to its force (-): `w = (W + s D) p + b`, `D` the diagonal of `W`.
@@ -36,33 +35,6 @@ const YIELDING: f64 = 1e-6;
 
 /// Share of a joint's force that it gives way to as contacts do (-); to the rest only as it changes, or a chain would open.
 const JOINT_SHARE: f64 = 0.05;
-
-/// What stands behind a block's nodes, to tell when the pattern changes.
-#[derive(Clone, Debug)]
-enum Shape {
-    None,
-    Rigid,
-    Flex(Arc<Model>),
-}
-
-impl Shape {
-    fn of(block: &Block) -> Self {
-        match block {
-            Block::Flex(block) => Self::Flex(Arc::clone(block.model())),
-            Block::Rigid(block) if block.is_prescribed() => Self::None,
-            Block::Rigid(_) => Self::Rigid,
-        }
-    }
-
-    fn is_that_of(&self, block: &Block) -> bool {
-        match (self, block) {
-            (Self::Flex(model), Block::Flex(block)) => Arc::ptr_eq(model, block.model()),
-            (Self::None, Block::Rigid(block)) => block.is_prescribed(),
-            (Self::Rigid, Block::Rigid(block)) => !block.is_prescribed(),
-            _ => false,
-        }
-    }
-}
 
 /// What is kept of an island from step to step: its unknowns and factors.
 #[derive(Debug)]
@@ -110,18 +82,8 @@ impl Island {
         self.sparse.forget_unused();
     }
 
-    /// Whether the scalar rows at hand, of positions, are better solved as a sparse problem.
+    /// Whether the scalar rows at hand are better solved as a sparse problem.
     pub(super) fn is_sparse(&self, n_rows: usize) -> bool {
-        self.takes_fewer(n_rows, WORTH)
-    }
-
-    /// The same of velocities and accelerations, whose laws hold as well in both.
-    pub(super) fn has_sparse_impulses(&self, n_rows: usize) -> bool {
-        self.takes_fewer(n_rows, 1.0)
-    }
-
-    /// Whether a sparse problem of so many scalar rows takes fewer operations than the dense one, `worth` times.
-    fn takes_fewer(&self, n_rows: usize, worth: f64) -> bool {
         if self.path.is_empty() || n_rows <= ALWAYS_DENSE {
             return false;
         }
@@ -136,7 +98,7 @@ impl Island {
             }
         }
         let n = n_rows as f64;
-        n * n * n / 3.0 > worth * operations
+        n * n * n / 3.0 > WORTH * operations
     }
 
     /// Solves the rows, kinds and free motions at hand from the multipliers given; writes multipliers, statuses, responses and diagonals.

@@ -171,7 +171,7 @@ impl Island {
     pub(super) fn solve_impulses(&mut self, of: Response, dt: f64) -> Result<(), KktError> {
         let n = self.kinds.len();
         self.acted.resize(n, 0.0);
-        if of != Response::ByMass && self.has_sparse_impulses(n) {
+        if of != Response::ByMass && self.is_sparse(n) {
             self.guess_impulses();
             let asked = Asked {
                 of,

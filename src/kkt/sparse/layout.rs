@@ -1,11 +1,40 @@
 //! The unknowns and loads of a sparse problem: how blocks are laid out in it.
 
-use super::{Kept, Shape, Sparse};
+use super::{Kept, Sparse};
 use crate::constraint::joint::{JointGrip, unit_wrench};
+use crate::fe::model::Model;
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cone::ConeEntry;
 use crate::math::{Vec2, cross};
 use crate::system::{Block, Point};
+use std::sync::Arc;
+
+/// What stands behind a block's nodes, to tell when the pattern changes.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    None,
+    Rigid,
+    Flex(Arc<Model>),
+}
+
+impl Shape {
+    pub(super) fn of(block: &Block) -> Self {
+        match block {
+            Block::Flex(block) => Self::Flex(Arc::clone(block.model())),
+            Block::Rigid(block) if block.is_prescribed() => Self::None,
+            Block::Rigid(_) => Self::Rigid,
+        }
+    }
+
+    pub(super) fn is_that_of(&self, block: &Block) -> bool {
+        match (self, block) {
+            (Self::Flex(model), Block::Flex(block)) => Arc::ptr_eq(model, block.model()),
+            (Self::None, Block::Rigid(block)) => block.is_prescribed(),
+            (Self::Rigid, Block::Rigid(block)) => !block.is_prescribed(),
+            _ => false,
+        }
+    }
+}
 
 impl Kept {
     /// Whether it is what is kept of these blocks.

@@ -9,7 +9,8 @@
 //!
 //! All solvers work on `H = A + Gᵀ S G`, as sparse as the graph of bodies that touch:
 //!
-//! 1. proximal steps from the last answer, by Newton's method (`proximal`);
+//! 1. proximal steps from the last answer, by Newton's method (`proximal`), whose factor is corrected where few rows change
+//!    sides (`correction`);
 //! 2. if that takes more than a few factorizations without gaining, an interior point (`interior`),
 //! 3. whose forces proximal steps finish, if they are not good enough;
 //! 4. the budget spent, projected gradients (`sweep`), which obey every bound and bring no energy, but leave gaps.
