@@ -70,7 +70,7 @@ const LEVELS: [f64; 3] = [1e2, 1e4, 1e6];
 const N_WARM: [usize; 2] = [12, 3];
 
 /// The part of the error at the start that may be left (-).
-const SETTLING: f64 = 1e-3;
+const SETTLING: f64 = 5e-4;
 
 /// What is good enough, and how much work it may take.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -96,7 +96,6 @@ impl Proximal {
     ///
     /// The measure is that of the last step completed, infinite if the budget did not last for one.
     ///
-    #[expect(clippy::too_many_arguments, reason = "they are the solver's parts")]
     pub fn run(
         &mut self,
         problem: &ConeProblem,
