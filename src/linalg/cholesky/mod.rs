@@ -275,7 +275,8 @@ impl BlockCholesky {
         self.solve_columns(columns, n_columns, &selection.is_wanted);
     }
 
-    /// Finds out which part of the factor the unknowns of these nodes depend on, and it on the columns of theirs in the matrix.
+    /// Finds out which part of the factor the unknowns of these nodes depend on; it is also the part that depends on their rows and columns of
+    /// the matrix.
     ///
     /// # Panics
     /// If a node does not exist.

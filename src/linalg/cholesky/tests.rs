@@ -59,3 +59,23 @@ fn the_widest_and_the_plainest_kernels_give_the_same_bits() {
     wide.solve_many_in_place(&mut pair, 2);
     assert_eq!(pair, [y.clone(), y].concat());
 }
+
+/// Other panels keep what they hold, and it is what a whole factorization makes, to the last bit.
+#[test]
+fn a_part_made_anew_is_that_of_the_whole() {
+    let mut matrix = strip(40);
+    let mut part = BlockCholesky::analyze(&matrix);
+    assert_eq!(part.factorize(&matrix), Ok(()));
+    let selection = part.select([17, 18, 60]);
+    let n_wanted = selection.is_wanted.iter().filter(|is| **is).count();
+    assert!(0 < n_wanted && n_wanted < selection.is_wanted.len());
+    let before = part.values.get().to_vec();
+    for node in [17, 18, 60] {
+        matrix.add_diagonal(node, [0.7, 1.1]);
+    }
+    assert_eq!(part.factorize_part(&selection, &matrix), Ok(()));
+    let mut whole = BlockCholesky::analyze(&matrix);
+    assert_eq!(whole.factorize(&matrix), Ok(()));
+    assert_eq!(part.values.get(), whole.values.get());
+    assert_ne!(part.values.get(), before);
+}

@@ -102,7 +102,7 @@ impl Default for ConeSettings {
 pub struct ConeOutcome {
     /// The natural map of all rows with the slips handed back, in square roots of energy (`sqrt(W_ii) P`), relative to the largest force (-).
     pub residual: f64,
-    /// The gap that dilation leaves, `max mu |sigma - |w_t||`, in the unit of `w`.
+    /// The gap that dilation leaves, `max mu |sigma - |w_t||`, or the overlap that it hides where no force acts, in the unit of `w`.
     pub dilation: f64,
     /// Factorizations of `H`.
     pub n_factorizations: usize,

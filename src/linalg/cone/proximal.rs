@@ -275,6 +275,33 @@ impl Proximal {
         0
     }
 
+    /// Replaces the right-hand side in `step` by what `H` of the pieces at hand answers: by the factor at hand if it fits, corrected where few
+    /// rows have changed, or by a new one. Whether that is exact; nothing if it would take more than `most` factorizations in all, or one fails.
+    ///
+    /// - `fit`, `may_keep`: how the factor at hand fits, and whether one of other numbers will do.
+    fn find_step(
+        &mut self,
+        problem: &ConeProblem,
+        system: &mut System,
+        (fit, may_keep): (Fit, bool),
+        most: usize,
+    ) -> Option<bool> {
+        if fit == Fit::Exact || fit == Fit::Near && may_keep {
+            system.solve(&mut self.step);
+            return Some(fit == Fit::Exact);
+        }
+        if system.spent() >= most {
+            return None;
+        }
+        if may_keep && system.solve_changed(&self.weights, &mut self.step) {
+            return Some(false);
+        }
+        // `A` has a factor: what fails here is a penalty too stiff for the digits of a number
+        system.factorize(problem, &self.weights).ok()?;
+        system.solve(&mut self.step);
+        Some(true)
+    }
+
     fn restore(&self, state: &mut State) -> Ending {
         state.forces.copy_from_slice(&self.saved);
         state.slip.copy_from_slice(&self.saved_slip);
@@ -318,30 +345,16 @@ impl Proximal {
             self.weigh(problem);
             self.step.clear();
             self.step.extend(self.imbalance.iter().map(|value| -value));
-            let is_kept = n_kept < MOST_KEPT;
             let fit = system.fit(problem, &self.weights);
             // the piece it was made for has been solved: what is left is rounding
             if fit == Fit::Exact && is_full {
                 return true;
             }
-            let is_at_hand = fit == Fit::Exact || fit == Fit::Near && is_kept;
-            let is_corrected = !is_at_hand
-                && is_kept
-                && system.spent() < most
-                && system.solve_changed(&self.weights, &mut self.step);
-            if is_at_hand || is_corrected {
-                n_kept += usize::from(fit != Fit::Exact);
-            } else {
-                // `A` has a factor: what fails here is a penalty too stiff for the digits of a number
-                if system.spent() >= most || system.factorize(problem, &self.weights).is_err() {
-                    return false;
-                }
-                n_kept = 0;
-            }
-            let is_exact = n_kept == 0;
-            if !is_corrected {
-                system.solve(&mut self.step);
-            }
+            let Some(is_exact) = self.find_step(problem, system, (fit, n_kept < MOST_KEPT), most)
+            else {
+                return false;
+            };
+            n_kept = if is_exact { 0 } else { n_kept + 1 };
             self.trace_step(problem);
             let length = self.search(problem, reduced, state);
             self.go(state, length);

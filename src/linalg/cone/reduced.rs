@@ -28,7 +28,8 @@ pub(super) struct Measure {
     pub residual: f64,
     /// The same in the unit of `w`.
     pub miss: f64,
-    /// The part of the dilation left, `max mu |sigma - |w_t||`, in the unit of `w`.
+    /// What wrong dilation leaves, in the unit of `w`: the gap `mu |sigma - |w_t||` of what carries a force, or the overlap that it hides of what
+    /// carries none.
     pub dilation: f64,
     /// The same as a force, relative to the largest force (-).
     pub relative_dilation: f64,

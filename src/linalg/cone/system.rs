@@ -53,8 +53,6 @@ pub(super) struct System {
     has_bodies: bool,
     /// The place in `hull` of every pair of entries of every row, row after row.
     row_places: Vec<u32>,
-    /// The same, each of them once.
-    touched: Vec<u32>,
     /// The part of the factor that rows change.
     selection: Selection,
     /// Whether `hull` and the factor hold nothing but `base` outside that part.
@@ -222,9 +220,6 @@ impl System {
                 }
             }
         }
-        self.touched.clone_from(&self.row_places);
-        self.touched.sort_unstable();
-        self.touched.dedup();
         let touched_nodes = nodes.clone().map(|node| node as usize);
         analysis
             .factor
@@ -275,7 +270,7 @@ impl System {
         } = &mut **analysis;
         let blocks = hull.blocks_mut();
         if self.is_only_touched {
-            for &place in &self.touched {
+            for &place in &self.row_places {
                 blocks[place as usize] = base[place as usize];
             }
         } else {

@@ -5,7 +5,7 @@ use crate::linalg::cone::State;
 use crate::linalg::cone::law::ConeStatus;
 use crate::linalg::cone::problem::ConeProblem;
 use crate::linalg::cone::reduced::Reduced;
-use crate::linalg::cone::system::{Fit, System};
+use crate::linalg::cone::system::System;
 
 impl Proximal {
     /// Solves on the pieces of the law that rows were on last, and keeps that if it is nearer to the answer; returns the size of the
@@ -35,17 +35,8 @@ impl Proximal {
             };
             problem.push(row, 1.0, force, &mut self.step);
         }
-        let is_solved = system.fit(problem, &self.weights) == Fit::None
-            && system.spent() < most
-            && system.solve_changed(&self.weights, &mut self.step);
-        if !is_solved {
-            if system.fit(problem, &self.weights) == Fit::None
-                && (system.spent() >= most || system.factorize(problem, &self.weights).is_err())
-            {
-                return None;
-            }
-            system.solve(&mut self.step);
-        }
+        let fit = system.fit(problem, &self.weights);
+        self.find_step(problem, system, (fit, true), most)?;
         self.evaluate(problem, reduced, state);
         let before = self.energy;
         self.trace_step(problem);

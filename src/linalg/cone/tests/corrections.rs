@@ -1,6 +1,7 @@
 //! Factors that are corrected where few weights have changed, and the warm start that makes it possible.
 
 use super::piles::pile;
+use super::soft::soft_block;
 use super::*;
 use crate::linalg::cone::system::System;
 use crate::math::sin_cos;
@@ -79,29 +80,28 @@ fn a_factor_of_other_rows_is_not_corrected() -> Result<(), Box<dyn std::error::E
     Ok(())
 }
 
-/// A factor whose part that rows change is made anew is the whole one, to the last bit: also after rows have come and gone, and after the
-/// matrix has changed.
+/// Where rows touch some nodes of many, the factor is that of a system that knows nothing yet: also after rows have come and gone, and after the
+/// matrix has changed where no row touches it.
 #[test]
 fn only_what_rows_touch_is_made_anew() -> Result<(), Box<dyn std::error::Error>> {
-    let mut scene = pile(4, 4, |_| 1.0, 0.01);
+    let mut scene = soft_block([8, 6], 0.3, 0.5);
+    let inner = scene.matrix.n_nodes() - 1;
     let mut system = System::default();
     for round in 0..6 {
-        let mut part = scene.clone();
-        part.rows.truncate(scene.rows.len() - 3 * (round % 3));
         if round == 4 {
-            scene.matrix.add_diagonal(2, [0.5, 0.25]);
+            scene.matrix.add_diagonal(inner, [0.5, 0.25]);
         }
+        let mut part = scene.clone();
+        part.rows.truncate(scene.rows.len() - round % 3);
+        part.entries.truncate(part.rows.len());
         let problem = part.problem();
+        assert!(problem.entries.iter().all(|one| one.node < 8));
         system.prepare(&problem)?;
-        let mut fresh = prepared(&problem);
         for shift in 0..3 {
-            let weights: Vec<[f64; 3]> = problem
-                .rows
-                .iter()
-                .enumerate()
-                .map(|(index, row)| piece(row, index + shift + round))
-                .collect();
+            let piece_of = |(index, row)| piece(row, index + shift + round);
+            let weights: Vec<[f64; 3]> = problem.rows.iter().enumerate().map(piece_of).collect();
             system.factorize(&problem, &weights)?;
+            let mut fresh = prepared(&problem);
             fresh.factorize(&problem, &weights)?;
             let load: Vec<f64> = (0..problem.load.len())
                 .map(|dof| sin_cos(dof as f64).0)
@@ -111,14 +111,58 @@ fn only_what_rows_touch_is_made_anew() -> Result<(), Box<dyn std::error::Error>>
             fresh.solve(&mut y);
             let largest = y.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
             // the patterns of both may differ, and with them the order of additions
-            assert!(
-                x.iter()
-                    .zip(&y)
-                    .all(|(x, y)| (x - y).abs() < 1e-11 * largest)
-            );
+            let is_same = |(x, y): (&f64, &f64)| (x - y).abs() < 1e-11 * largest;
+            assert!(x.iter().zip(&y).all(is_same), "round {round}, {shift}");
         }
     }
     Ok(())
+}
+
+/// A weight so large that the rest is lost beside it cannot be taken out again: told, and nothing is changed.
+#[test]
+fn what_leaves_nothing_of_a_direction_is_not_corrected() -> Result<(), Box<dyn std::error::Error>> {
+    let mut scene = Scene::bodies(&[[1.0, 1.0]]);
+    scene.row(
+        ConeLaw::Bilateral,
+        [0.0; 2],
+        [1.0; 2],
+        &[(0, [1.0, 0.0], [0.0; 2])],
+    );
+    let problem = scene.problem();
+    let mut system = prepared(&problem);
+    system.factorize(&problem, &[[1e18, 0.0, 0.0]])?;
+    let mut x = vec![1.0; 4];
+    assert!(!system.solve_changed(&[[0.0; 3]], &mut x));
+    assert_eq!(x, [1.0; 4]);
+    Ok(())
+}
+
+/// An open contact whose dilation is more than it slides overlaps unseen by its law, and numbers that are none miss nothing: neither is an answer.
+#[test]
+fn hidden_overlaps_and_no_numbers_are_no_answers() {
+    let mut scene = Scene::bodies(&[[2.0, 0.3]]);
+    let grips = Scene::grips(0, 1.0, [0.0, 1.0], [0.0, -0.5]);
+    scene.row(
+        ConeLaw::Contact { friction: 0.5 },
+        [-0.3, 0.4],
+        [0.5; 2],
+        &grips,
+    );
+    let problem = scene.problem();
+    let settings = ConeSettings::default();
+    let mut reduced = Reduced::default();
+    reduced.restate(&problem);
+    let judge = |a: &[f64], slip: f64| {
+        let mut status = [ConeStatus::Open];
+        reduced.measure(&problem, a, &[[0.0; 2]], &[slip], &settings, &mut status)
+    };
+    // 0.5 (1.2 - 0.4) hides 0.3
+    let hidden = judge(&[0.0; 4], 1.2);
+    assert!(hidden.residual == 0.0 && (hidden.dilation - 0.3).abs() < 1e-15);
+    assert!(!hidden.is_within(&settings, 0.0));
+    assert!(!judge(&[f64::NAN; 4], 0.4).is_within(&settings, 0.0));
+    let apart = judge(&[0.0, 0.3, 0.0, 0.0], 0.4);
+    assert!(apart.is_within(&settings, 0.0), "{apart:?}");
 }
 
 /// A body that flies past another one, near and without a force, is solved before it is begun.

@@ -2,10 +2,8 @@
 
 use super::*;
 
-#[test]
-fn a_soft_block_rests_and_slides_on_the_nodes_of_its_edge() {
-    // a lattice of springs with its mass in the nodes, pressed on the ground and pulled sideways
-    let (wide, high) = (12, 5);
+/// A lattice of springs with its mass in the nodes, pressed on the ground by the nodes of its lowest row, the first ones, and pulled sideways.
+pub(super) fn soft_block([wide, high]: [usize; 2], pull: f64, friction: f64) -> Scene {
     let at = |i: usize, j: usize| i + wide * j;
     let mut cells: Vec<[usize; 2]> = Vec::new();
     for j in 0..high {
@@ -34,23 +32,29 @@ fn a_soft_block_rests_and_slides_on_the_nodes_of_its_edge() {
     }
     let n_nodes = wide * high;
     (0..n_nodes).for_each(|node| matrix.add_diagonal(node, [1.0; 2]));
+    let load = (0..n_nodes).flat_map(|_| [pull * 10.0, -10.0]).collect();
+    let mut scene = Scene {
+        matrix,
+        load,
+        rows: Vec::new(),
+        entries: Vec::new(),
+    };
+    for i in 0..wide {
+        scene.row(
+            ConeLaw::Contact { friction },
+            [0.0; 2],
+            [1.0; 2],
+            &[(at(i, 0), [0.0, 1.0], [1.0, 0.0])],
+        );
+    }
+    scene.estimate();
+    scene
+}
+
+#[test]
+fn a_soft_block_rests_and_slides_on_the_nodes_of_its_edge() {
     for (pull, friction) in [(0.3, 0.5), (0.9, 0.5)] {
-        let load = (0..n_nodes).flat_map(|_| [pull * 10.0, -10.0]).collect();
-        let mut scene = Scene {
-            matrix: matrix.clone(),
-            load,
-            rows: Vec::new(),
-            entries: Vec::new(),
-        };
-        for i in 0..wide {
-            scene.row(
-                ConeLaw::Contact { friction },
-                [0.0; 2],
-                [1.0; 2],
-                &[(at(i, 0), [0.0, 1.0], [1.0, 0.0])],
-            );
-        }
-        scene.estimate();
+        let scene = soft_block([12, 5], pull, friction);
         let answer = solve(&scene);
         let (violated, missing) = violation(&scene, &answer);
         assert!(
