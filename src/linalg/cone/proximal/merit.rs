@@ -136,3 +136,101 @@ impl Proximal {
         least(start, slope)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::block_matrix::BlockMatrix;
+    use crate::linalg::cone::problem::{ConeEntry, ConeLaw};
+
+    /// A point between a wall that it slides along and a motor.
+    fn with_problem(check: impl Fn(&ConeProblem)) {
+        let mut matrix = BlockMatrix::from_cells(1, [[0]].iter().map(|cell| &cell[..]));
+        matrix.add_diagonal(0, [4.0, 3.0]);
+        let row = |entry: u32, law, free| ConeRow {
+            entries: (entry, entry + 1),
+            law,
+            free,
+            give: [0.01, 0.02],
+            acted: [0.3, 0.1],
+            scale: [0.3, 0.25],
+        };
+        let rows = [
+            row(0, ConeLaw::Contact { friction: 0.5 }, [-0.4, 0.7]),
+            row(
+                1,
+                ConeLaw::Box {
+                    low: -0.2,
+                    high: 0.5,
+                },
+                [0.1, 0.0],
+            ),
+        ];
+        let entries = [([0.6, 0.8], [-0.8, 0.6]), ([1.0, -0.5], [0.0; 2])];
+        let entries = entries.map(|(normal, tangent)| ConeEntry {
+            node: 0,
+            normal,
+            tangent,
+        });
+        let load = [1.0, -2.0];
+        check(&ConeProblem {
+            matrix: &matrix,
+            load: &load,
+            rows: &rows,
+            entries: &entries,
+        });
+    }
+
+    /// Differences of the energy give the imbalance; what is carried along a step is what is found at its end; and the search ends where the
+    /// energy is least along it.
+    #[test]
+    fn the_merit_is_one_function_at_a_place_and_along_a_step() {
+        with_problem(|problem| {
+            let mut reduced = Reduced::default();
+            reduced.restate(problem);
+            let mut merit = Proximal::default();
+            merit.penalize(&reduced, 10.0);
+            for at in [[0.1, -0.2], [2.0, 1.0], [-1.0, 0.4], [0.0, -3.0]] {
+                let state_at = |x: [f64; 2]| State {
+                    forces: vec![[0.7, -0.2], [0.1, 0.0]],
+                    slip: vec![0.3, 0.0],
+                    a: x.to_vec(),
+                    ..State::default()
+                };
+                let energy = |merit: &mut Proximal, x: [f64; 2]| {
+                    let state = state_at(x);
+                    merit.place(problem, &reduced, &state);
+                    merit.evaluate(problem, &reduced, &state);
+                    merit.energy
+                };
+                let h = 1e-6;
+                for k in 0..2 {
+                    let (mut less, mut more) = (at, at);
+                    (less[k], more[k]) = (at[k] - h, at[k] + h);
+                    let change = energy(&mut merit, more) - energy(&mut merit, less);
+                    energy(&mut merit, at);
+                    let slope = merit.imbalance[k];
+                    assert!((change / (2.0 * h) - slope).abs() < 1e-7 * (1.0 + slope.abs()));
+                }
+                merit.step = merit.imbalance.iter().map(|value| -0.2 * value).collect();
+                merit.trace_step(problem);
+                let length = merit.search(problem, &reduced, &state_at(at));
+                let along = |length: f64| [0, 1].map(|k| at[k] + length * merit.step[k]);
+                let places = [0.0, 0.8 * length, length, 1.2 * length].map(along);
+                let [start, short, end, long] = places.map(|x| energy(&mut merit.clone(), x));
+                let least = short.min(long);
+                assert!(end < start && end <= least + 0.02 * (start - end), "{at:?}");
+                let mut state = state_at(at);
+                merit.place(problem, &reduced, &state);
+                merit.go(&mut state, length);
+                let carried = merit.evaluate(problem, &reduced, &state);
+                let carried = (carried, merit.energy);
+                merit.place(problem, &reduced, &state);
+                let anew = merit.evaluate(problem, &reduced, &state);
+                assert!(
+                    (carried.0 - anew).abs() < 1e-12 && (carried.1 - merit.energy).abs() < 1e-12
+                );
+            }
+        });
+    }
+}
