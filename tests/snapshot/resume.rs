@@ -287,3 +287,21 @@ fn a_body_of_hookes_law_at_large_strain_restored_after_every_step_never_differs(
         .expect("the description is right");
     step_by_step(run, 120);
 }
+
+/// Enough contacts for the sparse problem, which keeps patterns and factors of the step before.
+#[test]
+fn a_pile_restored_after_every_step_never_differs() {
+    let mut run = Run::new();
+    let plank = FlexBodyBuilder::rectangle([3.0, 0.2], [24, 2])
+        .pin_where(|[x, _]| x == 0.0 || x == 3.0, Pin::both())
+        .translation([-1.5, 0.5]);
+    run.flexible(plank.material(rubber()).friction(0.5));
+    for row in 0..5 {
+        for column in 0..5 {
+            let [x, y] = [f64::from(column), f64::from(row)];
+            let at = [-1.0 + 0.45 * x + 0.07 * y, 1.0 + 0.42 * y];
+            run.rigid(at, ColliderBuilder::cuboid(0.2, 0.2));
+        }
+    }
+    step_by_step(run, 120);
+}

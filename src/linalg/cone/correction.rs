@@ -48,7 +48,7 @@ pub(super) struct Correction {
     places: Vec<usize>,
     /// `1 + E G Z` beside `E G y`, line after line.
     dense: Vec<f64>,
-    /// Substitutions so far.
+    /// Substitutions for the problem at hand.
     pub n_substitutions: usize,
 }
 
