@@ -268,6 +268,8 @@ pub struct Island {
     /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.
     pub(super) pressed_before: Vec<[usize; 2]>,
     pub(super) solver: Solver,
+    /// Pivots and factorizations of contact problems since the solve began.
+    pub(super) n_pivots: usize,
     pub(super) newton: Newton,
 }
 
@@ -294,6 +296,20 @@ impl Island {
     /// # Errors
     /// If a number is not finite.
     pub fn solve(
+        &mut self,
+        settings: &SolveSettings,
+        memory: &ContactMemory,
+        reserve: &mut f64,
+    ) -> Result<IslandSummary, KktError> {
+        self.n_pivots = 0;
+        let summary = self.solve_stages(settings, memory, reserve)?;
+        Ok(IslandSummary {
+            n_pivots: self.n_pivots,
+            ..summary
+        })
+    }
+
+    fn solve_stages(
         &mut self,
         settings: &SolveSettings,
         memory: &ContactMemory,
@@ -366,39 +382,6 @@ impl Island {
             }
         }
         settings.may_be_cut && is_ambiguous
-    }
-
-    /// Counts what lasting forces do beyond their time in a part of a step. `1 - β1` of a force acts in the part that follows, as long as that
-    /// is, and is counted where it is found, as if that were as long as the step: sums over any parts balance momentum then, and what rests
-    /// carries its weight in each of them.
-    fn count_late_forces(&mut self, settings: &SolveSettings) {
-        let late = (1.0 - settings.b1 / settings.dt) * (settings.whole - settings.dt);
-        for contact in &mut self.contacts {
-            if !contact.is_hard {
-                let (now, before) = (contact.lasting(), contact.remembered.lasting);
-                contact.late = [0, 1].map(|axis| late * (now[axis] - before[axis]));
-            }
-        }
-    }
-
-    /// Leaves on every flexible block the contact forces that acted, those of impulses included.
-    fn publish_forces(&mut self, dt: f64) {
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.clear_contact_force();
-            }
-        }
-        for contact in &self.contacts {
-            let force = contact.force(dt);
-            Self::spread(
-                &mut self.blocks,
-                &contact.kinematics,
-                force,
-                None,
-                |block, node, force, lever| block.add_contact_force(node, force, lever),
-            );
-        }
-        self.publish_joint_forces(dt);
     }
 
     pub(super) fn scene<'a>(

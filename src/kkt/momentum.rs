@@ -1,15 +1,48 @@
-//! Angular momentum of bodies that touch each other, or themselves, and nothing else.
+//! The forces that acted, and the angular momentum of bodies that touch each other, or themselves, and nothing else.
 //!
 //! The multipliers of a contact have no resultant and no couple, so linear momentum is kept to rounding. Angular momentum
 //! `Σ (x - C) × m (v - V) + L` is not: a contact that closes within the step acts at the levers of the step's end, and
 //! positions are corrected without their velocities. The error, of the first order in the step, is taken out by turning the
 //! velocities of the whole group rigidly, which changes no relative velocity at any contact.
 
-use super::island::Island;
+use super::island::{Island, SolveSettings};
 use crate::math::{Vec2, cross, perp};
-use crate::system::Moments;
+use crate::system::{Block, Moments};
 
 impl Island {
+    /// Counts what lasting forces do beyond their time in a part of a step. `1 - β1` of a force acts in the part that follows, as long as that
+    /// is, and is counted where it is found, as if that were as long as the step: sums over any parts balance momentum then, and what rests
+    /// carries its weight in each of them.
+    pub(super) fn count_late_forces(&mut self, settings: &SolveSettings) {
+        let late = (1.0 - settings.b1 / settings.dt) * (settings.whole - settings.dt);
+        for contact in &mut self.contacts {
+            if !contact.is_hard {
+                let (now, before) = (contact.lasting(), contact.remembered.lasting);
+                contact.late = [0, 1].map(|axis| late * (now[axis] - before[axis]));
+            }
+        }
+    }
+
+    /// Leaves on every flexible block the contact forces that acted, those of impulses included.
+    pub(super) fn publish_forces(&mut self, dt: f64) {
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.clear_contact_force();
+            }
+        }
+        for contact in &self.contacts {
+            let force = contact.force(dt);
+            Self::spread(
+                &mut self.blocks,
+                &contact.kinematics,
+                force,
+                None,
+                |block, node, force, lever| block.add_contact_force(node, force, lever),
+            );
+        }
+        self.publish_joint_forces(dt);
+    }
+
     /// Restores the angular momentum of every group of free bodies that touch, each other or themselves.
     pub(super) fn balance_angular_momentum(&mut self) {
         self.groups.clear();

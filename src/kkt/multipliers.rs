@@ -43,7 +43,6 @@ impl Island {
                 unit: settings.b0,
             };
             let outcome = self.solve_sparse(asked)?;
-            summary.n_pivots += outcome.n_factorizations;
             summary.residual = outcome.residual;
             self.read_multipliers();
             return Ok(());
@@ -77,7 +76,7 @@ impl Island {
             self.solver
                 .solve(&problem, &mut self.multipliers, &mut self.statuses)
         })?;
-        summary.n_pivots += outcome.n_pivots;
+        self.n_pivots += outcome.n_pivots;
         summary.residual = outcome.residual;
         self.read_multipliers();
         Ok(())

@@ -110,6 +110,9 @@ impl Island {
         let outcome = self.state_sparse(&mut sparse, asked);
         let outcome = outcome.and_then(|()| self.answer_sparse(&mut sparse, asked));
         self.sparse = sparse;
+        self.n_pivots += outcome
+            .as_ref()
+            .map_or(0, |outcome| outcome.n_factorizations);
         outcome
     }
 

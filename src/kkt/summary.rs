@@ -5,7 +5,7 @@
 pub struct IslandSummary {
     /// Newton iterations.
     pub n_newton: usize,
-    /// Pivots (active-set iterations) of the complementarity solver.
+    /// Pivots (active-set iterations) of the complementarity solver and factorizations of sparse contact problems, in all stages.
     pub n_pivots: usize,
     /// Natural-map residual of the last complementarity solve.
     pub residual: f64,

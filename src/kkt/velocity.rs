@@ -270,13 +270,14 @@ impl Island {
             rows: &self.kinds,
             acted: &self.acted,
         };
-        (if has_joints {
+        let outcome = (if has_joints {
             self.solver
                 .solve_condensed(&problem, &mut self.multipliers, &mut self.statuses)
         } else {
             self.solver
                 .solve(&problem, &mut self.multipliers, &mut self.statuses)
         })?;
+        self.n_pivots += outcome.n_pivots;
         Ok(())
     }
 

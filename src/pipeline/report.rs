@@ -352,7 +352,7 @@ impl StepReport {
         self.n_held
     }
 
-    /// Pivots of the complementarity solver, summed over the islands.
+    /// Pivots of the complementarity solver and factorizations of sparse contact problems, in all stages, summed over the islands.
     pub fn n_pivots(&self) -> usize {
         self.n_pivots
     }
