@@ -86,7 +86,6 @@ fn a_soft_disc_dropped_on_a_polyline_bounces_and_comes_to_rest_in_equilibrium() 
 }
 
 #[test]
-#[ignore = "open: it rolls by 2.4 m in 25 s and stays awake"]
 fn a_soft_disc_at_rest_stays_and_falls_asleep() {
     let mut scene = Scene::new(1.0 / 60.0);
     scene.fixed(ground_of(Made::Cuboid, Relief::Flat, 200.0).friction(0.5));
@@ -143,7 +142,6 @@ fn soft_squares_fall_asleep() {
 }
 
 #[test]
-#[ignore = "open: discs are awake after 20 s, squares sleep after 3.2 s"]
 fn soft_discs_fall_asleep_as_soft_squares_do() {
     let squares = time_to_sleep(|| FlexBodyBuilder::rectangle([0.4, 0.4], [5, 5]));
     let discs = time_to_sleep(|| FlexBodyBuilder::disc(0.2, 0.1));
