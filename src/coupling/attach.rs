@@ -43,6 +43,13 @@ impl FlexBodySet {
         };
         let anchors = self.anchors_of(&plan, target, &places, bodies)?;
         self.check_near(&plan, target, (&places, &anchors), bodies)?;
+        if plan.kind == AttachmentKind::Weld {
+            let held: Vec<Vec2> = anchors
+                .iter()
+                .map(|anchor| self.world_point(target, anchor, bodies))
+                .collect();
+            check_strain(body, &nodes, &places, &held)?;
+        }
         let kind = match plan.kind {
             AttachmentKind::Spring {
                 stiffness, damping, ..
@@ -165,6 +172,34 @@ fn extent(body: &FlexBody) -> f64 {
         corners = [corners[0].inf(&node), corners[1].sup(&node)];
     }
     (corners[1] - corners[0]).norm()
+}
+
+/// Change of length, relative, that a weld may ask of a boundary segment (-): half of it is gone, or as much again and half is added.
+const MOST_STRAIN: f64 = 0.5;
+
+/// Refuses to hold neighbouring nodes at places that are much nearer to each other, or farther apart, than the nodes: what is between them
+/// would be crushed or torn.
+fn check_strain(
+    body: &FlexBody,
+    nodes: &[usize],
+    places: &[Vec2],
+    held: &[Vec2],
+) -> Result<(), AttachmentError> {
+    let index = |node: usize| nodes.iter().position(|&chosen| chosen == node);
+    for &segment in body.mesh().boundary().segments() {
+        let [Some(from), Some(to)] = segment.map(index) else {
+            continue;
+        };
+        let [length, held] = [places, held].map(|at| (at[to] - at[from]).norm());
+        if (held - length).abs() > MOST_STRAIN * length {
+            return Err(AttachmentError::Strained {
+                nodes: segment,
+                length,
+                held,
+            });
+        }
+    }
+    Ok(())
 }
 
 /// The nodes of a choice, checked.

@@ -195,7 +195,9 @@ impl Play {
         };
         let is_flexible = matches!(target, AttachmentTarget::Flexible(_));
         let attached = match scene.bodies.attach(builder, &scene.world.bodies) {
-            Err(AttachmentError::TooFar { .. }) if is_flexible => {
+            Err(AttachmentError::TooFar { .. } | AttachmentError::Strained { .. })
+                if is_flexible =>
+            {
                 self.n_refused += 1;
                 return Ok("attach from too far");
             }

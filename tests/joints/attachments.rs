@@ -333,6 +333,7 @@ fn wrong_descriptions_are_refused() {
             .translation([0.0, 5.0])
             .pin_where(is_left_end, Pin::both()),
     );
+    let above = scene.flexible(beam().translation([1.8, 0.25]));
     let carrier = scene.body(pinned).rigid_body_handle();
     let inside = scene
         .body(one)
@@ -347,7 +348,12 @@ fn wrong_descriptions_are_refused() {
             .node(0)
             .to_world()
     };
-    let cases: [(AttachmentBuilder, &str); 14] = [
+    let upper_face = |beyond: f64| {
+        AttachmentBuilder::weld(one)
+            .where_(move |[x, y]| x > beyond && y > 0.199)
+            .to_flexible(above)
+    };
+    let cases: [(AttachmentBuilder, &str); 15] = [
         (pin(), "no target"),
         (AttachmentBuilder::pin(one).to_world(), "holds no node"),
         (
@@ -385,6 +391,8 @@ fn wrong_descriptions_are_refused() {
                 .to_world(),
             "pinned by the builder",
         ),
+        // Some nodes lie beside the other body: all have its corner nearest.
+        (upper_face(1.55), "along the other body's surface"),
     ];
     for (builder, words) in cases {
         let error = scene
@@ -395,6 +403,9 @@ fn wrong_descriptions_are_refused() {
         assert!(error.contains(words), "{error}");
     }
     assert_eq!(scene.bodies.iter_attachments().count(), 0);
+    // Those along it may.
+    let handle = attach(&mut scene, upper_face(1.75));
+    scene.bodies.detach(handle).expect("it lives");
     // An integrator that cannot hold them says so.
     attach(&mut scene, pin().to_world());
     scene.flex = FlexPipeline::new()

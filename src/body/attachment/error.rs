@@ -54,6 +54,19 @@ pub enum AttachmentError {
         /// Largest distance that is closed (m).
         most: f64,
     },
+    /// A weld would hold neighbouring nodes much nearer to each other than they are, or farther apart, as where nodes lie beside the other
+    /// body and all have its corner nearest.
+    #[error(
+        "nodes {} and {} are {length} m apart and the weld would hold them {held} m apart: choose only nodes that lie along the other body's surface", nodes[0], nodes[1]
+    )]
+    Strained {
+        /// The nodes, neighbours on the boundary.
+        nodes: [usize; 2],
+        /// Their distance (m).
+        length: f64,
+        /// The distance of the points where they would be held (m).
+        held: f64,
+    },
     /// Stiffness, damping or length is negative.
     #[error("{0} is negative: give zero or more")]
     Negative(&'static str),
