@@ -318,6 +318,9 @@ impl FlexBlock {
         );
         let mut last: Option<Evaluation> = None;
         let (mut n_cuts, mut n_iterations, mut n_guesses) = (0, 0, 0);
+        // Whether the factor is that of where the last increment began.
+        let mut is_fresh = false;
+        let mut renews = false;
         loop {
             let outcome = equation.evaluate(&self.position, deformation, residual, reaction);
             // Forces that rounding of the positions makes, which may grow and shrink as they like.
@@ -342,6 +345,14 @@ impl FlexBlock {
                     }
                     continue;
                 }
+                if !is_fresh {
+                    // Taken back whole: another factor leads elsewhere.
+                    for (x, increment) in self.position.iter_mut().zip(&self.local) {
+                        *x -= *increment;
+                    }
+                    (last, renews) = (None, true);
+                    continue;
+                }
                 n_cuts += 1;
                 // What is left of the increment is taken back at last: no place counts that was not looked at.
                 let part = if n_cuts > MOST_CUTS { 1.0 } else { 0.5 };
@@ -363,7 +374,8 @@ impl FlexBlock {
             if has_ended {
                 return 0.0;
             }
-            if is_slow {
+            is_fresh = is_slow || std::mem::take(&mut renews);
+            if is_fresh {
                 self.n_factorizations += 1;
                 let matrices = (&mut *tangent, &mut self.effective);
                 let found = factorize(&equation, scale, deformation, matrices, &mut self.factor);
