@@ -313,9 +313,16 @@ impl FeasiblePath {
             self.search
                 .time_of_impact(&self.surfaces, &self.motion, &self.pairs, &mut self.hits);
         let part = impact.t.min(own).min(self.turning_part(blocks));
+        let part = part.min(reach_of(blocks));
         self.look_back(part);
         self.go(part, blocks);
         part >= 1.0
+    }
+
+    /// Nodes of a flexible block at the base, interleaved (m).
+    pub(super) fn base_of(&self, block: usize, n_dofs: usize) -> Option<&[f64]> {
+        let first = self.base.get(block)?.nodes?;
+        self.nodes.get(first..first + n_dofs)
     }
 
     /// Puts the points of a member where the step begins.
@@ -429,6 +436,14 @@ impl FeasiblePath {
             }
         }
     }
+}
+
+/// The part of the way on which no cell of a block that is led turns over.
+fn reach_of(blocks: &[Block]) -> f64 {
+    blocks.iter().fold(1.0, |part, block| match block {
+        Block::Flex(body) => part.min(body.part_ahead()),
+        Block::Rigid(_) => part,
+    })
 }
 
 fn angle_of(block: &Block) -> f64 {

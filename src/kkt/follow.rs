@@ -84,6 +84,7 @@ impl Island {
         self.departure.is_known = false;
         self.softness = 0.0;
         self.left.clear();
+        self.tell_base();
         if self.try_passes(settings, memory, tolerance, summary) {
             return Passed::Solved;
         }
@@ -133,6 +134,7 @@ impl Island {
             }
             if !misleads {
                 arrives = self.path.advance(&self.blocks);
+                self.tell_base();
                 if !arrives {
                     self.path.list_stopping(&mut self.left);
                 }
@@ -163,6 +165,7 @@ impl Island {
                 self.keep_arrival();
             }
             if !misleads && !listing.keeps_rows && self.path.retreat(&self.blocks) {
+                self.tell_base();
                 self.list_near(&Listing {
                     is_again: true,
                     ..listing
@@ -187,6 +190,18 @@ impl Island {
             turned = self.correct();
         }
         false
+    }
+
+    /// Tells the blocks of large strain where the base is.
+    fn tell_base(&mut self) {
+        for (index, block) in self.blocks.iter_mut().enumerate() {
+            if let Block::Flex(block) = block
+                && block.is_large()
+                && let Some(base) = self.path.base_of(index, block.positions().len())
+            {
+                block.set_base(base);
+            }
+        }
     }
 
     /// Whether the blocks' iterate consists of numbers: what is none is passed over by every search.

@@ -1,11 +1,15 @@
 //! What a feasible path asks of a flexible block: where it begins, how far its frame has turned, and to stop on the way.
 
 use super::flex_block::FlexBlock;
+use super::large_block::{Large, NOT_FOUND, equation_of, factorize};
 use crate::body::{Frame, FrameMotion};
 use crate::fe::model::Model;
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::math::{Vec2, node_vec, rotation, set_node_vec};
 use crate::path::clearance;
+
+/// Part of a way that is too short to be gone (-).
+const LEAST_PART: f64 = 1e-3;
 
 impl FlexBlock {
     /// `A` in the frame, pinned dofs taken out.
@@ -49,6 +53,118 @@ impl FlexBlock {
     /// Angle of the frame at the iterate (rad).
     pub fn angle(&self) -> f64 {
         self.frame.angle
+    }
+
+    /// Tells where the base of the path is (m); what is led goes on from there.
+    pub fn set_base(&mut self, positions: &[f64]) {
+        let Some(mut large) = self.large.take() else {
+            return;
+        };
+        large.led.base.clear();
+        large.led.base.extend_from_slice(positions);
+        let is_led = large.led.is_led;
+        if is_led {
+            self.linearize_at_base(&mut large);
+        }
+        self.large = Some(large);
+        if is_led {
+            self.follow_positions();
+        }
+    }
+
+    /// Share of the way from the base to the iterate that may be gone (-).
+    pub fn part_ahead(&self) -> f64 {
+        let led = self.large.as_ref().map(|large| &large.led);
+        led.filter(|led| led.is_led).map_or(1.0, |led| led.reach)
+    }
+
+    /// Puts the iterate where one Newton step from the base leads under the contact forces given.
+    pub(super) fn linearize_at_base(&mut self, large: &mut Large) {
+        let scale = self.step.weights.b0;
+        self.position.copy_from_slice(&large.led.base);
+        for &dof in &self.fixed_dofs {
+            self.position[dof] = self.model.rest_positions()[dof] + self.prescribed[dof];
+        }
+        for (dof, load) in large.load.iter_mut().enumerate() {
+            *load = self.force[dof] + self.contact_force[dof];
+        }
+        large.led.force.clear();
+        large.led.force.extend_from_slice(&self.contact_force);
+        large.led.left = f64::INFINITY;
+        let equation = equation_of(
+            &large.model,
+            &self.step,
+            [&large.load, &self.start_position, &large.coast],
+            &self.is_fixed,
+        );
+        let (residual, reaction) = (&mut large.residual, &mut large.reaction);
+        let outcome = equation.evaluate(&self.position, &mut large.deformation, residual, reaction);
+        if !outcome.is_ok_and(|now| now.norm.is_finite()) {
+            return;
+        }
+        self.n_factorizations += 1;
+        let matrices = (&mut large.tangent, &mut self.effective);
+        let deformation = &large.deformation;
+        let found = factorize(&equation, scale, deformation, matrices, &mut self.factor);
+        self.compliance.clear();
+        let Ok(found) = found else {
+            return;
+        };
+        large.row_sum = found.row_sum;
+        self.local.copy_from_slice(&large.residual);
+        large.led.left = self.go_by_local();
+    }
+
+    /// Moves what is led by what it answers to the change of the contact forces.
+    pub(super) fn answer_at_base(&mut self, large: &mut Large) {
+        let forces = self.contact_force.iter().zip(&mut large.led.force);
+        for (local, (now, known)) in self.local.iter_mut().zip(forces) {
+            *local = now - *known;
+            *known = *now;
+        }
+        for &dof in &self.fixed_dofs {
+            self.local[dof] = 0.0;
+        }
+        self.go_by_local();
+    }
+
+    /// Moves the iterate by what the forces in `local` do; returns how far a node goes, relative to the body's size.
+    fn go_by_local(&mut self) -> f64 {
+        let scale = self.step.weights.b0;
+        self.factor.solve_in_place(&mut self.local);
+        self.n_solves += 1;
+        let mut moved = 0.0f64;
+        for (x, increment) in self.position.iter_mut().zip(&self.local) {
+            *x += scale * increment;
+            moved = moved.max((scale * increment).abs());
+        }
+        moved / self.size
+    }
+
+    /// Finds how far towards the iterate no cell turns over; returns how far the body is from its end, relative to its size.
+    pub(super) fn look_ahead(&mut self, large: &mut Large) -> f64 {
+        let equation = equation_of(
+            &large.model,
+            &self.step,
+            [&large.load, &self.start_position, &large.coast],
+            &self.is_fixed,
+        );
+        let led = &mut large.led;
+        led.reach = 1.0;
+        while led.reach > LEAST_PART {
+            led.place.clear();
+            let way = led.base.iter().zip(&self.position);
+            led.place
+                .extend(way.map(|(from, to)| from + led.reach * (to - from)));
+            let (residual, reaction) = (&mut large.residual, &mut large.reaction);
+            let outcome = equation.evaluate(&led.place, &mut large.deformation, residual, reaction);
+            if outcome.is_ok_and(|now| now.norm.is_finite()) {
+                break;
+            }
+            led.reach *= 0.5;
+        }
+        led.left
+            .max(NOT_FOUND * f64::from(u8::from(led.reach < 1.0)))
     }
 
     /// Puts the nodes where the step could go (m), with the velocities and accelerations that its forces lead to.

@@ -17,6 +17,7 @@
 use super::compliance::Compliance;
 use super::explicit_block::Explicit;
 use super::flex_block::FlexBlock;
+use super::large_led::Led;
 use super::step::Step;
 use crate::body::{FlexState, Frame};
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Form, Linearization};
@@ -44,7 +45,7 @@ const MOST_GROWTH: f64 = 4.0;
 const MOST_CUTS: usize = 6;
 
 /// What is told of an end that was not found: further than any that may count.
-const NOT_FOUND: f64 = 1e3;
+pub(super) const NOT_FOUND: f64 = 1e3;
 
 /// Iterations under given contact forces.
 const MOST_ITERATIONS: usize = 24;
@@ -53,12 +54,12 @@ const MOST_ITERATIONS: usize = 24;
 #[derive(Clone, Debug)]
 pub(super) struct Large {
     pub(super) model: Arc<FiniteStrainModel>,
-    deformation: Deformation,
-    tangent: BlockMatrix,
+    pub(super) deformation: Deformation,
+    pub(super) tangent: BlockMatrix,
     /// `x + dt v` (m).
-    coast: Vec<f64>,
+    pub(super) coast: Vec<f64>,
     /// Mean force over the step, applied and of contacts (N).
-    load: Vec<f64>,
+    pub(super) load: Vec<f64>,
     pub(super) residual: Vec<f64>,
     /// Mean force that holds the held dofs (N).
     pub(super) reaction: Vec<f64>,
@@ -72,11 +73,12 @@ pub(super) struct Large {
     is_ambiguous: bool,
     /// Whether what is not found without detours need not be found: the step is cut then.
     may_give_up: bool,
+    pub(super) led: Led,
 }
 
 /// What a factorization has found.
-struct Factored {
-    row_sum: f64,
+pub(super) struct Factored {
+    pub row_sum: f64,
     /// Whether the tangent itself was definite.
     is_definite: bool,
 }
@@ -87,7 +89,7 @@ pub(super) fn total_decay(step: &Step, damping: Rayleigh) -> f64 {
 }
 
 /// The equation of a step under `load` from `start` by way of `coast`.
-fn equation_of<'a>(
+pub(super) fn equation_of<'a>(
     model: &'a FiniteStrainModel,
     step: &Step,
     [load, start, coast]: [&'a [f64]; 3],
@@ -118,7 +120,7 @@ const SHIFT: f64 = 1e-14;
 ///
 /// Cells that are all but flat are so stiff that rounding may leave their definite part indefinite: more and more is added to its diagonal
 /// then, which makes the iteration slower, not wrong.
-fn factorize(
+pub(super) fn factorize(
     equation: &Equation<'_>,
     scale: f64,
     deformation: &Deformation,
@@ -174,6 +176,7 @@ impl FlexBlock {
             row_sum: 0.0,
             is_ambiguous: false,
             may_give_up: false,
+            led: Led::default(),
             model: large,
         }));
         block
@@ -207,6 +210,7 @@ impl FlexBlock {
         let Some(large) = &mut self.large else {
             return Ok(());
         };
+        large.led.forget();
         large.model.begin(&state.position, &mut large.deformation);
         for (dof, coast) in large.coast.iter_mut().enumerate() {
             *coast = state.position[dof] + dt * state.velocity[dof];
@@ -272,13 +276,25 @@ impl FlexBlock {
         let Some(mut large) = self.large.take() else {
             return 0.0;
         };
-        let left = self.iterate_large(&mut large);
+        let mut left = NOT_FOUND;
+        if large.led.is_near() {
+            left = self.iterate_large(&mut large);
+            large.led.is_led = left > 0.0 && !large.may_give_up && large.led.has_base();
+            if large.led.is_led {
+                self.linearize_at_base(&mut large);
+            }
+        } else {
+            self.answer_at_base(&mut large);
+        }
+        if large.led.is_led {
+            left = self.look_ahead(&mut large);
+        }
         // Pins move at the mean velocity of their step, and what they hold gets that velocity in it, not twice as much.
         for &dof in &self.fixed_dofs {
             let late = (self.position[dof] - large.coast[dof]) / (self.step.dt * self.step.dt);
             large.reaction[dof] -= self.arms.node_mass[dof / 2] * late;
         }
-        if self.kind == Frame::Free && left.is_finite() {
+        if self.kind == Frame::Free && left.is_finite() && !large.led.is_led {
             self.balance_momentum(&large);
         }
         self.large = Some(large);
