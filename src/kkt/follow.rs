@@ -84,7 +84,7 @@ impl Island {
         self.departure.is_known = false;
         self.softness = 0.0;
         self.left.clear();
-        self.tell_base();
+        self.tell_base(false);
         if self.try_passes(settings, memory, tolerance, summary) {
             return Passed::Solved;
         }
@@ -134,7 +134,7 @@ impl Island {
             }
             if !misleads {
                 arrives = self.path.advance(&self.blocks);
-                self.tell_base();
+                self.tell_base(pass >= FEW_PASSES);
                 if !arrives {
                     self.path.list_stopping(&mut self.left);
                 }
@@ -165,7 +165,7 @@ impl Island {
                 self.keep_arrival();
             }
             if !misleads && !listing.keeps_rows && self.path.retreat(&self.blocks) {
-                self.tell_base();
+                self.tell_base(false);
                 self.list_near(&Listing {
                     is_again: true,
                     ..listing
@@ -193,13 +193,13 @@ impl Island {
     }
 
     /// Tells the blocks of large strain where the base is.
-    fn tell_base(&mut self) {
+    fn tell_base(&mut self, leads: bool) {
         for (index, block) in self.blocks.iter_mut().enumerate() {
             if let Block::Flex(block) = block
                 && block.is_large()
                 && let Some(base) = self.path.base_of(index, block.positions().len())
             {
-                block.set_base(base);
+                block.set_base(base, leads);
             }
         }
     }

@@ -56,12 +56,15 @@ impl FlexBlock {
     }
 
     /// Tells where the base of the path is (m); what is led goes on from there.
-    pub fn set_base(&mut self, positions: &[f64]) {
+    ///
+    /// - `leads`: whether the body is to be led from now on, if this is the last part of a step.
+    pub fn set_base(&mut self, positions: &[f64], leads: bool) {
         let Some(mut large) = self.large.take() else {
             return;
         };
         large.led.base.clear();
         large.led.base.extend_from_slice(positions);
+        large.led.is_led |= leads && !large.may_give_up;
         let is_led = large.led.is_led;
         if is_led {
             self.linearize_at_base(&mut large);

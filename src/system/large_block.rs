@@ -72,7 +72,7 @@ pub(super) struct Large {
     /// Whether the tangent is indefinite where the step begins: under the same forces the body may end it in more ways than one.
     is_ambiguous: bool,
     /// Whether what is not found without detours need not be found: the step is cut then.
-    may_give_up: bool,
+    pub(super) may_give_up: bool,
     pub(super) led: Led,
 }
 
