@@ -6,6 +6,7 @@ mod meetings;
 mod own;
 mod retreat;
 mod rows;
+mod straight;
 
 pub(super) use self::kept::KeptBase;
 use self::meetings::Meeting;
@@ -15,9 +16,6 @@ use crate::constraint::contact::{ContactLaw, ContactMemory, Owner};
 use crate::math::{Vec2, rotation};
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};
 use crate::system::{Block, FlexBlock, Point, RigidMotion};
-
-/// Turn of a member with near pairs within a pass (rad): rows are straight where arcs are not.
-const MOST_TURN: f64 = 0.5;
 
 /// Two members that are kept apart.
 #[derive(Clone, Copy, Debug)]
@@ -312,8 +310,7 @@ impl FeasiblePath {
         let impact =
             self.search
                 .time_of_impact(&self.surfaces, &self.motion, &self.pairs, &mut self.hits);
-        let part = impact.t.min(own).min(self.turning_part(blocks));
-        let part = part.min(reach_of(blocks));
+        let part = impact.t.min(own).min(self.straight_part(blocks));
         self.look_back(part);
         self.go(part, blocks);
         part >= 1.0
@@ -370,35 +367,6 @@ impl FeasiblePath {
         }
     }
 
-    /// The part of the way on which no block with near pairs turns too far.
-    fn turning_part(&self, blocks: &[Block]) -> f64 {
-        let mut part = 1.0f64;
-        for near in &self.near {
-            let way = &self.ways[near.pair];
-            for member in way.members {
-                if self.is_round(member) {
-                    continue;
-                }
-                let block = self.carriers[member].block;
-                let turn = (angle_of(&blocks[block]) - self.base[block].angle).abs();
-                if turn > MOST_TURN {
-                    part = part.min(MOST_TURN / turn);
-                }
-            }
-        }
-        part
-    }
-
-    /// Whether turning changes nothing of a member: it is the centre of its body.
-    fn is_round(&self, member: usize) -> bool {
-        let points = self.surfaces.members()[member].points.clone();
-        let is_centre = |own: &SurfacePoint| match own.point {
-            Point::Arm(arm) => arm == Vec2::zeros(),
-            Point::Node(_) => false,
-        };
-        self.points[points].iter().all(is_centre)
-    }
-
     fn go(&mut self, part: f64, blocks: &[Block]) {
         self.surfaces.advance(&self.motion, part);
         for (base, block) in self.base.iter_mut().zip(blocks) {
@@ -436,14 +404,6 @@ impl FeasiblePath {
             }
         }
     }
-}
-
-/// The part of the way on which no cell of a block that is led turns over.
-fn reach_of(blocks: &[Block]) -> f64 {
-    blocks.iter().fold(1.0, |part, block| match block {
-        Block::Flex(body) => part.min(body.part_ahead()),
-        Block::Rigid(_) => part,
-    })
 }
 
 fn angle_of(block: &Block) -> f64 {

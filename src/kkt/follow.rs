@@ -164,7 +164,8 @@ impl Island {
             if arrives && !has_more && turned.angle <= CLOSE_ENOUGH {
                 self.keep_arrival();
             }
-            if !misleads && !listing.keeps_rows && self.path.retreat(&self.blocks) {
+            let may_retreat = !misleads && !listing.keeps_rows && !self.is_led();
+            if may_retreat && self.path.retreat(&self.blocks) {
                 self.tell_base(false);
                 self.list_near(&Listing {
                     is_again: true,
@@ -190,6 +191,12 @@ impl Island {
             turned = self.correct();
         }
         false
+    }
+
+    /// Whether some block is led from the base: its iterate is not where the last way led any more.
+    fn is_led(&self) -> bool {
+        let is_led = |block: &Block| matches!(block, Block::Flex(block) if block.is_led());
+        self.blocks.iter().any(is_led)
     }
 
     /// Tells the blocks of large strain where the base is.

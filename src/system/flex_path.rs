@@ -1,7 +1,8 @@
 //! What a feasible path asks of a flexible block: where it begins, how far its frame has turned, and to stop on the way.
 
 use super::flex_block::FlexBlock;
-use super::large_block::{Large, NOT_FOUND, equation_of, factorize};
+use super::large_block::{Large, NOT_FOUND};
+use super::large_equation::{equation_of, factorize};
 use crate::body::{Frame, FrameMotion};
 use crate::fe::model::Model;
 use crate::linalg::block_matrix::BlockMatrix;
@@ -73,6 +74,11 @@ impl FlexBlock {
         if is_led {
             self.follow_positions();
         }
+    }
+
+    /// Whether the iterate is what one Newton step from the base finds.
+    pub fn is_led(&self) -> bool {
+        self.large.as_ref().is_some_and(|large| large.led.is_led)
     }
 
     /// Share of the way from the base to the iterate that may be gone (-).

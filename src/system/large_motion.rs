@@ -1,7 +1,8 @@
 //! The end of a step of a body of large strain: velocities, accelerations, ways back to its beginning, and the state to commit.
 
 use super::flex_block::FlexBlock;
-use super::large_block::{Large, total_decay};
+use super::large_block::Large;
+use super::large_equation::total_decay;
 use crate::body::{FlexState, Frame};
 use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec, sum_over};
 

@@ -19,6 +19,7 @@ mod flex_restart;
 mod flex_solve;
 mod flex_surface;
 mod large_block;
+mod large_equation;
 mod large_led;
 mod large_motion;
 mod link_response;

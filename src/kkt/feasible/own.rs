@@ -11,7 +11,8 @@
 //! The placement is that at rest, or where the surface has left it too far, the one that the step begins with. Where nothing is near, a
 //! surface so changes no digit of what happens to its body.
 
-use super::{FeasiblePath, MOST_TURN, Way};
+use super::straight::MOST_TURN;
+use super::{FeasiblePath, Way};
 use crate::math::{Vec2, atan2, cos, cross, node_vec, perp};
 use crate::path::MemberPair;
 use crate::system::{Block, FlexBlock};

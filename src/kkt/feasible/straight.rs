@@ -1,0 +1,47 @@
+//! The part of a way on which bodies go as straight as what is known of them.
+
+use super::{FeasiblePath, SurfacePoint, angle_of};
+use crate::math::Vec2;
+use crate::system::{Block, Point};
+
+/// Turn of a member with near pairs within a pass (rad): rows are straight where arcs are not.
+pub(super) const MOST_TURN: f64 = 0.5;
+
+impl FeasiblePath {
+    /// The part of the way on which no block with near pairs turns too far, and no cell of a block that is led turns over.
+    pub(super) fn straight_part(&self, blocks: &[Block]) -> f64 {
+        let mut part = part_of_cells(blocks);
+        for near in &self.near {
+            let way = &self.ways[near.pair];
+            for member in way.members {
+                if self.is_round(member) {
+                    continue;
+                }
+                let block = self.carriers[member].block;
+                let turn = (angle_of(&blocks[block]) - self.base[block].angle).abs();
+                if turn > MOST_TURN {
+                    part = part.min(MOST_TURN / turn);
+                }
+            }
+        }
+        part
+    }
+
+    /// Whether turning changes nothing of a member: it is the centre of its body.
+    fn is_round(&self, member: usize) -> bool {
+        let points = self.surfaces.members()[member].points.clone();
+        let is_centre = |own: &SurfacePoint| match own.point {
+            Point::Arm(arm) => arm == Vec2::zeros(),
+            Point::Node(_) => false,
+        };
+        self.points[points].iter().all(is_centre)
+    }
+}
+
+/// The part of the way on which no cell of a block that is led turns over.
+fn part_of_cells(blocks: &[Block]) -> f64 {
+    blocks.iter().fold(1.0, |part, block| match block {
+        Block::Flex(body) => part.min(body.part_ahead()),
+        Block::Rigid(_) => part,
+    })
+}

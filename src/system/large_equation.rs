@@ -1,0 +1,85 @@
+//! The equation of a step of a body of large strain, and the factor of its matrix.
+
+use super::step::Step;
+use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Form, Linearization};
+use crate::fe::material::Rayleigh;
+use crate::large::{Equation, Inertia, largest_row_sum};
+use crate::linalg::block_matrix::BlockMatrix;
+use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
+
+/// A residual that grows by more in one iteration has left the neighbourhood in which the factor means something.
+pub(super) const MOST_GROWTH: f64 = 4.0;
+
+/// What a factorization has found.
+pub(super) struct Factored {
+    pub row_sum: f64,
+    /// Whether the tangent itself was definite.
+    pub is_definite: bool,
+}
+
+/// The decay of the integrator, and the viscosity of the material as one.
+pub(super) fn total_decay(step: &Step, damping: Rayleigh) -> f64 {
+    step.decay + 2.0 * damping.stiffness / step.dt
+}
+
+/// The equation of a step under `load` from `start` by way of `coast`.
+pub(super) fn equation_of<'a>(
+    model: &'a FiniteStrainModel,
+    step: &Step,
+    [load, start, coast]: [&'a [f64]; 3],
+    is_held: &'a [bool],
+) -> Equation<'a> {
+    let (dt, damping) = (step.dt, model.damping());
+    Equation {
+        model,
+        form: Form::EnergyMomentum {
+            decay: total_decay(step, damping),
+        },
+        inertia: Inertia {
+            acceleration: 2.0 / (dt * dt),
+            drag: damping.mass / dt,
+        },
+        load,
+        start,
+        coast,
+        is_held,
+        most_growth: MOST_GROWTH,
+    }
+}
+
+/// Share of the largest row of a matrix that is added to its diagonal where rounding has left it indefinite (-).
+const SHIFT: f64 = 1e-14;
+
+/// Factorizes the tangent at the deformation last evaluated, or its definite part where it is not definite.
+///
+/// Cells that are all but flat are so stiff that rounding may leave their definite part indefinite: more and more is added to its diagonal
+/// then, which makes the iteration slower, not wrong.
+pub(super) fn factorize(
+    equation: &Equation<'_>,
+    scale: f64,
+    deformation: &Deformation,
+    (tangent, effective): (&mut BlockMatrix, &mut BlockMatrix),
+    factor: &mut BlockCholesky,
+) -> Result<Factored, CholeskyError> {
+    equation.assemble(Linearization::Consistent, deformation, tangent);
+    effective.assign_scaled(scale, tangent);
+    let is_definite = factor.factorize(effective).is_ok();
+    if !is_definite {
+        equation.assemble(Linearization::Definite, deformation, tangent);
+        effective.assign_scaled(scale, tangent);
+        let mut outcome = factor.factorize(effective);
+        let mut shift = SHIFT * scale * largest_row_sum(tangent);
+        while outcome.is_err() && shift.is_finite() && shift > 0.0 {
+            for node in 0..equation.model.n_nodes() {
+                effective.add_diagonal(node, [shift; 2]);
+            }
+            outcome = factor.factorize(effective);
+            shift *= 1e2;
+        }
+        outcome?;
+    }
+    Ok(Factored {
+        row_sum: largest_row_sum(tangent),
+        is_definite,
+    })
+}
