@@ -12,6 +12,7 @@ pub(super) use self::kept::KeptBase;
 use self::meetings::Meeting;
 use self::own::OwnWay;
 use self::retreat::LastWay;
+use self::straight::straight_part;
 use crate::constraint::contact::{ContactLaw, ContactMemory, Owner};
 use crate::math::{Vec2, rotation};
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};
@@ -310,7 +311,7 @@ impl FeasiblePath {
         let impact =
             self.search
                 .time_of_impact(&self.surfaces, &self.motion, &self.pairs, &mut self.hits);
-        let part = impact.t.min(own).min(self.straight_part(blocks));
+        let part = impact.t.min(own).min(straight_part(self, blocks));
         self.look_back(part);
         self.go(part, blocks);
         part >= 1.0

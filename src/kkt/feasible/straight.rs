@@ -7,35 +7,33 @@ use crate::system::{Block, Point};
 /// Turn of a member with near pairs within a pass (rad): rows are straight where arcs are not.
 pub(super) const MOST_TURN: f64 = 0.5;
 
-impl FeasiblePath {
-    /// The part of the way on which no block with near pairs turns too far, and no cell of a block that is led turns over.
-    pub(super) fn straight_part(&self, blocks: &[Block]) -> f64 {
-        let mut part = part_of_cells(blocks);
-        for near in &self.near {
-            let way = &self.ways[near.pair];
-            for member in way.members {
-                if self.is_round(member) {
-                    continue;
-                }
-                let block = self.carriers[member].block;
-                let turn = (angle_of(&blocks[block]) - self.base[block].angle).abs();
-                if turn > MOST_TURN {
-                    part = part.min(MOST_TURN / turn);
-                }
+/// The part of the way on which no block with near pairs turns too far, and no cell of a block that is led turns over.
+pub(super) fn straight_part(path: &FeasiblePath, blocks: &[Block]) -> f64 {
+    let mut part = part_of_cells(blocks);
+    for near in &path.near {
+        let way = &path.ways[near.pair];
+        for member in way.members {
+            if is_round(path, member) {
+                continue;
+            }
+            let block = path.carriers[member].block;
+            let turn = (angle_of(&blocks[block]) - path.base[block].angle).abs();
+            if turn > MOST_TURN {
+                part = part.min(MOST_TURN / turn);
             }
         }
-        part
     }
+    part
+}
 
-    /// Whether turning changes nothing of a member: it is the centre of its body.
-    fn is_round(&self, member: usize) -> bool {
-        let points = self.surfaces.members()[member].points.clone();
-        let is_centre = |own: &SurfacePoint| match own.point {
-            Point::Arm(arm) => arm == Vec2::zeros(),
-            Point::Node(_) => false,
-        };
-        self.points[points].iter().all(is_centre)
-    }
+/// Whether turning changes nothing of a member: it is the centre of its body.
+fn is_round(path: &FeasiblePath, member: usize) -> bool {
+    let points = path.surfaces.members()[member].points.clone();
+    let is_centre = |own: &SurfacePoint| match own.point {
+        Point::Arm(arm) => arm == Vec2::zeros(),
+        Point::Node(_) => false,
+    };
+    path.points[points].iter().all(is_centre)
 }
 
 /// The part of the way on which no cell of a block that is led turns over.
