@@ -15,7 +15,7 @@ use super::feasible::KeptBase;
 use super::island::{ActiveContact, Island, SolveSettings};
 use super::iterate::ANGLE_TOLERANCE;
 use super::joint_rows::ActiveJoint;
-use super::position::PARTING_RATE;
+use super::position::{PARTING_RATE, Turned};
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointGrip;
@@ -134,7 +134,8 @@ impl Island {
             }
             if !misleads {
                 arrives = self.path.advance(&self.blocks);
-                self.tell_base(pass >= FEW_PASSES);
+                let led = self.tell_base(pass >= FEW_PASSES);
+                (turned.angle, turned.way) = (turned.angle.max(led.angle), turned.way.max(led.way));
                 if !arrives {
                     self.path.list_stopping(&mut self.left);
                 }
@@ -199,16 +200,22 @@ impl Island {
         self.blocks.iter().any(is_led)
     }
 
-    /// Tells the blocks of large strain where the base is.
-    fn tell_base(&mut self, leads: bool) {
+    /// Tells the blocks of large strain where the base is; returns how far from there the iterate of those is that are led.
+    ///
+    /// - `leads`: whether those are led from now on that are in the last part of a step.
+    fn tell_base(&mut self, leads: bool) -> Turned {
+        let mut led = Turned::default();
         for (index, block) in self.blocks.iter_mut().enumerate() {
             if let Block::Flex(block) = block
                 && block.is_large()
                 && let Some(base) = self.path.base_of(index, block.positions().len())
             {
-                block.set_base(base, leads);
+                let left = block.set_base(base, leads);
+                led.angle = led.angle.max(left);
+                led.way = led.way.max(left * block.size());
             }
         }
+        led
     }
 
     /// Whether the blocks' iterate consists of numbers: what is none is passed over by every search.

@@ -56,12 +56,12 @@ impl FlexBlock {
         self.frame.angle
     }
 
-    /// Tells where the base of the path is (m); what is led goes on from there.
+    /// Tells where the base of the path is (m); what is led goes on from there. Returns how far that is, relative to the body's size.
     ///
     /// - `leads`: whether the body is to be led from now on, if this is the last part of a step.
-    pub fn set_base(&mut self, positions: &[f64], leads: bool) {
+    pub fn set_base(&mut self, positions: &[f64], leads: bool) -> f64 {
         let Some(mut large) = self.large.take() else {
-            return;
+            return 0.0;
         };
         large.led.base.clear();
         large.led.base.extend_from_slice(positions);
@@ -70,10 +70,13 @@ impl FlexBlock {
         if is_led {
             self.linearize_at_base(&mut large);
         }
+        let left = large.led.left;
         self.large = Some(large);
         if is_led {
             self.follow_positions();
+            return left;
         }
+        0.0
     }
 
     /// Whether the iterate is what one Newton step from the base finds.
