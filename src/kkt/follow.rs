@@ -159,6 +159,7 @@ impl Island {
                 error <= enough && (turned.angle <= ANGLE_TOLERANCE || turned.way <= enough)
             };
             if arrives && is_close && !has_more {
+                self.end_at_base();
                 self.keep_applied_rows();
                 return !self.leads_around();
             }
@@ -198,6 +199,15 @@ impl Island {
     fn is_led(&self) -> bool {
         let is_led = |block: &Block| matches!(block, Block::Flex(block) if block.is_led());
         self.blocks.iter().any(is_led)
+    }
+
+    /// Ends the step of what is led at the base, which its iterate is as near to as the laws ask for.
+    fn end_at_base(&mut self) {
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.end_at_base();
+            }
+        }
     }
 
     /// Tells the blocks of large strain where the base is; returns how far from there the iterate of those is that are led.

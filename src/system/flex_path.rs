@@ -90,6 +90,16 @@ impl FlexBlock {
         led.filter(|led| led.is_led).map_or(1.0, |led| led.reach)
     }
 
+    /// Puts what is led to the base, a place that was looked at.
+    pub fn end_at_base(&mut self) {
+        let led = self.large.as_ref().map(|large| &large.led);
+        let Some(led) = led.filter(|led| led.is_led) else {
+            return;
+        };
+        self.position.copy_from_slice(&led.base);
+        self.follow_positions();
+    }
+
     /// Puts the iterate where one Newton step from the base leads under the contact forces given.
     pub(super) fn linearize_at_base(&mut self, large: &mut Large) {
         let scale = self.step.weights.b0;
