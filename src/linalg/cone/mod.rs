@@ -300,7 +300,7 @@ impl ConeSolver {
         self.system.solve_bodies(&mut self.state.a);
     }
 
-    /// Allows the error of `w` that the settings admit, but no more than a thousandth of what the start is off: what comes to rest is
+    /// Allows the error of `w` that the settings admit, but no more than the share [`SETTLING`] of what the start is off: what comes to rest is
     /// solved the finer the less it moves, and comes to rest.
     fn set_goal(&mut self, problem: &ConeProblem) {
         let State {
