@@ -9,6 +9,9 @@ use crate::linalg::block_matrix::BlockMatrix;
 use crate::math::{Vec2, node_vec, rotation, set_node_vec};
 use crate::path::clearance;
 
+/// Places of a way that are looked at, at equal distances.
+const N_PLACES: u8 = 4;
+
 /// Part of a way that is too short to be gone (-).
 const LEAST_PART: f64 = 1e-3;
 
@@ -172,19 +175,24 @@ impl FlexBlock {
             &self.is_fixed,
         );
         let led = &mut large.led;
-        led.reach = 1.0;
-        while led.reach > LEAST_PART {
+        let (residual, reaction) = (&mut large.residual, &mut large.reaction);
+        let deformation = &mut large.deformation;
+        let mut is_open = |part: f64| {
             led.place.clear();
             let way = led.base.iter().zip(&self.position);
             led.place
-                .extend(way.map(|(from, to)| from + led.reach * (to - from)));
-            let (residual, reaction) = (&mut large.residual, &mut large.reaction);
-            let outcome = equation.evaluate(&led.place, &mut large.deformation, residual, reaction);
-            if outcome.is_ok_and(|now| now.norm.is_finite()) {
-                break;
-            }
-            led.reach *= 0.5;
+                .extend(way.map(|(from, to)| from + part * (to - from)));
+            let outcome = equation.evaluate(&led.place, deformation, residual, reaction);
+            outcome.is_ok_and(|now| now.norm.is_finite())
+        };
+        // Surfaces may stop the path anywhere before, and areas are no straight function of the way.
+        let mut reach = 1.0;
+        while reach > LEAST_PART
+            && !(1..=N_PLACES).all(|place| is_open(reach * f64::from(place) / f64::from(N_PLACES)))
+        {
+            reach *= 0.5;
         }
+        led.reach = reach;
         led.left
             .max(NOT_FOUND * f64::from(u8::from(led.reach < 1.0)))
     }
