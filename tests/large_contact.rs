@@ -535,3 +535,39 @@ fn where_strains_are_small_a_body_of_large_strain_is_the_other_one() {
     );
     assert_eq!([small.2, large.2], [0.0; 2]);
 }
+
+/// A heavy box crushes a soft block to a few hundredths of its height. Under forces that are far from right the block's end is not found: it is led
+/// there from the base of the path. Of these 48 scenes 11 had a step that was not finished without that.
+#[test]
+fn soft_blocks_that_are_shot_at_seldom_stop_a_step() {
+    let mut unfinished = Vec::new();
+    for (speed, young) in [8.0, 15.0, 25.0, 40.0]
+        .into_iter()
+        .flat_map(|speed| [1e5, 3e5, 1e6].map(|young| (speed, young)))
+    {
+        for (turn, size) in [(0.3, 0.08), (0.3, 0.15), (0.7, 0.08), (0.7, 0.15)] {
+            let mut scene = Scene::new(1.0 / 60.0);
+            scene.ground(0.5);
+            let block = FlexBodyBuilder::rectangle([0.8, 0.3], [10, 4])
+                .material(elastic(young, 500.0, 5e-3))
+                .friction(0.5)
+                .translation([-0.4, 0.001]);
+            scene.flexible(block);
+            let shot = RigidBodyBuilder::dynamic()
+                .translation(vec2(0.1, 0.55))
+                .rotation(real(turn))
+                .linvel(vec2(0.0, -speed));
+            let shape = ColliderBuilder::cuboid(real(size), real(size)).density(5000.0);
+            scene.rigid(shot, shape.friction(0.5));
+            for _ in 0..60 {
+                let report = scene.try_step().expect("the step can be taken");
+                assert!(report.quarantined_flex_bodies().is_empty());
+                if report.quality() == Quality::Unfinished {
+                    unfinished.push((speed, young, turn, size));
+                }
+            }
+        }
+    }
+    println!("{unfinished:?}");
+    assert!(unfinished.len() <= 4, "{unfinished:?}");
+}

@@ -45,8 +45,8 @@ impl Island {
             if solved.is_ok() && !self.contradicts(settings) {
                 break true;
             }
-            // Joints that turn far contradict each other less in a shorter step.
-            if self.strains_joints(settings) {
+            // Joints that turn far contradict each other less in a shorter step; in the last part of one they give way as contacts do.
+            if settings.may_be_cut && self.strains_joints(settings) {
                 break false;
             }
             let Some(softness) = softer.next() else {
