@@ -4,7 +4,7 @@ use super::{Kept, Sparse};
 use crate::constraint::joint::{JointGrip, unit_wrench};
 use crate::fe::model::Model;
 use crate::linalg::block_matrix::BlockMatrix;
-use crate::linalg::cone::{ConeEntry, ConeSolver};
+use crate::linalg::cone::ConeEntry;
 use crate::math::{Vec2, cross};
 use crate::system::{Block, Point};
 use std::sync::Arc;
@@ -83,12 +83,11 @@ impl Sparse {
         kept.map_or(0, |kept| kept.matrix.n_nodes())
     }
 
-    /// Forgets what the step before did not ask for, and of the rest all that could decide a bit: a step begins from what a snapshot holds.
+    /// Forgets what the step before did not ask for.
     pub(super) fn begin_step(&mut self) {
         self.kept.retain(|kept| kept.is_in_use);
         for kept in &mut self.kept {
             kept.is_in_use = false;
-            kept.solvers.iter_mut().for_each(ConeSolver::forget);
         }
     }
 

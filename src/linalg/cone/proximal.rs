@@ -129,8 +129,6 @@ impl Proximal {
         }
         self.status.clone_from(&state.status);
         let (mut level, mut is_lowered) = (self.first_level(problem, reduced, system), false);
-        // Factors of a stiffer penalty, which tell of no row that has changed sides.
-        let mut n_stiffened = 0;
         self.slips.forget();
         let mut completed = Measure {
             residual: f64::INFINITY,
@@ -178,7 +176,7 @@ impl Proximal {
             let is_fine = measure.residual <= FINE * settings.tolerance
                 || refined.is_some_and(|best| measure.residual > 0.5 * best.residual);
             // where errors are admitted, only what rests is refined: what has changed its pieces goes on moving
-            let has_moved = reduced.enough > 0.0 && system.n_changes > n_changes + 1 + n_stiffened;
+            let has_moved = reduced.enough > 0.0 && system.n_changes > n_changes + 1;
             let is_undilated = measure.relative_dilation <= settings.tolerance;
             if is_solved && (has_moved || is_fine && is_undilated) {
                 return (Ending::Solved, measure);
@@ -221,7 +219,6 @@ impl Proximal {
                 && refined.is_none()
             {
                 level += 1;
-                n_stiffened += 1;
                 self.penalize(reduced, LEVELS[level]);
                 (last, n_idle) = (f64::INFINITY, 0);
             }
