@@ -36,14 +36,14 @@ const YIELDING: f64 = 1e-6;
 /// Share of a joint's force that it gives way to as contacts do (-); to the rest only as it changes, or a chain would open.
 const JOINT_SHARE: f64 = 0.05;
 
-/// What is kept of an island from step to step: its unknowns, patterns and memory.
+/// What is kept of an island from step to step: its unknowns and factors.
 #[derive(Debug)]
 struct Kept {
     shapes: Vec<Shape>,
     matrix: BlockMatrix,
     /// First node of every block.
     first: Vec<usize>,
-    /// One for each response.
+    /// One for each response: what rests keeps its factors.
     solvers: [ConeSolver; 4],
     /// Whether it has been asked for since the step began.
     is_in_use: bool,
@@ -77,9 +77,9 @@ pub(super) struct Asked {
 }
 
 impl Island {
-    /// Forgets what is kept of sparse problems, but for memory and patterns that are found again.
+    /// Forgets what is kept of sparse problems that the step before did not ask for.
     pub fn begin_step(&mut self) {
-        self.sparse.begin_step();
+        self.sparse.forget_unused();
     }
 
     /// Whether the scalar rows at hand are better solved as a sparse problem.

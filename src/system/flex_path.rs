@@ -95,11 +95,14 @@ impl FlexBlock {
 
     /// Puts what is led to the base, a place that was looked at.
     pub fn end_at_base(&mut self) {
-        let led = self.large.as_ref().map(|large| &large.led);
-        let Some(led) = led.filter(|led| led.is_led) else {
+        let Some(large) = self.large.take_if(|large| large.led.is_led) else {
             return;
         };
-        self.position.copy_from_slice(&led.base);
+        self.position.copy_from_slice(&large.led.base);
+        if self.kind == Frame::Free {
+            self.balance_momentum(&large);
+        }
+        self.large = Some(large);
         self.follow_positions();
     }
 
@@ -192,7 +195,8 @@ impl FlexBlock {
         {
             reach *= 0.5;
         }
-        led.reach = reach;
+        // What was not looked at is not gone.
+        led.reach = if reach > LEAST_PART { reach } else { 0.0 };
         led.left
             .max(NOT_FOUND * f64::from(u8::from(led.reach < 1.0)))
     }

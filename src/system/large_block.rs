@@ -347,7 +347,7 @@ impl FlexBlock {
     /// it, beyond the tolerance of the iterations.
     ///
     /// Inner forces have neither a resultant nor, about the middles `(x + x')/2`, a couple.
-    fn balance_momentum(&mut self, large: &Large) {
+    pub(super) fn balance_momentum(&mut self, large: &Large) {
         let dt = self.step.dt;
         let (inertia, drag) = (2.0 / (dt * dt), large.model.damping().mass / dt);
         // About where the iterate is, so that no digits are lost far from the origin.

@@ -83,8 +83,7 @@ impl Sparse {
         kept.map_or(0, |kept| kept.matrix.n_nodes())
     }
 
-    /// Forgets what the step before did not ask for.
-    pub(super) fn begin_step(&mut self) {
+    pub(super) fn forget_unused(&mut self) {
         self.kept.retain(|kept| kept.is_in_use);
         for kept in &mut self.kept {
             kept.is_in_use = false;

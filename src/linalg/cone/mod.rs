@@ -209,13 +209,6 @@ impl ConeSolver {
         })
     }
 
-    /// Forgets what earlier problems could tell about the next one: its answer is then, to the last bit, that of a new solver. Patterns and memory
-    /// are kept where that is so all the same.
-    pub fn forget(&mut self) {
-        self.is_hard = false;
-        self.system.forget();
-    }
-
     /// Takes over the pattern of another solver that has solved all the rows of a problem, and more, if this one knows of none that has
     /// them: what is pressed is among what is near.
     pub(crate) fn adopt(&mut self, problem: &ConeProblem, other: &Self) -> Result<(), ConeError> {

@@ -67,9 +67,6 @@ pub(super) struct System {
     values: Vec<[f64; 4]>,
     correction: Correction,
     right: Vec<f64>,
-    /// Whether nothing that is known may decide a bit, as no problem has been stated since it was last to be forgotten.
-    is_forgetful: bool,
-    is_needed: Vec<bool>,
     pub n_factorizations: usize,
     pub n_analyses: usize,
     /// Factors made or corrected for the problem at hand.
@@ -77,25 +74,6 @@ pub(super) struct System {
 }
 
 impl System {
-    /// Keeps of what is known only what would be found again, to the last bit, from the next problem alone.
-    pub fn forget(&mut self) {
-        self.has_factor = false;
-        self.is_forgetful = true;
-    }
-
-    /// Whether the pattern is the one of the problem whose rows have been placed, without more.
-    fn is_as_analyzed(&mut self) -> bool {
-        let Some(analysis) = &self.analysis else {
-            return false;
-        };
-        self.is_needed.clear();
-        self.is_needed.resize(analysis.base.len(), false);
-        for &place in analysis.matrix_places.iter().chain(&self.row_places) {
-            self.is_needed[place as usize] = true;
-        }
-        self.is_needed.iter().all(|&is| is)
-    }
-
     /// Makes the pattern cover the rows and the factor of `A` fit its values.
     pub fn prepare(&mut self, problem: &ConeProblem) -> Result<(), CholeskyError> {
         self.is_own = false;
@@ -104,8 +82,7 @@ impl System {
             .analysis
             .as_ref()
             .is_some_and(|analysis| analysis.matrix.has_pattern_of(problem.matrix));
-        let is_forgetful = std::mem::replace(&mut self.is_forgetful, false);
-        if !has_pattern || !self.place_rows(problem) || is_forgetful && !self.is_as_analyzed() {
+        if !has_pattern || !self.place_rows(problem) {
             self.analyze(problem, has_pattern);
             self.place_rows(problem);
         }
@@ -134,24 +111,14 @@ impl System {
         let Some(theirs) = &other.analysis else {
             return;
         };
-        let covers_rows =
-            theirs.matrix.has_pattern_of(problem.matrix) && covers(&theirs.hull, problem);
-        if self.is_forgetful {
-            // what would be taken over by who knows nothing
-            let has_theirs = self.analysis.as_ref().is_some_and(|own| {
-                own.matrix.has_pattern_of(&theirs.matrix) && own.hull.has_pattern_of(&theirs.hull)
-            });
-            self.is_forgetful = !covers_rows;
-            if !covers_rows || has_theirs {
-                return;
-            }
-        } else {
-            let own = self.analysis.as_ref();
-            let has_pattern =
-                own.is_some_and(|analysis| analysis.matrix.has_pattern_of(problem.matrix));
-            if has_pattern && self.place_rows(problem) || !covers_rows {
-                return;
-            }
+        let own = self.analysis.as_ref();
+        let has_pattern =
+            own.is_some_and(|analysis| analysis.matrix.has_pattern_of(problem.matrix));
+        if has_pattern && self.place_rows(problem)
+            || !theirs.matrix.has_pattern_of(problem.matrix)
+            || !covers(&theirs.hull, problem)
+        {
+            return;
         }
         self.analysis = Some(theirs.clone());
         self.has_bodies = other.has_bodies;
