@@ -571,3 +571,55 @@ fn soft_blocks_that_are_shot_at_seldom_stop_a_step() {
     println!("{unfinished:?}");
     assert!(unfinished.len() <= 4, "{unfinished:?}");
 }
+
+/// Two heavy boxes crush a soft block between them, in free space: led or not, nobody gains or loses momentum.
+#[test]
+fn what_is_crushed_in_free_space_keeps_the_momentum_of_all() {
+    for (speed, young, turn) in [
+        (20.0, 1e5, 0.3),
+        (40.0, 1e5, 0.3),
+        (40.0, 3e5, 0.7),
+        (60.0, 3e5, 0.1),
+    ] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        scene.world.gravity = vec2(0.0, 0.0);
+        let block = FlexBodyBuilder::rectangle([0.8, 0.3], [10, 4])
+            .material(elastic(young, 500.0, 5e-3))
+            .friction(0.5)
+            .translation([-0.4, -0.15]);
+        let block = scene.flexible(block);
+        let shots = [(0.1, 0.45, -speed, turn), (-0.05, -0.45, 0.8 * speed, -0.2)].map(
+            |(x, y, v, turn)| {
+                let shot = RigidBodyBuilder::dynamic()
+                    .translation(vec2(x, y))
+                    .rotation(real(turn))
+                    .linvel(vec2(0.0, v));
+                let shape = ColliderBuilder::cuboid(real(0.15), real(0.15)).density(5000.0);
+                scene.rigid(shot, shape.friction(0.5)).0
+            },
+        );
+        let momentum = |scene: &Scene| {
+            let body = scene.body(block);
+            let mut sum = body.linvel().map(|v| body.mass() * v);
+            for shot in shots {
+                let body = &scene.world.bodies[shot];
+                let mass = f64::from(body.mass());
+                for (sum, v) in sum.iter_mut().zip(velocity_of(body)) {
+                    *sum += mass * v;
+                }
+            }
+            sum
+        };
+        let began = momentum(&scene);
+        let scale = f64::from(scene.world.bodies[shots[0]].mass()) * speed;
+        let mut n_parts = 0;
+        for step in 0..60 {
+            let report = scene.try_step().expect("the step can be taken");
+            n_parts = n_parts.max(report.n_parts());
+            let now = momentum(&scene);
+            let off = [0, 1].map(|k| (now[k] - began[k]).abs() / scale);
+            assert!(off[0].max(off[1]) < 1e-7, "step {step}: {off:?}");
+        }
+        assert!(n_parts > 1, "it is crushed in parts of a step");
+    }
+}

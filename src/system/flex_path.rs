@@ -204,7 +204,8 @@ impl FlexBlock {
     /// Puts the nodes where the step could go (m), with the velocities and accelerations that its forces lead to.
     pub fn stop_at(&mut self, positions: &[f64]) {
         self.position.copy_from_slice(positions);
-        if self.is_large() {
+        if let Some(large) = &mut self.large {
+            large.led.is_led = false;
             self.follow_centre();
             return;
         }

@@ -216,7 +216,10 @@ impl FlexBlock {
             let late = (self.position[dof] - large.coast[dof]) / (self.step.dt * self.step.dt);
             large.reaction[dof] -= self.arms.node_mass[dof / 2] * late;
         }
-        if self.kind == Frame::Free && left.is_finite() && !large.led.is_led {
+        // A Newton step from the base balances the momentum by itself.
+        let is_balanced = large.led.is_led && large.led.left.is_finite();
+        let is_ended = left.is_finite() || large.led.is_led;
+        if self.kind == Frame::Free && is_ended && !is_balanced {
             self.balance_momentum(&large);
         }
         self.large = Some(large);

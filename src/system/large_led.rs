@@ -17,7 +17,7 @@ const NEAR: f64 = 1e-3;
 /// What is known of the way of a body that is led.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Led {
-    /// Whether it is.
+    /// Whether it is. Not where the iterate has been put elsewhere: increments count from where the base has led.
     pub is_led: bool,
     /// Positions at the base of the path (m); none where there is no path.
     pub base: Vec<f64>,

@@ -141,6 +141,7 @@ impl FlexBlock {
         self.velocity.copy_from_slice(&self.start_velocity);
         if let Some(large) = &mut self.large {
             large.resolved.copy_from_slice(&large.start_resolved);
+            large.led.is_led = false;
         }
         self.clear_contact_force();
         self.follow_centre();
