@@ -3,8 +3,9 @@
 use super::support::{
     KINDS, deformed, describe, dot, largest, laws, nodes_where, plate, warped_plate,
 };
-use foil2d::fe::finite_strain::{FiniteStrainModel, Form, Linearization};
-use foil2d::fe::mesh::CellKind;
+use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel, Form, Linearization};
+use foil2d::fe::material::hyperelastic::Corotated;
+use foil2d::fe::mesh::{CellKind, Mesh};
 use foil2d::fe::model::{MassKind, Model, ModelDescription};
 use std::sync::Arc;
 
@@ -91,6 +92,43 @@ fn the_nodes_of_cells_are_guarded_where_the_law_has_no_energy_for_what_is_turned
                 assert!(outcome.is_ok(), "{kind:?} {name}");
             }
         }
+    }
+}
+
+/// Sides that bend around the corner opposite leave six determinants above zero: what is between the corners has energy, beyond all bounds.
+#[test]
+fn a_curved_triangle_is_guarded_between_its_corners() {
+    let rest = [
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [0.5, 1.0],
+        [0.5, 0.0],
+        [0.75, 0.5],
+        [0.25, 0.5],
+    ];
+    let mesh =
+        Mesh::from_cells(rest.to_vec(), CellKind::Tri6, &[[0, 1, 2, 3, 4, 5]]).expect("a triangle");
+    for law in laws(1e5, 0.3) {
+        let has_limit = law.name() == "neo-Hookean";
+        let mut description =
+            FiniteStrainDescription::new(mesh.clone(), Corotated::plane_strain(1.0, 0.0), 1000.0);
+        description.law = law;
+        let model = FiniteStrainModel::assemble(description).expect("a body");
+        let at = |height: f64| {
+            let bent = [[0.5, -0.5], [0.75, -0.1], [0.25, -0.1]];
+            let corners = [[0.0, 0.0], [1.0, 0.0], [0.5, height]];
+            [corners, bent].concat().concat()
+        };
+        let energies = [0.2, 1e-2, 1e-4, 1e-8].map(|height| model.elastic_energy(&at(height)));
+        let is_rising = energies.is_sorted_by(|a, b| a < b) && energies[3] > 1e6 * energies[0];
+        let mut deformation = model.deformation(model.rest_positions());
+        let mut residual = vec![0.0; model.n_dofs()];
+        let state = at(-1e-3);
+        let outcome =
+            model.subtract_force(Form::Equilibrium, &state, &mut deformation, &mut residual);
+        let name = model.law().name();
+        assert_eq!(outcome.is_err(), has_limit, "{name}");
+        assert_eq!(is_rising, has_limit, "{name}: {energies:?}");
     }
 }
 

@@ -28,7 +28,7 @@ pub(super) struct CellGroup {
     pub(super) hourglass: Vec<Hourglass>,
     /// What keeps the nodes of the cells from turning, or nothing.
     pub(super) guards: Guards,
-    /// Where its guarded nodes begin among those of the body.
+    /// Where its guarded places begin among those of the body.
     pub(super) first_guard: usize,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct CellGroup {
 pub(super) struct Deformed {
     pub(super) gradients: Vec<[f64; 4]>,
     pub(super) amplitudes: Vec<[f64; 2]>,
-    /// Gradients at the guarded nodes.
+    /// Gradients at the guarded places.
     pub(super) guarded: Vec<[f64; 4]>,
 }
 
@@ -84,8 +84,8 @@ impl CellGroup {
         self.first_point..self.first_point + self.volumes.len()
     }
 
-    /// The guarded nodes of this group among those of the body.
-    pub(super) fn guarded_nodes(&self) -> std::ops::Range<usize> {
+    /// The guarded places of this group among those of the body.
+    pub(super) fn guarded_places(&self) -> std::ops::Range<usize> {
         self.first_guard..self.first_guard + self.guards.len()
     }
 
@@ -93,7 +93,7 @@ impl CellGroup {
     pub(super) fn deform(&self, positions: &[f64], out: &mut Deformed) {
         let gradients = &mut out.gradients[self.points()];
         with_node_count!(self, deform_points(positions, gradients));
-        let guarded = &mut out.guarded[self.guarded_nodes()];
+        let guarded = &mut out.guarded[self.guarded_places()];
         with_node_count!(self, deform_guards(positions, guarded));
         for (place, point) in self.stiffened() {
             let (nodes, _) = self.quad(place);

@@ -1,4 +1,4 @@
-//! What keeps cells from turning inside out at their nodes, where the law has no energy for what is turned.
+//! What keeps cells from turning inside out at their nodes and between their corners, where the law has no energy for what is turned.
 //!
 //! The law sees the gradient `F` of a cell at its quadrature points, whose determinants stay above zero while a corner folds over: a bow tie.
 //! With `J = det F` at the nodes,
@@ -7,7 +7,7 @@
 //! W = κ V f(J/J0),    f(z) = (1 - z)³/z  for z < 1,  else 0
 //! ```
 //!
-//! per node of a cell and its share `V` of the volume: twice continuously differentiable, convex, and infinite where a corner is flat, as the
+//! per node of a cell and its share `V` of the volume, and for the straight triangle between the corners of one with curved sides: twice continuously differentiable, convex, and infinite where a corner is flat, as the
 //! barriers are that keep surfaces apart elsewhere (Li et al., 2020). The energy that comes decides how flat a corner may get, not rounding: a
 //! thousand `κ V` leave a ten-thousandth of the area. It is an energy of the invariant `J` like any other, and with its slope between
 //! the ends of a step it conserves energy and both momenta.
@@ -17,11 +17,11 @@ use super::cells::{
     CellGroup, Deformed, add_point, deformation_gradient, gather, scatter, subtract,
 };
 use super::point::{Form, Linearization, cofactor, law_moduli, middle};
-use crate::fe::element::{Element, MAX_NODES, kinematics::physical_gradient};
+use crate::fe::element::{Element, MAX_NODES, Tri3, kinematics::physical_gradient};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::linalg::block_matrix::BlockMatrix;
 
-/// `J0`, below which a node is guarded (-): a crushed rectangle is left to its law until nine tenths of its area are gone.
+/// `J0`, below which a place is guarded (-): a crushed rectangle is left to its law until nine tenths of its area are gone.
 const FLAT: f64 = 0.1;
 
 /// Change of `J` by itself below which the slope of the energy is its derivative in the middle (-): the error is its square by 24.
@@ -30,16 +30,23 @@ const SMALL: f64 = 1e-4;
 /// A gradient that turns what it deforms inside out.
 const TURNED: [f64; 4] = [1.0, 0.0, 0.0, -1.0];
 
-/// The guarded nodes of a group of cells: all of them, or none.
+/// Places that are guarded in a cell of so many nodes: its nodes, and what is between the corners of six.
+///
+/// Six determinants above zero leave room for a side that bends around the corner opposite.
+const fn n_guarded(n_nodes: usize) -> usize {
+    if n_nodes == 6 { 7 } else { n_nodes }
+}
+
+/// The guarded places of a group of cells: those of all of them, or none.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Guards {
-    /// `dN_a/dX` (1/m) at the nodes, shape `(n_cells, n_nodes, n_nodes)`.
+    /// `dN_a/dX` (1/m) at the places, shape `(n_cells, n_guarded, n_nodes)`.
     gradients: Vec<[f64; 2]>,
-    /// `κ V` (J), shape `(n_cells, n_nodes)`; zero where a cell has no gradient, as where two sides are one line.
+    /// `κ V` (J), shape `(n_cells, n_guarded)`; zero where a cell has no gradient, as where two sides are one line.
     energies: Vec<f64>,
 }
 
-/// The nodes of one cell, the gradients of its shape functions there and `κ V`.
+/// The nodes of one cell, the gradients of its shape functions at the guarded places and `κ V`.
 type Guarded<'a, const N: usize> = (&'a [u32; N], &'a [[[f64; 2]; N]], &'a [f64]);
 
 impl Guards {
@@ -60,17 +67,24 @@ impl Guards {
         let modulus = constants.lambda() + 2.0 * constants.mu();
         let area: f64 = element.quadrature().iter().map(|point| point.weight).sum();
         let share = area / nodes.len() as f64;
-        for &at in nodes {
-            let mut gradient = [[0.0; 2]; MAX_NODES];
-            let gradient = &mut gradient[..nodes.len()];
-            let determinant = physical_gradient(element, corners, at, gradient).unwrap_or(0.0);
-            self.gradients.extend_from_slice(gradient);
+        let mut push = |gradient: &[[f64; 2]], determinant: f64| {
+            self.gradients.extend_from_slice(&gradient[..nodes.len()]);
             self.energies
                 .push(modulus * determinant * share * thickness);
+        };
+        for &at in nodes {
+            let mut gradient = [[0.0; 2]; MAX_NODES];
+            let found = physical_gradient(element, corners, at, &mut gradient[..nodes.len()]);
+            push(&gradient, found.unwrap_or(0.0));
+        }
+        if n_guarded(nodes.len()) > nodes.len() {
+            let mut gradient = [[0.0; 2]; MAX_NODES];
+            let found = physical_gradient(&Tri3, &corners[..3], [0.0; 2], &mut gradient[..3]);
+            push(&gradient, found.unwrap_or(0.0));
         }
     }
 
-    /// Number of guarded nodes.
+    /// Number of guarded places.
     pub fn len(&self) -> usize {
         self.energies.len()
     }
@@ -79,15 +93,18 @@ impl Guards {
 impl CellGroup {
     fn guarded<const N: usize>(&self) -> impl Iterator<Item = Guarded<'_, N>> {
         let nodes = self.nodes.as_chunks::<N>().0.iter();
-        let gradients = self.guards.gradients.as_chunks::<N>().0.chunks_exact(N);
-        let energies = self.guards.energies.chunks_exact(N);
+        let n = n_guarded(N);
+        let gradients = self.guards.gradients.as_chunks::<N>().0.chunks_exact(n);
+        let energies = self.guards.energies.chunks_exact(n);
         let cells = nodes.zip(gradients).zip(energies);
         cells.map(|((nodes, gradients), energies)| (nodes, gradients, energies))
     }
 
-    /// Writes `F` at the guarded nodes.
+    /// Writes `F` at the guarded places.
     pub(super) fn deform_guards<const N: usize>(&self, positions: &[f64], out: &mut [[f64; 4]]) {
-        for ((nodes, gradients, _), out) in self.guarded::<N>().zip(out.chunks_exact_mut(N)) {
+        for ((nodes, gradients, _), out) in
+            self.guarded::<N>().zip(out.chunks_exact_mut(n_guarded(N)))
+        {
             let differences = gather(nodes, positions);
             for (gradient, out) in gradients.iter().zip(out) {
                 *out = deformation_gradient(&differences, gradient);
@@ -117,10 +134,13 @@ impl CellGroup {
         (start, end): (&Deformed, &mut Deformed),
         residual: &mut [f64],
     ) -> Result<(), Inadmissible> {
-        let ends = &mut end.guarded[self.guarded_nodes()];
+        let ends = &mut end.guarded[self.guarded_places()];
         self.deform_guards::<N>(positions, ends);
-        let starts = start.guarded[self.guarded_nodes()].chunks_exact(N);
-        let cells = self.guarded::<N>().zip(starts).zip(ends.chunks_exact(N));
+        let starts = start.guarded[self.guarded_places()].chunks_exact(n_guarded(N));
+        let cells = self
+            .guarded::<N>()
+            .zip(starts)
+            .zip(ends.chunks_exact(n_guarded(N)));
         for (((nodes, gradients, energies), (starts, ends)), &cell) in cells
             .map(|((cell, starts), ends)| (cell, (starts, ends)))
             .zip(&self.cells)
@@ -159,9 +179,9 @@ impl CellGroup {
         (start, end): (&Deformed, &Deformed),
         matrix: &mut BlockMatrix,
     ) {
-        let (scale, range) = (form.share_of_end(), self.guarded_nodes());
-        let starts = start.guarded[range.clone()].chunks_exact(N);
-        let ends = end.guarded[range].chunks_exact(N);
+        let (scale, range) = (form.share_of_end(), self.guarded_places());
+        let starts = start.guarded[range.clone()].chunks_exact(n_guarded(N));
+        let ends = end.guarded[range].chunks_exact(n_guarded(N));
         let places = self.places.as_chunks::<N>().0.chunks_exact(N);
         let cells = self.guarded::<N>().zip(starts).zip(ends).zip(places);
         for ((((_, gradients, energies), starts), ends), places) in cells {
@@ -189,7 +209,7 @@ impl CellGroup {
     }
 }
 
-/// Energy of a node of which the share `j` is left (J); infinite if none is.
+/// Energy of a place of which the share `j` is left (J); infinite if none is.
 fn guard_energy(unit: f64, j: f64) -> f64 {
     if unit == 0.0 || j >= FLAT {
         return 0.0;
