@@ -131,12 +131,13 @@ fn the_energy_error_of_a_spinning_vibrating_body_falls_as_the_square_of_the_step
 #[test]
 fn a_spinning_vibrating_body_keeps_momentum_and_stays_near_its_energy_over_ten_thousand_steps() {
     let mut findings = Findings::default();
-    // At large strain nodes are where they are in the world, 186 m from its origin: rounding there is a drift of velocities.
+    // At large strain nodes are where they are in the world, up to 186 m from its origin. Rounding there makes 1.7e-12 m/s of a node in a step, a
+    // ninth of that in the mean of 81 nodes and a hundred times as much in 10⁴ steps: 1.7e-11 of the velocity.
     let cases = [2e5, 1e7, 2.1e11];
     let cases = cases.map(|young| {
         [
             (young, false, 1e-12, 1e-8, 2e-4),
-            (young, true, 1e-11, 1e-8, 1e-8),
+            (young, true, 4e-11, 1e-8, 1e-8),
         ]
     });
     for (young, is_large, linear, about, total) in cases.concat() {

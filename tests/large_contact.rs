@@ -537,13 +537,13 @@ fn where_strains_are_small_a_body_of_large_strain_is_the_other_one() {
 }
 
 /// A heavy box crushes a soft block to a few hundredths of its height. Under forces that are far from right the block's end is not found: it is led
-/// there from the base of the path. Of these 48 scenes 11 had a step that was not finished without that.
+/// there from the base of the path. Of 48 of these 128 scenes 11 had a step that was not finished without that; none of these 48 has.
 #[test]
 fn soft_blocks_that_are_shot_at_seldom_stop_a_step() {
     let mut unfinished = Vec::new();
-    for (speed, young) in [8.0, 15.0, 25.0, 40.0]
+    for (speed, young) in [8.0, 12.0, 15.0, 20.0, 25.0, 32.0, 40.0, 60.0]
         .into_iter()
-        .flat_map(|speed| [1e5, 3e5, 1e6].map(|young| (speed, young)))
+        .flat_map(|speed| [5e4, 1e5, 3e5, 1e6].map(|young| (speed, young)))
     {
         for (turn, size) in [(0.3, 0.08), (0.3, 0.15), (0.7, 0.08), (0.7, 0.15)] {
             let mut scene = Scene::new(1.0 / 60.0);
@@ -569,7 +569,7 @@ fn soft_blocks_that_are_shot_at_seldom_stop_a_step() {
         }
     }
     println!("{unfinished:?}");
-    assert!(unfinished.len() <= 4, "{unfinished:?}");
+    assert!(unfinished.len() <= 2, "{unfinished:?}");
 }
 
 /// Two heavy boxes crush a soft block between them, in free space: led or not, nobody gains or loses momentum.

@@ -29,8 +29,12 @@ const MOST_STOPS: usize = 20;
 /// Share of the margin within which the laws hold where the contacts are many (-): a thousandth moves no force that counts.
 pub(super) const LARGE_TOLERANCE: f64 = 1e-3;
 
-/// The same where bodies of large strain find their equilibrium to a residual (-).
+/// The same where bodies of large strain find their equilibrium to a residual (-): so much of what rests.
 const CURVED_TOLERANCE: f64 = 1e-6;
+
+/// The part of the error of the first pass that may be left there (-), up to [`LARGE_TOLERANCE`]: what comes to rest is solved the finer the less
+/// it moves.
+const SETTLING: f64 = 5e-4;
 
 /// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
 const PASSES_PER_ITERATION: usize = 2;
@@ -43,6 +47,9 @@ const CLOSE_ENOUGH: f64 = 0.05;
 
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
+
+/// What a pass may leave of the error of the one before (-) without bodies being led where that is left to do.
+const SLOWEST: f64 = 0.25;
 
 /// How a step along the path has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,12 +127,13 @@ impl Island {
         let mut turned = self.correct();
         let mut n_stopped = 0;
         let mut has_left = false;
+        let (mut first, mut last, mut is_idle) = (None, f64::INFINITY, false);
         for pass in 0..PASSES_PER_ITERATION * settings.max_newton {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let is_eased = pass >= self.n_exact_passes(settings);
-            let near = self.enough(is_eased, NEAR * tolerance);
+            let near = self.enough(is_eased, NEAR * tolerance, None);
             let misleads = is_guess && self.measure_guess() > near;
             let mut arrives = false;
             let mut error = 0.0;
@@ -134,7 +142,7 @@ impl Island {
             }
             if !misleads {
                 arrives = self.path.advance(&self.blocks);
-                let led = self.tell_base(pass >= FEW_PASSES);
+                let led = self.tell_base(pass >= FEW_PASSES && is_idle);
                 (turned.angle, turned.way) = (turned.angle.max(led.angle), turned.way.max(led.way));
                 if !arrives {
                     self.path.list_stopping(&mut self.left);
@@ -145,13 +153,16 @@ impl Island {
                 listing.keeps_rows = is_eased && arrives;
                 self.list_near(&listing);
                 error = self.measure(false);
+                first = first.or(Some(error));
+                is_idle = error > SLOWEST * last;
+                last = error;
             }
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
             // Forces of the last step that are kept must be right, or what rests creeps.
             let enough = if is_guess {
                 tolerance
             } else {
-                self.enough(is_eased, tolerance)
+                self.enough(is_eased, tolerance, first)
             };
             let is_close = if is_eased {
                 arrives && turned.way <= enough && self.shortfall(true) <= CLOSE_ENOUGH
@@ -262,14 +273,18 @@ impl Island {
     }
 
     /// How far the laws may be from holding at the end of a pass (m).
-    fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
+    ///
+    /// - `first`: how far they were in the first pass.
+    fn enough(&self, is_eased: bool, tolerance: f64, first: Option<f64>) -> f64 {
         let margin = self.path.least_margin();
         if is_eased {
             CLOSE_ENOUGH * margin
         } else if self.has_many_rows() {
             tolerance.max(LARGE_TOLERANCE * margin)
         } else if self.has_large() {
-            tolerance.max(CURVED_TOLERANCE * margin)
+            let [least, most] = [CURVED_TOLERANCE, LARGE_TOLERANCE].map(|share| share * margin);
+            let settled = first.map_or(least, |first| (SETTLING * first).clamp(least, most));
+            tolerance.max(settled)
         } else {
             tolerance
         }

@@ -2,7 +2,7 @@
 
 use super::flex_block::FlexBlock;
 use super::large_block::{Large, NOT_FOUND};
-use super::large_equation::{equation_of, factorize};
+use super::large_equation::{equation_of, factorize, factorize_definite};
 use crate::body::{Frame, FrameMotion};
 use crate::fe::model::Model;
 use crate::linalg::block_matrix::BlockMatrix;
@@ -71,6 +71,7 @@ impl FlexBlock {
         large.led.is_led |= leads && !large.may_give_up;
         let is_led = large.led.is_led;
         if is_led {
+            large.led.takes_end = true;
             self.linearize_at_base(&mut large);
         }
         let left = large.led.left;
@@ -90,20 +91,53 @@ impl FlexBlock {
     /// Share of the way from the base to the iterate that may be gone (-).
     pub fn part_ahead(&self) -> f64 {
         let led = self.large.as_ref().map(|large| &large.led);
-        led.filter(|led| led.is_led).map_or(1.0, |led| led.reach)
+        led.filter(|led| led.has_base())
+            .map_or(1.0, |led| led.reach)
     }
 
     /// Puts what is led to the base, a place that was looked at.
     pub fn end_at_base(&mut self) {
-        let Some(large) = self.large.take_if(|large| large.led.is_led) else {
+        let Some(mut large) = self.large.take_if(|large| large.led.is_led) else {
             return;
         };
         self.position.copy_from_slice(&large.led.base);
         if self.kind == Frame::Free {
             self.balance_momentum(&large);
         }
+        self.answer_as_at_the_end(&mut large);
         self.large = Some(large);
         self.follow_positions();
+    }
+
+    /// Answers impulses by the definite part of what the body is at the iterate.
+    fn answer_as_at_the_end(&mut self, large: &mut Large) {
+        let scale = self.step.weights.b0;
+        let equation = equation_of(
+            &large.model,
+            &self.step,
+            large.led.takes_end,
+            [&large.load, &self.start_position, &large.coast],
+            &self.is_fixed,
+        );
+        let (residual, reaction) = (&mut large.residual, &mut large.reaction);
+        let outcome = equation.evaluate(&self.position, &mut large.deformation, residual, reaction);
+        if outcome.is_err() {
+            return;
+        }
+        self.n_factorizations += 1;
+        self.compliance.clear();
+        let matrices = (&mut large.tangent, &mut self.effective);
+        let found = factorize_definite(
+            &equation,
+            scale,
+            &large.deformation,
+            matrices,
+            &mut self.factor,
+        );
+        if let Ok(found) = found {
+            large.row_sum = found.row_sum;
+        }
+        self.ease_pins(large);
     }
 
     /// Puts the iterate where one Newton step from the base leads under the contact forces given.
@@ -122,6 +156,7 @@ impl FlexBlock {
         let equation = equation_of(
             &large.model,
             &self.step,
+            large.led.takes_end,
             [&large.load, &self.start_position, &large.coast],
             &self.is_fixed,
         );
@@ -169,30 +204,48 @@ impl FlexBlock {
         moved / self.size
     }
 
-    /// Finds how far towards the iterate no cell turns over; returns how far the body is from its end, relative to its size.
+    /// Finds how far towards the iterate no cell turns over and the forces that are out of balance do work; returns how far the body is from
+    /// its end, relative to its size.
     pub(super) fn look_ahead(&mut self, large: &mut Large) -> f64 {
+        for (dof, load) in large.load.iter_mut().enumerate() {
+            *load = self.force[dof] + self.contact_force[dof];
+        }
         let equation = equation_of(
             &large.model,
             &self.step,
+            large.led.takes_end,
             [&large.load, &self.start_position, &large.coast],
             &self.is_fixed,
         );
         let led = &mut large.led;
         let (residual, reaction) = (&mut large.residual, &mut large.reaction);
         let deformation = &mut large.deformation;
-        let mut is_open = |part: f64| {
+        // The power of what is out of balance along the way; none where a cell is turned over.
+        let mut power = |part: f64| {
             led.place.clear();
             let way = led.base.iter().zip(&self.position);
             led.place
-                .extend(way.map(|(from, to)| from + part * (to - from)));
+                .extend(way.clone().map(|(from, to)| from + part * (to - from)));
             let outcome = equation.evaluate(&led.place, deformation, residual, reaction);
-            outcome.is_ok_and(|now| now.norm.is_finite())
+            let power = (way.zip(&*residual)).map(|((from, to), force)| force * (to - from));
+            outcome
+                .is_ok_and(|now| now.norm.is_finite())
+                .then(|| power.sum::<f64>())
         };
         // Surfaces may stop the path anywhere before, and areas are no straight function of the way.
         let mut reach = 1.0;
-        while reach > LEAST_PART
-            && !(1..=N_PLACES).all(|place| is_open(reach * f64::from(place) / f64::from(N_PLACES)))
-        {
+        let start = power(0.0);
+        while reach > LEAST_PART {
+            let mut last = start;
+            let mut work = Some(0.0);
+            for place in 1..=N_PLACES {
+                let now = power(reach * f64::from(place) / f64::from(N_PLACES));
+                work = (work.zip(last).zip(now)).map(|((work, last), now)| work + last + now);
+                last = now;
+            }
+            if work.is_some_and(|work| work >= 0.0) {
+                break;
+            }
             reach *= 0.5;
         }
         // What was not looked at is not gone.

@@ -168,6 +168,7 @@ impl FlexBlock {
         let equation = equation_of(
             &large.model,
             &self.step,
+            large.led.takes_end,
             [&large.load, &self.start_position, &large.coast],
             &self.is_fixed,
         );
@@ -199,10 +200,11 @@ impl FlexBlock {
             return 0.0;
         };
         let mut left = NOT_FOUND;
-        if large.led.is_near() {
+        if !large.led.is_led {
             left = self.iterate_large(&mut large);
             large.led.is_led = left > 0.0 && !large.may_give_up && large.led.has_base();
             if large.led.is_led {
+                large.led.takes_end = true;
                 self.linearize_at_base(&mut large);
             }
         } else {
@@ -210,12 +212,10 @@ impl FlexBlock {
         }
         if large.led.is_led {
             left = self.look_ahead(&mut large);
+        } else if large.led.has_base() && !large.may_give_up {
+            self.look_ahead(&mut large);
         }
-        // Pins move at the mean velocity of their step, and what they hold gets that velocity in it, not twice as much.
-        for &dof in &self.fixed_dofs {
-            let late = (self.position[dof] - large.coast[dof]) / (self.step.dt * self.step.dt);
-            large.reaction[dof] -= self.arms.node_mass[dof / 2] * late;
-        }
+        self.ease_pins(&mut large);
         // A Newton step from the base balances the momentum by itself.
         let is_balanced = large.led.is_led && large.led.left.is_finite();
         let is_ended = left.is_finite() || large.led.is_led;
@@ -225,6 +225,14 @@ impl FlexBlock {
         self.large = Some(large);
         self.follow_positions();
         left
+    }
+
+    /// Pins move at the mean velocity of their step, and what they hold gets that velocity in it, not twice as much.
+    pub(super) fn ease_pins(&self, large: &mut Large) {
+        for &dof in &self.fixed_dofs {
+            let late = (self.position[dof] - large.coast[dof]) / (self.step.dt * self.step.dt);
+            large.reaction[dof] -= self.arms.node_mass[dof / 2] * late;
+        }
     }
 
     fn iterate_large(&mut self, large: &mut Large) -> f64 {
@@ -245,6 +253,7 @@ impl FlexBlock {
             reaction,
             row_sum,
             may_give_up,
+            led,
             ..
         } = large;
         let not_found = match may_give_up {
@@ -254,6 +263,7 @@ impl FlexBlock {
         let equation = equation_of(
             model,
             &self.step,
+            led.takes_end,
             [load, &self.start_position, coast],
             &self.is_fixed,
         );

@@ -23,18 +23,26 @@ pub(super) fn total_decay(step: &Step, damping: Rayleigh) -> f64 {
 }
 
 /// The equation of a step under `load` from `start` by way of `coast`.
+///
+/// - `takes_end`: whether the stress is that of the end.
 pub(super) fn equation_of<'a>(
     model: &'a FiniteStrainModel,
     step: &Step,
+    takes_end: bool,
     [load, start, coast]: [&'a [f64]; 3],
     is_held: &'a [bool],
 ) -> Equation<'a> {
     let (dt, damping) = (step.dt, model.damping());
+    let form = if takes_end {
+        Form::Equilibrium
+    } else {
+        Form::EnergyMomentum {
+            decay: total_decay(step, damping),
+        }
+    };
     Equation {
         model,
-        form: Form::EnergyMomentum {
-            decay: total_decay(step, damping),
-        },
+        form,
         inertia: Inertia {
             acceleration: 2.0 / (dt * dt),
             drag: damping.mass / dt,
@@ -63,23 +71,38 @@ pub(super) fn factorize(
 ) -> Result<Factored, CholeskyError> {
     equation.assemble(Linearization::Consistent, deformation, tangent);
     effective.assign_scaled(scale, tangent);
-    let is_definite = factor.factorize(effective).is_ok();
-    if !is_definite {
-        equation.assemble(Linearization::Definite, deformation, tangent);
-        effective.assign_scaled(scale, tangent);
-        let mut outcome = factor.factorize(effective);
-        let mut shift = SHIFT * scale * largest_row_sum(tangent);
-        while outcome.is_err() && shift.is_finite() && shift > 0.0 {
-            for node in 0..equation.model.n_nodes() {
-                effective.add_diagonal(node, [shift; 2]);
-            }
-            outcome = factor.factorize(effective);
-            shift *= 1e2;
-        }
-        outcome?;
+    if factor.factorize(effective).is_ok() {
+        return Ok(Factored {
+            row_sum: largest_row_sum(tangent),
+            is_definite: true,
+        });
     }
+    factorize_definite(equation, scale, deformation, (tangent, effective), factor)
+}
+
+/// Factorizes the definite part of the tangent, so that `A >= M`: what the tangent alone leaves may be as near to singular as it likes, and throw
+/// what it answers for.
+pub(super) fn factorize_definite(
+    equation: &Equation<'_>,
+    scale: f64,
+    deformation: &Deformation,
+    (tangent, effective): (&mut BlockMatrix, &mut BlockMatrix),
+    factor: &mut BlockCholesky,
+) -> Result<Factored, CholeskyError> {
+    equation.assemble(Linearization::Definite, deformation, tangent);
+    effective.assign_scaled(scale, tangent);
+    let mut outcome = factor.factorize(effective);
+    let mut shift = SHIFT * scale * largest_row_sum(tangent);
+    while outcome.is_err() && shift.is_finite() && shift > 0.0 {
+        for node in 0..equation.model.n_nodes() {
+            effective.add_diagonal(node, [shift; 2]);
+        }
+        outcome = factor.factorize(effective);
+        shift *= 1e2;
+    }
+    outcome?;
     Ok(Factored {
         row_sum: largest_row_sum(tangent),
-        is_definite,
+        is_definite: false,
     })
 }

@@ -9,23 +9,27 @@
 //! ```
 //!
 //! which is what the rows of the contact problem know of it: the forces found from them lead where they are meant to lead. The path goes
-//! there as far as surfaces stay apart and no cell turns over, and the next pass begins from there (Newton's method on the contact problem as a whole).
-
-/// Length of the last increment, relative to the body's size, from which the end is looked for under given forces again (-).
-const NEAR: f64 = 1e-3;
+//! there as far as surfaces stay apart, no cell turns over and the forces out of balance do work, and the next pass begins from there
+//! (Newton's method on the contact problem as a whole).
+//!
+//! `r` is made with the stress of the end, which has a potential: `K` is symmetric, and with it the contact problem goes down in the
+//! energy. The conserving stress has a derivative that is not symmetric; in a cell that is all but flat, the direction in which the force grows
+//! is not the one in which it acts.
 
 /// What is known of the way of a body that is led.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Led {
     /// Whether it is. Not where the iterate has been put elsewhere: increments count from where the base has led.
     pub is_led: bool,
+    /// Whether the stress is that of the end, for the rest of the step once a body has been led in it.
+    pub takes_end: bool,
     /// Positions at the base of the path (m); none where there is no path.
     pub base: Vec<f64>,
     /// Contact forces at the iterate (N).
     pub force: Vec<f64>,
     /// Length of the increment from the base without new forces, relative to the body's size (-).
     pub left: f64,
-    /// Share of the way from the base on which no cell turns over (-).
+    /// Share of the way from the base on which no cell turns over and the forces out of balance do work (-).
     pub reach: f64,
     /// A place on the way (m).
     pub place: Vec<f64>,
@@ -34,16 +38,12 @@ pub(super) struct Led {
 impl Led {
     /// Begins a step.
     pub fn forget(&mut self) {
-        self.is_led = false;
+        (self.is_led, self.takes_end) = (false, false);
+        self.reach = 1.0;
         self.base.clear();
     }
 
     pub fn has_base(&self) -> bool {
         !self.base.is_empty()
-    }
-
-    /// Whether its end under given forces may be looked for.
-    pub fn is_near(&self) -> bool {
-        !self.is_led || self.left <= NEAR
     }
 }

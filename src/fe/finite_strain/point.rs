@@ -101,8 +101,9 @@ fn decay_stress<L: Hyperelastic + ?Sized>(
 
 /// The symmetric moduli `∂P/∂F'` (Pa).
 ///
-/// From `P = 2 a F½ + b cof F½`: `s (2 a I + b ∂cof/∂F + 4 W_tt F½⊗F½ + 2 W_tJ (F½⊗cof + cof⊗F½) + W_JJ cof⊗cof)` with the second
-/// derivatives at the mean invariants and `s = 1/2`; for equilibrium all at the end and `s = 1`.
+/// From `P = 2 a F½ + b cof F½`: `s (2 a I + b ∂cof/∂F + 4 W_tt F½⊗F½ + 2 W_tJ (F½⊗cof + cof⊗F½) + W_JJ cof⊗cof)` with the derivatives of
+/// the pair for those of `W`, `s = 1/2`, and `F½` for `F'` in the second factors, which keeps the products definite; for equilibrium all at the
+/// end and `s = 1`.
 pub(super) fn moduli<L: Hyperelastic + ?Sized>(
     law: &L,
     form: Form,
@@ -116,7 +117,7 @@ pub(super) fn moduli<L: Hyperelastic + ?Sized>(
         Form::EnergyMomentum { .. } => {
             let before = Invariants::of(start);
             let pair = law.conserving_pair(before, invariants);
-            let second = law.hessian(before.mean(invariants));
+            let second = law.conserving_hessian(before, invariants);
             (middle(start, end), pair, second, 0.5)
         }
     };

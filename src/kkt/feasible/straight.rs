@@ -7,7 +7,7 @@ use crate::system::{Block, Point};
 /// Turn of a member with near pairs within a pass (rad): rows are straight where arcs are not.
 pub(super) const MOST_TURN: f64 = 0.5;
 
-/// The part of the way on which no block with near pairs turns too far, and no cell of a block that is led turns over.
+/// The part of the way on which no block with near pairs turns too far, and blocks of large strain may go.
 pub(super) fn straight_part(path: &FeasiblePath, blocks: &[Block]) -> f64 {
     let mut part = part_of_cells(blocks);
     for near in &path.near {
@@ -36,7 +36,7 @@ fn is_round(path: &FeasiblePath, member: usize) -> bool {
     path.points[points].iter().all(is_centre)
 }
 
-/// The part of the way on which no cell of a block that is led turns over.
+/// The part of the way on which no cell of a block of large strain turns over, as far as it has looked.
 fn part_of_cells(blocks: &[Block]) -> f64 {
     blocks.iter().fold(1.0, |part, block| match block {
         Block::Flex(body) => part.min(body.part_ahead()),

@@ -28,6 +28,7 @@ const STATES: [[f64; 4]; 12] = [
 /// | energy and stress are zero at rest, moduli are Hooke's | [`ElasticConstants`](super::ElasticConstants) |
 /// | gradient and Hessian are derivatives | central differences |
 /// | the pair does the work that the energy rises by, is symmetric, and has the gradient as its limit | rounding |
+/// | the derivatives that a step uses are those of the pair | central differences |
 /// | energy is positive beside rest and grows with the stretch | |
 ///
 /// # Errors
@@ -43,10 +44,36 @@ pub fn check_law(law: &dyn Hyperelastic) -> Result<(), ConformanceFailure> {
         check_derivatives(law, at, stiffness)?;
         for to in states() {
             check_pair(law, at, to, stiffness)?;
+            check_pair_derivatives(law, at, to, stiffness)?;
         }
         check_near_pair(law, at, stiffness)?;
     }
     check_growth(law)
+}
+
+/// As [`check_derivatives`], with the pair of two states as a function of the second.
+fn check_pair_derivatives(
+    law: &dyn Hyperelastic,
+    from: Invariants,
+    to: Invariants,
+    stiffness: f64,
+) -> Result<(), ConformanceFailure> {
+    let step = step_at(to);
+    let along = |axis| {
+        let [above, below] =
+            [step, -step].map(|step| law.conserving_pair(from, moved(to, axis, step)));
+        [0, 1].map(|row: usize| (above[row] - below[row]) / step)
+    };
+    let ([tt, jt], [tj, jj]) = (along(0), along(1));
+    let due = [tt, 0.5 * (jt + tj), jj];
+    let found = law.conserving_hessian(from, to);
+    let size = due.iter().map(|due| due.abs()).sum::<f64>() + stiffness;
+    let error = (0..3).fold(0.0, |most, k| f64::max(most, (found[k] - due[k]).abs()));
+    at_most(
+        "the derivatives of the pair are those of its differences",
+        error / size,
+        1e-6,
+    )
 }
 
 fn check_rest(law: &dyn Hyperelastic, stiffness: f64) -> Result<(), ConformanceFailure> {
@@ -90,9 +117,7 @@ fn check_derivatives(
     at: Invariants,
     stiffness: f64,
 ) -> Result<(), ConformanceFailure> {
-    // A law for J > 0 only changes over lengths of J; mirror images of corotated laws over t + 2 J.
-    let room = at.j.abs().min((at.t + 2.0 * at.j).abs()).min(1.0);
-    let step = 1e-4 * room.max(0.1);
+    let step = step_at(at);
     let [a, b] = law.gradient(at);
     let [tt, tj, jj] = law.hessian(at);
     let size = a.abs() + b.abs() + stiffness * at.t;
@@ -110,6 +135,12 @@ fn check_derivatives(
         }
     }
     Ok(())
+}
+
+/// A law for J > 0 only changes over lengths of J; mirror images of corotated laws over t + 2 J.
+fn step_at(at: Invariants) -> f64 {
+    let room = at.j.abs().min((at.t + 2.0 * at.j).abs()).min(1.0);
+    1e-4 * room.max(0.1)
 }
 
 fn moved(at: Invariants, axis: usize, step: f64) -> Invariants {
@@ -216,6 +247,8 @@ mod tests {
         pair_is_gradient: bool,
         /// A thousandth more in one second derivative.
         hessian_is_off: bool,
+        /// The Hessian in the middle instead of the derivatives of the pair.
+        slopes_are_hessian: bool,
     }
 
     impl Hyperelastic for Wrong {
@@ -248,23 +281,34 @@ mod tests {
                 self.law.conserving_pair(from, to)
             }
         }
+
+        fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3] {
+            if self.slopes_are_hessian {
+                self.law.hessian(from.mean(to))
+            } else {
+                self.law.conserving_hessian(from, to)
+            }
+        }
     }
 
     #[test]
     fn a_law_with_one_thing_wrong_is_refused_for_it() {
-        let failed_check = |pair_is_gradient, hessian_is_off| {
+        let failed_check = |[pair_is_gradient, hessian_is_off, slopes_are_hessian]: [bool; 3]| {
             let law = Corotated::plane_strain(1e6, 0.3);
             let wrong = Wrong {
                 law,
                 pair_is_gradient,
                 hessian_is_off,
+                slopes_are_hessian,
             };
             check_law(&wrong).err().map(|failure| failure.check)
         };
-        assert_eq!(failed_check(false, false), None);
+        assert_eq!(failed_check([false; 3]), None);
         let pair = "the work of the pair is the change of energy";
-        assert_eq!(failed_check(true, false), Some(pair));
+        assert_eq!(failed_check([true, false, false]), Some(pair));
+        let slopes = "the derivatives of the pair are those of its differences";
+        assert_eq!(failed_check([false, false, true]), Some(slopes));
         let moduli = "the moduli at rest are those of linear elasticity";
-        assert_eq!(failed_check(false, true), Some(moduli));
+        assert_eq!(failed_check([false, true, false]), Some(moduli));
     }
 }

@@ -88,6 +88,13 @@ impl Hyperelastic for Corotated {
         let p = self.linear - 2.0 * self.root / (Self::root_of(from) + Self::root_of(to));
         [self.constants.mu() + p, 2.0 * p]
     }
+
+    /// `∂p/∂s' = root / (u' (u + u')²)`.
+    fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3] {
+        let (u, end) = (Self::root_of(from), Self::root_of(to));
+        let along = 2.0 * self.root / (end * (u + end) * (u + end));
+        [along, 2.0 * along, 4.0 * along]
+    }
 }
 
 #[cfg(test)]

@@ -106,6 +106,11 @@ pub trait Hyperelastic: Send + Sync + Debug {
     /// Symmetric in its arguments.
     fn conserving_pair(&self, from: Invariants, to: Invariants) -> [f64; 2];
 
+    /// `2 [∂a/∂t', (∂a/∂J' + ∂b/∂t')/2, ∂b/∂J']` of that pair (Pa), by which a step finds its end; the Hessian where both states are one.
+    ///
+    /// The Hessian in the middle is no substitute: where `J` falls from .2 to .02 the barrier of [`NeoHookean`] is six times as stiff.
+    fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3];
+
     /// Whether the law has an energy there.
     fn admits(&self, at: Invariants) -> bool {
         let _ = at;

@@ -1,6 +1,6 @@
 //! The logarithmic neo-Hookean law: `W = μ/2 (t - 2) - μ ln J + λ/2 ln² J`.
 
-use super::quotient::slope_of_ln;
+use super::quotient::{rise_of_slope_of_ln, slope_of_ln};
 use super::{ElasticConstants, Hyperelastic, Invariants};
 use crate::fe::material::LinearElastic;
 use crate::fe::record::LawRecord;
@@ -69,6 +69,13 @@ impl Hyperelastic for NeoHookean {
         let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
         let slope = slope_of_ln(from.j, to.j);
         [0.5 * mu, slope * (0.5 * lambda * ln(from.j * to.j) - mu)]
+    }
+
+    fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3] {
+        let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
+        let [slope, rise] = [slope_of_ln, rise_of_slope_of_ln].map(|of| of(from.j, to.j));
+        let along_j = rise * (0.5 * lambda * ln(from.j * to.j) - mu) + 0.5 * slope * lambda / to.j;
+        [0.0, 0.0, 2.0 * along_j]
     }
 
     fn admits(&self, at: Invariants) -> bool {

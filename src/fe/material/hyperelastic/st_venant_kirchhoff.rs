@@ -60,6 +60,10 @@ impl Hyperelastic for StVenantKirchhoff {
         let Invariants { t, j } = from.mean(to);
         [0.25 * lambda * (t - 2.0) + 0.5 * mu * (t - 1.0), -mu * j]
     }
+
+    fn conserving_hessian(&self, _from: Invariants, to: Invariants) -> [f64; 3] {
+        self.hessian(to)
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The stable neo-Hookean law of Smith, de Goes and Kim (2018), with constants of its own for the plane.
 
-use super::quotient::slope_of_ln;
+use super::quotient::{rise_of_slope_of_ln, slope_of_ln};
 use super::{ElasticConstants, Hyperelastic, Invariants};
 use crate::fe::record::LawRecord;
 use crate::math::ln;
@@ -85,6 +85,11 @@ impl Hyperelastic for StableNeoHookean {
             0.5 * self.shear * (1.0 - slope),
             self.volumetric * (j - self.rest_volume),
         ]
+    }
+
+    fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3] {
+        let rise = rise_of_slope_of_ln(from.t + 1.0, to.t + 1.0);
+        [-self.shear * rise, 0.0, self.volumetric]
     }
 }
 
