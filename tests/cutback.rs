@@ -172,9 +172,8 @@ fn what_a_sudden_force_throws_beyond_where_it_was_looked_for_is_seen() {
         let quality = report.quality();
         let lowest = scene.body(block).positions().chunks_exact(2);
         let lowest = lowest.map(|at| at[1]).fold(f64::INFINITY, f64::min);
-        // A thousandth of the offset, a hundredth of an edge of .1 m, for what moves that far in the step.
         assert!(
-            lowest > -1e-6,
+            lowest > -1e-9,
             "thrown by {thrown} m: at {lowest} m, {quality:?}"
         );
     }

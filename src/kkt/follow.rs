@@ -29,12 +29,8 @@ const MOST_STOPS: usize = 20;
 /// Share of the margin within which the laws hold where the contacts are many (-): a thousandth moves no force that counts.
 pub(super) const LARGE_TOLERANCE: f64 = 1e-3;
 
-/// The same where bodies of large strain find their equilibrium to a residual (-): so much of what rests.
+/// The same where bodies of large strain find their equilibrium to a residual (-).
 const CURVED_TOLERANCE: f64 = 1e-6;
-
-/// The part of the error of the first pass that may be left there (-), up to [`LARGE_TOLERANCE`]: what comes to rest is solved the finer the less
-/// it moves.
-const SETTLING: f64 = 5e-4;
 
 /// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
 const PASSES_PER_ITERATION: usize = 2;
@@ -127,13 +123,13 @@ impl Island {
         let mut turned = self.correct();
         let mut n_stopped = 0;
         let mut has_left = false;
-        let (mut first, mut last, mut is_idle) = (None, f64::INFINITY, false);
+        let (mut last, mut is_idle) = (f64::INFINITY, false);
         for pass in 0..PASSES_PER_ITERATION * settings.max_newton {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let is_eased = pass >= self.n_exact_passes(settings);
-            let near = self.enough(is_eased, NEAR * tolerance, None);
+            let near = self.enough(is_eased, NEAR * tolerance);
             let misleads = is_guess && self.measure_guess() > near;
             let mut arrives = false;
             let mut error = 0.0;
@@ -153,7 +149,6 @@ impl Island {
                 listing.keeps_rows = is_eased && arrives;
                 self.list_near(&listing);
                 error = self.measure(false);
-                first = first.or(Some(error));
                 is_idle = error > SLOWEST * last;
                 last = error;
             }
@@ -162,7 +157,7 @@ impl Island {
             let enough = if is_guess {
                 tolerance
             } else {
-                self.enough(is_eased, tolerance, first)
+                self.enough(is_eased, tolerance)
             };
             let is_close = if is_eased {
                 arrives && turned.way <= enough && self.shortfall(true) <= CLOSE_ENOUGH
@@ -273,18 +268,14 @@ impl Island {
     }
 
     /// How far the laws may be from holding at the end of a pass (m).
-    ///
-    /// - `first`: how far they were in the first pass.
-    fn enough(&self, is_eased: bool, tolerance: f64, first: Option<f64>) -> f64 {
+    fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
         let margin = self.path.least_margin();
         if is_eased {
             CLOSE_ENOUGH * margin
         } else if self.has_many_rows() {
             tolerance.max(LARGE_TOLERANCE * margin)
         } else if self.has_large() {
-            let [least, most] = [CURVED_TOLERANCE, LARGE_TOLERANCE].map(|share| share * margin);
-            let settled = first.map_or(least, |first| (SETTLING * first).clamp(least, most));
-            tolerance.max(settled)
+            tolerance.max(CURVED_TOLERANCE * margin)
         } else {
             tolerance
         }

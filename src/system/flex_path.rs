@@ -204,8 +204,8 @@ impl FlexBlock {
         moved / self.size
     }
 
-    /// Finds how far towards the iterate no cell turns over and the forces that are out of balance do work; returns how far the body is from
-    /// its end, relative to its size.
+    /// Finds how far towards the iterate no cell turns over and, of what is led, the forces that are out of balance do work; returns how far the
+    /// body is from its end, relative to its size.
     pub(super) fn look_ahead(&mut self, large: &mut Large) -> f64 {
         for (dof, load) in large.load.iter_mut().enumerate() {
             *load = self.force[dof] + self.contact_force[dof];
@@ -217,7 +217,15 @@ impl FlexBlock {
             [&large.load, &self.start_position, &large.coast],
             &self.is_fixed,
         );
+        // Forces that rounding of the positions makes do work in no direction.
+        let rounding = f64::EPSILON * large.row_sum * self.extent();
         let led = &mut large.led;
+        let way = led.base.iter().zip(&self.position);
+        let length: f64 = way.map(|(from, to)| (to - from).abs()).sum();
+        let least = match led.is_led {
+            true => -f64::from(2 * N_PLACES) * rounding * length,
+            false => f64::NEG_INFINITY,
+        };
         let (residual, reaction) = (&mut large.residual, &mut large.reaction);
         let deformation = &mut large.deformation;
         // The power of what is out of balance along the way; none where a cell is turned over.
@@ -243,7 +251,7 @@ impl FlexBlock {
                 work = (work.zip(last).zip(now)).map(|((work, last), now)| work + last + now);
                 last = now;
             }
-            if work.is_some_and(|work| work >= 0.0) {
+            if work.is_some_and(|work| work >= least) {
                 break;
             }
             reach *= 0.5;

@@ -6,6 +6,9 @@ use crate::fe::material::LinearElastic;
 use crate::fe::record::LawRecord;
 use crate::math::ln;
 
+/// Change of `J`, relative to itself, up to which derivatives in the middle are those of the pair, to a share as small (-).
+const SMALL: f64 = 1e-6;
+
 /// `W = μ/2 (t - 2) - μ ln J + λ/2 ln² J`, for `J > 0` only.
 ///
 /// The energy grows beyond bounds as material is crushed to nothing, so no solution turns it inside out; a step that would is
@@ -72,6 +75,10 @@ impl Hyperelastic for NeoHookean {
     }
 
     fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3] {
+        // Where little changes the middle tells as much, without logarithms.
+        if (to.j - from.j).abs() <= SMALL * to.j {
+            return self.hessian(from.mean(to));
+        }
         let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
         let [slope, rise] = [slope_of_ln, rise_of_slope_of_ln].map(|of| of(from.j, to.j));
         let along_j = rise * (0.5 * lambda * ln(from.j * to.j) - mu) + 0.5 * slope * lambda / to.j;
