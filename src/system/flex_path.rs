@@ -265,8 +265,12 @@ impl FlexBlock {
     /// Puts the nodes where the step could go (m), with the velocities and accelerations that its forces lead to.
     pub fn stop_at(&mut self, positions: &[f64]) {
         self.position.copy_from_slice(positions);
-        if let Some(large) = &mut self.large {
+        if let Some(mut large) = self.large.take() {
             large.led.is_led = false;
+            if large.led.takes_end {
+                self.answer_as_at_the_end(&mut large);
+            }
+            self.large = Some(large);
             self.follow_centre();
             return;
         }

@@ -7,8 +7,8 @@
 //! W = κ V f(J/J0),    f(z) = (1 - z)³/z  for z < 1,  else 0
 //! ```
 //!
-//! per node of a cell and its share `V` of the volume, and for the straight triangle between the corners of one with curved sides: twice continuously differentiable, convex, and infinite where a corner is flat, as the
-//! barriers are that keep surfaces apart elsewhere (Li et al., 2020). The energy that comes decides how flat a corner may get, not rounding: a
+//! per node of a cell and its share `V` of the volume, and for the straight triangle between the corners of one with curved sides: twice
+//! continuously differentiable, convex, and infinite where a corner is flat, as the barriers are that keep surfaces apart elsewhere (Li et al., 2020). The energy that comes decides how flat a corner may get, not rounding: a
 //! thousand `κ V` leave a ten-thousandth of the area. It is an energy of the invariant `J` like any other, and with its slope between
 //! the ends of a step it conserves energy and both momenta.
 

@@ -75,7 +75,7 @@ impl Hyperelastic for NeoHookean {
     }
 
     fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3] {
-        // Where little changes the middle tells as much, without logarithms.
+        // Where little changes the middle tells as much, in fewer operations.
         if (to.j - from.j).abs() <= SMALL * to.j {
             return self.hessian(from.mean(to));
         }
