@@ -87,7 +87,10 @@ impl BlockBase {
 #[derive(Debug, Default)]
 pub struct FeasiblePath {
     surfaces: Surfaces,
+    /// The way of the last pass, from the base before it.
     motion: Motion,
+    /// What else is asked about, kept out of that way.
+    question: Motion,
     search: Path,
     pairs: Vec<MemberPair>,
     ways: Vec<Way>,

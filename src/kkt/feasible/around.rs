@@ -13,6 +13,8 @@ impl FeasiblePath {
         if self.near.iter().any(|near| near.pair == way) {
             return false;
         }
+        // The way of the pass may be gone in part yet.
+        std::mem::swap(&mut self.motion, &mut self.question);
         self.scratch.clear();
         self.scratch.extend_from_slice(self.surfaces.points());
         let members = self.ways[way].members;
@@ -42,6 +44,7 @@ impl FeasiblePath {
                 self.surfaces.points_mut(member).copy_from_slice(base);
             }
         }
+        std::mem::swap(&mut self.motion, &mut self.question);
         impact.t < 1.0
     }
 

@@ -147,3 +147,22 @@ fn a_surface_is_no_nearer_to_itself_than_its_fit_tells() {
         assert!((turned(expected, back) - Vec2::new(1.0, 0.0)).norm() < 0.1);
     }
 }
+
+#[test]
+fn a_question_about_the_step_leaves_the_way_of_the_pass() {
+    let (mut path, _, blocks) = scene(&strip(), bent(2.0));
+    path.rest(&blocks);
+    path.motion.rest(&path.surfaces);
+    let shift = Vec2::new(0.1, 0.2);
+    for end in path.motion.ends_mut(&path.surfaces, 0) {
+        *end += shift;
+    }
+    let (points, ends) = (path.surfaces.points().to_vec(), path.motion.ends().to_vec());
+    assert!(!path.leads_around(0, &blocks));
+    assert_eq!(path.surfaces.points(), points);
+    assert_eq!(
+        path.motion.ends(),
+        ends,
+        "gone in part once more, it would lead elsewhere"
+    );
+}
