@@ -132,7 +132,7 @@ impl Island {
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let is_eased = pass >= self.n_exact_passes(settings);
-            let near = self.enough(is_eased, settings, NEAR * tolerance);
+            let near = self.enough(is_eased, NEAR * tolerance);
             let misleads = is_guess && self.measure_guess() > near;
             let mut arrives = false;
             let mut error = 0.0;
@@ -160,7 +160,7 @@ impl Island {
             let enough = if is_guess {
                 tolerance
             } else {
-                self.enough(is_eased, settings, tolerance)
+                self.enough(is_eased, tolerance)
             };
             let lack = if is_eased && arrives {
                 self.shortfall(true).max(CLOSE_ENOUGH * turned.way / enough)
@@ -278,14 +278,12 @@ impl Island {
         }
     }
 
-    /// How far the laws may be from holding at the end of a pass (m). Where the step of bodies of large strain is cut, what is to come to rest
-    /// has yet to stop, and only joints ask for more than many contacts do.
-    fn enough(&self, is_eased: bool, settings: &SolveSettings, tolerance: f64) -> f64 {
+    /// How far the laws may be from holding at the end of a pass (m).
+    fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
         let margin = self.path.least_margin();
-        let is_part = settings.dt < settings.whole && self.ties.is_empty();
         if is_eased {
             CLOSE_ENOUGH * margin
-        } else if self.has_many_rows() || is_part && self.has_large() {
+        } else if self.has_many_rows() {
             tolerance.max(LARGE_TOLERANCE * margin)
         } else if self.has_large() {
             tolerance.max(CURVED_TOLERANCE * margin)
