@@ -12,30 +12,16 @@ use crate::system::Block;
 /// Energy beyond what there was and what loads have done that tells of forces that are none (-): as much as the tests of energy allow.
 pub const GAINED: f64 = 0.01;
 
-/// The same where no swing of stored accelerations explains it (-).
-pub const DOUBLED: f64 = 1.0;
-
 /// Gap up to which bodies count as touching, relative to the margin (-).
 const TOUCHING: f64 = 1.0;
 
 impl Island {
-    /// Whether a step along the path has gained energy: if it is a solved part that is not cut any further, as much as there was.
-    pub(super) fn has_gained(
-        &self,
-        settings: &SolveSettings,
-        supply: f64,
-        summary: &IslandSummary,
-    ) -> bool {
-        let is_last_part =
-            settings.dt < settings.whole && !settings.may_be_cut && self.ties.is_empty();
-        let share = match (summary.is_cut || summary.is_stopped, is_last_part) {
-            (true, _) => GAINED,
-            (false, true) => DOUBLED,
-            (false, false) => return false,
-        };
+    /// Whether a step along the path that is not solved has gained energy.
+    pub(super) fn has_gained(&self, supply: f64, summary: &IslandSummary) -> bool {
         let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
+        let is_unsolved = (summary.is_cut || summary.is_stopped) && !self.path.is_empty();
         let gain = after - before - supply.max(0.0);
-        !self.path.is_empty() && (gain.is_nan() || gain > share * (before + supply.max(0.0)))
+        is_unsolved && (gain.is_nan() || gain > GAINED * (before + supply.max(0.0)))
     }
 
     /// Ends the step where it was first stopped, or where it began, without forces of position.
