@@ -9,8 +9,10 @@ mod arrival;
 mod consistent;
 mod listing;
 mod parted;
+mod trend;
 
 use self::listing::Listing;
+use self::trend::Trend;
 use super::feasible::KeptBase;
 use super::island::{ActiveContact, Island, SolveSettings};
 use super::iterate::ANGLE_TOLERANCE;
@@ -124,7 +126,8 @@ impl Island {
         let mut n_stopped = 0;
         let mut has_left = false;
         let (mut last, mut is_idle) = (f64::INFINITY, false);
-        for pass in 0..PASSES_PER_ITERATION * settings.max_newton {
+        let (n_passes, mut trend) = (PASSES_PER_ITERATION * settings.max_newton, Trend::new());
+        for pass in 0..n_passes {
             summary.n_newton += 1;
             // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
@@ -159,8 +162,13 @@ impl Island {
             } else {
                 self.enough(is_eased, tolerance)
             };
+            let lack = if is_eased && arrives {
+                self.shortfall(true).max(CLOSE_ENOUGH * turned.way / enough)
+            } else {
+                f64::INFINITY
+            };
             let is_close = if is_eased {
-                arrives && turned.way <= enough && self.shortfall(true) <= CLOSE_ENOUGH
+                lack <= CLOSE_ENOUGH
             } else {
                 error <= enough && (turned.angle <= ANGLE_TOLERANCE || turned.way <= enough)
             };
@@ -171,6 +179,9 @@ impl Island {
             }
             if arrives && !has_more && turned.angle <= CLOSE_ENOUGH {
                 self.keep_arrival();
+            }
+            if is_eased && trend.is_hopeless(lack, n_passes - pass - 1) {
+                return false;
             }
             let may_retreat = !misleads && !listing.keeps_rows && !self.is_led();
             if may_retreat && self.path.retreat(&self.blocks) {
