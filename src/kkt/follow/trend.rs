@@ -42,7 +42,7 @@ mod tests {
 
     #[test]
     fn what_goes_to_and_fro_is_given_up_once_that_is_known() {
-        let alternating = |pass: usize| if pass % 2 == 0 { 0.3 } else { 0.2 };
+        let alternating = |pass: usize| if pass.is_multiple_of(2) { 0.3 } else { 0.2 };
         assert_eq!(given_up(alternating, 34), Some(FEW_PASSES));
     }
 
