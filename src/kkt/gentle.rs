@@ -17,11 +17,17 @@ const TOUCHING: f64 = 1.0;
 
 impl Island {
     /// Whether a step along the path that is not solved has gained energy.
-    pub(super) fn has_gained(&self, supply: f64, summary: &IslandSummary) -> bool {
+    ///
+    /// `reserve` is what contact has taken, or owes if it is negative (J): parts of a step that gain a little each are not to gain much together.
+    pub(super) fn has_gained(&self, reserve: f64, summary: &IslandSummary) -> bool {
         let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
         let is_unsolved = (summary.is_cut || summary.is_stopped) && !self.path.is_empty();
-        let gain = after - before - supply.max(0.0);
-        is_unsolved && (gain.is_nan() || gain > GAINED * (before + supply.max(0.0)))
+        // Forces that no solution gave do no work to count on: neither of joints nor of driven bodies.
+        let supply = (self.applied_work() + reserve.max(0.0)).max(0.0);
+        let gain = after - before - supply;
+        let owed = (-reserve).max(0.0);
+        let is_much = gain > 0.0 && gain + owed > GAINED * (before + supply);
+        is_unsolved && (gain.is_nan() || is_much)
     }
 
     /// Ends the step where it was first stopped, or where it began, without forces of position.

@@ -345,12 +345,10 @@ impl Island {
         let allowance = loads + joint_work;
         summary.work = self.actual_work(settings) + joint_work;
         summary.end_energy = self.end_energy();
-        // Forces that no solution gave do no work to count on: neither of joints nor of driven bodies.
-        let supply = self.applied_work() + reserve.max(0.0);
-        if self.has_gained(supply, &summary) {
+        if self.has_gained(*reserve, &summary) {
             self.end_gently(settings, memory, &mut summary)?;
         }
-        if self.has_gained(supply, &summary) {
+        if self.has_gained(*reserve, &summary) {
             self.end_together(&mut summary);
             self.measure_ended(settings, &mut summary);
         }

@@ -2,7 +2,7 @@
 
 use super::flex_block::FlexBlock;
 use super::large_block::{Large, NOT_FOUND};
-use super::large_equation::{equation_of, factorize, factorize_definite};
+use super::large_equation::{equation_of, factorize, factorize_impulsive};
 use crate::body::{Frame, FrameMotion};
 use crate::fe::model::Model;
 use crate::linalg::block_matrix::BlockMatrix;
@@ -109,7 +109,7 @@ impl FlexBlock {
         self.follow_positions();
     }
 
-    /// Answers impulses by the definite part of what the body is at the iterate.
+    /// Answers impulses by what the body is at the iterate.
     fn answer_as_at_the_end(&mut self, large: &mut Large) {
         let scale = self.step.weights.b0;
         let equation = equation_of(
@@ -127,7 +127,7 @@ impl FlexBlock {
         self.n_factorizations += 1;
         self.compliance.clear();
         let matrices = (&mut large.tangent, &mut self.effective);
-        let found = factorize_definite(
+        let found = factorize_impulsive(
             &equation,
             scale,
             &large.deformation,
@@ -175,7 +175,12 @@ impl FlexBlock {
         };
         large.row_sum = found.row_sum;
         self.local.copy_from_slice(&large.residual);
-        large.led.left = self.go_by_local();
+        // Of cells that are all but flat the stiffness may leave nothing of the masses in the factor: their momentum is asked for by itself.
+        let lacking = match self.kind {
+            Frame::Free => self.lacking_shift(large).norm() / self.size,
+            _ => 0.0,
+        };
+        large.led.left = lacking.max(self.go_by_local());
     }
 
     /// Moves what is led by what it answers to the change of the contact forces.

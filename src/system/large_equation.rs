@@ -80,16 +80,51 @@ pub(super) fn factorize(
     factorize_definite(equation, scale, deformation, (tangent, effective), factor)
 }
 
+/// Stiffness of a point over the masses' part of the matrix beyond which it is rigid in the step, and rounding would take the masses (-).
+const RIGID: f64 = 1e10;
+
 /// Factorizes the definite part of the tangent, so that `A >= M`: what the tangent alone leaves may be as near to singular as it likes, and throw
 /// what it answers for.
 pub(super) fn factorize_definite(
     equation: &Equation<'_>,
     scale: f64,
     deformation: &Deformation,
+    matrices: (&mut BlockMatrix, &mut BlockMatrix),
+    factor: &mut BlockCholesky,
+) -> Result<Factored, CholeskyError> {
+    let kind = Linearization::Definite;
+    factorize_shifted((equation, kind), scale, deformation, matrices, factor)
+}
+
+/// Factorizes what impulses are answered by: masses and the definite part of the stiffness, which no rigid motion feels.
+///
+/// Impulses that bring velocities `A⁻¹ M v` to rest take kinetic energy from whatever moves, as long as `A >= M` (see [`FlexBlock::resolve`]); but
+/// they may only be sought with what then acts. Of cells that are all but flat the stiffness is 10^20 times the masses, rounding leaves nothing of
+/// these, and what is stiff enough not to move in the step may as well be a little softer.
+///
+/// [`FlexBlock::resolve`]: super::flex_block::FlexBlock::resolve
+pub(super) fn factorize_impulsive(
+    equation: &Equation<'_>,
+    scale: f64,
+    deformation: &Deformation,
+    matrices: (&mut BlockMatrix, &mut BlockMatrix),
+    factor: &mut BlockCholesky,
+) -> Result<Factored, CholeskyError> {
+    let masses = equation.model.masses();
+    let mean = masses.iter().sum::<f64>() / masses.len() as f64;
+    let most = RIGID * equation.inertia.acceleration * mean;
+    let kind = Linearization::Impulsive { most };
+    factorize_shifted((equation, kind), scale, deformation, matrices, factor)
+}
+
+fn factorize_shifted(
+    (equation, kind): (&Equation<'_>, Linearization),
+    scale: f64,
+    deformation: &Deformation,
     (tangent, effective): (&mut BlockMatrix, &mut BlockMatrix),
     factor: &mut BlockCholesky,
 ) -> Result<Factored, CholeskyError> {
-    equation.assemble(Linearization::Definite, deformation, tangent);
+    equation.assemble(kind, deformation, tangent);
     effective.assign_scaled(scale, tangent);
     let mut outcome = factor.factorize(effective);
     let mut shift = SHIFT * scale * largest_row_sum(tangent);

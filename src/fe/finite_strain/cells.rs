@@ -3,7 +3,8 @@
 use super::Inadmissible;
 use super::guard::Guards;
 use super::hourglass::{Hourglass, Shape};
-use super::point::{self, Form, Linearization};
+use super::linearization::Linearization;
+use super::point::{self, Form};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::linalg::block_matrix::BlockMatrix;
 
@@ -300,7 +301,8 @@ impl CellGroup {
             let points = cell.gradients.iter().zip(cell.volumes).zip(start).zip(end);
             for (((gradient, &volume), start), end) in points {
                 let moduli = point::moduli(law, form, kind, *start, *end);
-                add_point(gradient, &moduli, volume, &mut blocks);
+                let share = kind.share(gradient, &moduli, volume);
+                add_point(gradient, &moduli, share * volume, &mut blocks);
             }
             scatter(&blocks, places, matrix);
         }

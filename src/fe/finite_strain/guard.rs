@@ -16,7 +16,8 @@ use super::Inadmissible;
 use super::cells::{
     CellGroup, Deformed, add_point, deformation_gradient, gather, scatter, subtract,
 };
-use super::point::{Form, Linearization, cofactor, law_moduli, middle};
+use super::linearization::Linearization;
+use super::point::{Form, cofactor, law_moduli, middle};
 use crate::fe::element::{Element, MAX_NODES, Tri3, kinematics::physical_gradient};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::linalg::block_matrix::BlockMatrix;
@@ -194,15 +195,17 @@ impl CellGroup {
                 let [slope, rise] = slopes(form, before, after);
                 let slope = match kind {
                     Linearization::Consistent => slope,
-                    Linearization::Definite => 0.0,
+                    Linearization::Definite | Linearization::Impulsive { .. } => 0.0,
                 };
                 let at = match form {
                     Form::Equilibrium => *end,
                     Form::EnergyMomentum { .. } => middle(*start, *end),
                 };
+                // The area of what turns as a whole stays: no turn is resisted.
                 let moduli = law_moduli(at, [0.0, slope], [0.0, 0.0, rise / scale], scale);
+                let share = kind.share(gradient, &moduli, *unit);
                 let mut blocks = [[[0.0; 4]; N]; N];
-                add_point(gradient, &moduli, *unit, &mut blocks);
+                add_point(gradient, &moduli, share * unit, &mut blocks);
                 scatter(&blocks, places, matrix);
             }
         }

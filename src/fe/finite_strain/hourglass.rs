@@ -12,7 +12,8 @@
 //! momentum. On parallelograms the cell at rest *is* the QM6 element, which bends without locking; under pressure along its sides the part
 //! `k` stays.
 
-use super::point::{Form, Linearization};
+use super::linearization::Linearization;
+use super::point::Form;
 use crate::fe::element::{Element, ElementError};
 use crate::fe::material::Material;
 
@@ -169,8 +170,14 @@ impl Hourglass {
         let (at, stress, scale) = self.stress(form, start, end);
         let stress = match kind {
             Linearization::Consistent => stress,
-            Linearization::Definite => [0.0; 2],
+            Linearization::Definite | Linearization::Impulsive { .. } => [0.0; 2],
         };
+        // The amplitude turns with the body: of an impulse only its growth is resisted.
+        let [x, y] = at.amplitude;
+        let length = x * x + y * y;
+        let grows_only = matches!(kind, Linearization::Impulsive { .. }) && length > 0.0;
+        let along = [x * x, x * y, x * y, y * y].map(|part| self.isotropic * part / length);
+        let isotropic = if grows_only { 0.0 } else { self.isotropic };
         let decay = match form {
             Form::Equilibrium => 0.0,
             Form::EnergyMomentum { decay } => decay,
@@ -192,13 +199,16 @@ impl Hourglass {
                 let bend =
                     |i: usize| gradients[a][i] * self.shape[b] + self.shape[a] * gradients[b][i];
                 let spherical = scale
-                    * (self.isotropic * self.shape[a] * self.shape[b]
+                    * (isotropic * self.shape[a] * self.shape[b]
                         + stress[0] * bend(0)
                         + stress[1] * bend(1));
                 let block = &mut row[b];
                 for (place, entry) in block.iter_mut().enumerate() {
                     let (of, by) = (place / 2, place % 2);
                     *entry += own[0][of] * risen[by][0] + own[1][of] * risen[by][1];
+                    if grows_only {
+                        *entry += scale * self.shape[a] * self.shape[b] * along[place];
+                    }
                 }
                 block[0] += spherical;
                 block[3] += spherical;

@@ -18,6 +18,7 @@
 //! | `point` | stress and moduli at one quadrature point |
 //! | `cells` | cells of one node count, and their kernels |
 //! | `hourglass` | the modes that the one point of a four-node cell does not see |
+//! | `linearization` | which matrix stands for the derivative of the forces |
 //! | `model` | the assembled body |
 //! | `stress` | Cauchy's stress |
 //!
@@ -27,12 +28,14 @@
 mod cells;
 mod guard;
 mod hourglass;
+mod linearization;
 mod model;
 mod point;
 mod stress;
 
+pub use linearization::Linearization;
 pub use model::{Deformation, FiniteStrainDescription, FiniteStrainError, FiniteStrainModel};
-pub use point::{Form, Linearization};
+pub use point::Form;
 
 #[cfg(doc)]
 use crate::fe::material::hyperelastic::Hyperelastic;

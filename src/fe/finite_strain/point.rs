@@ -2,6 +2,7 @@
 //!
 //! Gradients and stresses are `[xx, xy, yx, yy]`; the first index is of space, the second of the undeformed material.
 
+use super::linearization::{Linearization, forget_turn};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 
 /// Which stress the forces are made of.
@@ -24,16 +25,6 @@ impl Form {
             Self::EnergyMomentum { .. } => 0.5,
         }
     }
-}
-
-/// Which matrix stands for `∂f/∂x'`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Linearization {
-    /// The derivative, made symmetric: exact for equilibrium and where a step changes nothing, else up to the first order of the
-    /// change of `F`.
-    Consistent,
-    /// The same with stresses and second derivatives of the energy reduced until every point is positive semidefinite.
-    Definite,
 }
 
 /// The cofactor matrix, `∂ det F/∂F`.
@@ -123,7 +114,7 @@ pub(super) fn moduli<L: Hyperelastic + ?Sized>(
     };
     let (pair, second) = match kind {
         Linearization::Consistent => (pair, second),
-        Linearization::Definite => (
+        Linearization::Definite | Linearization::Impulsive { .. } => (
             definite_pair(law.constants().mu(), pair),
             definite_hessian(second),
         ),
@@ -134,7 +125,7 @@ pub(super) fn moduli<L: Hyperelastic + ?Sized>(
     {
         let stress = match kind {
             Linearization::Consistent => decay_stress(law, decay, start, end),
-            Linearization::Definite => [0.0; 3],
+            Linearization::Definite | Linearization::Impulsive { .. } => [0.0; 3],
         };
         let [lambda, mu] = [law.constants().lambda(), law.constants().mu()];
         add_decay_moduli(
@@ -143,6 +134,9 @@ pub(super) fn moduli<L: Hyperelastic + ?Sized>(
             stress,
             &mut moduli,
         );
+    }
+    if let Linearization::Impulsive { .. } = kind {
+        forget_turn(end, &mut moduli);
     }
     moduli
 }
@@ -365,6 +359,46 @@ mod tests {
                 assert!(least(Linearization::Consistent) < 0.0, "{name}");
             }
         }
+    }
+
+    #[test]
+    fn moduli_for_impulses_are_semidefinite_bounded_and_know_of_no_turn() {
+        let crushed = [0.1, 0.02, -0.3, 1e-4];
+        let gradient = [[1.0, 0.0], [0.0, 2.0], [-1.0, -2.0]];
+        for law in laws() {
+            let law = law.as_ref();
+            for end in [END, crushed] {
+                if !law.admits(Invariants::of(end)) {
+                    continue;
+                }
+                let kind = Linearization::Impulsive { most: 50.0 };
+                let moduli = moduli(law, Form::Equilibrium, kind, START, end);
+                let size = moduli
+                    .iter()
+                    .flatten()
+                    .fold(0.0f64, |most, x| most.max(x.abs()));
+                let [xx, xy, yx, yy] = end;
+                for row in moduli {
+                    assert!(dot(row, [-yx, -yy, xx, xy]).abs() < 1e-12 * size);
+                }
+                assert!(least_eigenvalue(moduli) > -1e-12 * size);
+                let volume = 0.3 * kind.share(&gradient, &moduli, 0.3);
+                let mut blocks = [[[0.0; 4]; 3]; 3];
+                super::super::cells::add_point(&gradient, &moduli, volume, &mut blocks);
+                for (a, row) in blocks.iter().enumerate() {
+                    assert!(
+                        row[a][0] + row[a][3] <= 50.0 * (1.0 + 1e-12),
+                        "{}",
+                        law.name()
+                    );
+                }
+            }
+        }
+        // What is softer stays as it is.
+        let soft = Linearization::Impulsive { most: 1e9 };
+        let law = NeoHookean::plane_strain(1e5, 0.3);
+        let moduli = moduli(&law, Form::Equilibrium, soft, START, END);
+        assert_eq!(soft.share(&gradient, &moduli, 0.3), 1.0);
     }
 
     fn least_eigenvalue(moduli: [[f64; 4]; 4]) -> f64 {
