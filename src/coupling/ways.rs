@@ -132,7 +132,10 @@ pub(super) fn flex_flex(
         return Err(0.0);
     };
     let offset = offset_of(one).min(offset_of(other));
-    for is_forced in [false, true] {
+    // What has been folded or crushed within a step is not drawn inwards any more where it need not be, and would begin the rest of the step as
+    // near as surfaces that touch are: no way leads on from there.
+    let manners = [(false, true), (true, true), (false, false), (true, false)];
+    for (is_forced, needs_room) in manners {
         let mut margin = f64::INFINITY;
         for length in Inset::all_of(offset) {
             let inset = Inset { length, is_forced };
@@ -150,7 +153,11 @@ pub(super) fn flex_flex(
                 margin,
                 reach: REACH * offset,
             };
-            if island.path.add_way(way) {
+            let is_added = match needs_room {
+                true => island.path.add_roomy_way(way),
+                false => island.path.add_way(way),
+            };
+            if is_added {
                 return Ok(());
             }
         }

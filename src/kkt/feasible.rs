@@ -236,6 +236,15 @@ impl FeasiblePath {
 
     /// Keeps two members apart; returns whether they are to begin with. If not, nothing is added.
     pub(crate) fn add_way(&mut self, way: Way) -> bool {
+        self.add_apart(way, false)
+    }
+
+    /// The same for members that begin with all the room that the path may use up.
+    pub(crate) fn add_roomy_way(&mut self, way: Way) -> bool {
+        self.add_apart(way, true)
+    }
+
+    fn add_apart(&mut self, way: Way, needs_room: bool) -> bool {
         let [one, other] = way.members;
         let Some(least) = self.search.apart(&self.surfaces, way.members, way.closing) else {
             return false;
@@ -249,6 +258,9 @@ impl FeasiblePath {
             least,
             is_asleep: false,
         };
+        if needs_room && !pair.has_room() {
+            return false;
+        }
         self.pairs.push(pair);
         self.ways.push(way);
         self.is_led = true;

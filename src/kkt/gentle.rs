@@ -18,16 +18,16 @@ const TOUCHING: f64 = 1.0;
 impl Island {
     /// Whether a step along the path that is not solved has gained energy.
     ///
-    /// `reserve` is what contact has taken, or owes if it is negative (J): parts of a step that gain a little each are not to gain much together.
-    pub(super) fn has_gained(&self, reserve: f64, summary: &IslandSummary) -> bool {
+    /// Parts of a step that gain a little each are not to gain much together: each has its share. What contact has taken before is not theirs to
+    /// give back.
+    pub(super) fn has_gained(&self, settings: &SolveSettings, summary: &IslandSummary) -> bool {
         let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
         let is_unsolved = (summary.is_cut || summary.is_stopped) && !self.path.is_empty();
         // Forces that no solution gave do no work to count on: neither of joints nor of driven bodies.
-        let supply = (self.applied_work() + reserve.max(0.0)).max(0.0);
+        let supply = self.applied_work().max(0.0);
         let gain = after - before - supply;
-        let owed = (-reserve).max(0.0);
-        let is_much = gain > 0.0 && gain + owed > GAINED * (before + supply);
-        is_unsolved && (gain.is_nan() || is_much)
+        let share = GAINED * settings.dt / settings.whole;
+        is_unsolved && (gain.is_nan() || gain > share * (before + supply))
     }
 
     /// Ends the step where it was first stopped, or where it began, without forces of position.

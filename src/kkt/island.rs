@@ -345,10 +345,10 @@ impl Island {
         let allowance = loads + joint_work;
         summary.work = self.actual_work(settings) + joint_work;
         summary.end_energy = self.end_energy();
-        if self.has_gained(*reserve, &summary) {
+        if self.has_gained(settings, &summary) {
             self.end_gently(settings, memory, &mut summary)?;
         }
-        if self.has_gained(*reserve, &summary) {
+        if self.has_gained(settings, &summary) {
             self.end_together(&mut summary);
             self.measure_ended(settings, &mut summary);
         }

@@ -84,6 +84,12 @@ impl MemberPair {
         (self.closing - GUARD_DEPTH * self.margin).min(KEPT_OF_LEAST * self.least)
     }
 
+    /// Whether they have begun with all the room that the path may use up.
+    #[inline]
+    pub fn has_room(&self) -> bool {
+        KEPT_OF_LEAST * self.least >= self.closing - GUARD_DEPTH * self.margin
+    }
+
     /// Where a motion stops that starts at some distance (m), below that distance. At the guard nothing may approach: a
     /// guard that shrank with the distance would end at zero in a jam.
     #[inline]

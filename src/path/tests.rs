@@ -91,3 +91,28 @@ fn a_crowd_pushed_at_random_stays_apart_by_its_guard() {
         assert!(closest < -0.79, "{closest}");
     }
 }
+
+#[test]
+fn a_pair_has_room_if_it_may_be_led_as_near_as_others() {
+    let pair = |least| MemberPair {
+        one: 0,
+        other: 1,
+        name: 0,
+        closing: 0.01,
+        margin: 0.01,
+        least,
+        is_asleep: false,
+    };
+    let usual = pair(f64::INFINITY).guard();
+    for (least, has_room) in [
+        (f64::INFINITY, true),
+        (0.01, true),
+        (0.0021, true),
+        (0.0019, false),
+        (1e-12, false),
+    ] {
+        let pair = pair(least);
+        assert_eq!(pair.has_room(), has_room, "{least}");
+        assert_eq!(pair.guard() == usual, has_room, "{least}");
+    }
+}
