@@ -43,15 +43,16 @@ pub(super) const NOT_FOUND: f64 = 1e3;
 /// Iterations under given contact forces.
 const MOST_ITERATIONS: usize = 24;
 
-/// What may be left of the residual that the contact forces have made, while these are still sought (-): what they are wrong by, or a little less.
-const ROUGH: f64 = 1e-2;
+/// Iterations while the contact forces are still sought. A number, and no share of the residual: rounding would decide which of two answers is given,
+/// and of the forces that friction may have the one that is found is the one that is sought from there.
+const FEW_ITERATIONS: usize = 2;
 
 /// How the iterations under given contact forces have ended.
 #[derive(Clone, Copy, Debug)]
 enum Ended {
     /// The residual is within the tolerance.
     Found,
-    /// It is as small as need be while the contact forces are sought; how far the end is, relative to the body's size.
+    /// It is smaller, which does while the contact forces are sought; how far the end is, relative to the body's size.
     Roughly(f64),
     /// The end was not found; how far it is.
     Not(f64),
@@ -356,7 +357,8 @@ impl FlexBlock {
             let first = *first.get_or_insert(now.norm);
             if let Some(last) = last
                 && *is_rough
-                && now.norm <= ROUGH * first
+                && n_iterations >= FEW_ITERATIONS
+                && now.norm < first
             {
                 return Ended::Roughly(moved() * now.norm / last.norm);
             }
