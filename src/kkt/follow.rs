@@ -46,12 +46,6 @@ const CLOSE_ENOUGH: f64 = 0.05;
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
 
-/// A pass that leaves more than this of the error has gained nothing (-).
-const STALLED: f64 = 0.9;
-
-/// Multiple of what is enough from which on the error tells that forces are still sought, and where they lead need not be known to the last digit.
-const ROUGHLY: f64 = 1e2;
-
 /// What a pass may leave of the error of the one before (-) without bodies being led where that is left to do.
 const SLOWEST: f64 = 0.25;
 
@@ -96,9 +90,7 @@ impl Island {
         self.softness = 0.0;
         self.left.clear();
         self.tell_base(false);
-        let is_solved = self.try_passes(settings, memory, tolerance, summary);
-        self.let_be_rough(false);
-        if is_solved {
+        if self.try_passes(settings, memory, tolerance, summary) {
             return Passed::Solved;
         }
         if let Some(passed) = self.end_at_arrival() {
@@ -134,8 +126,6 @@ impl Island {
         let mut n_stopped = 0;
         let (mut has_left, mut has_begun_anew) = (false, false);
         let (mut last, mut is_idle) = (f64::INFINITY, false);
-        // Whether bodies of large strain are where the forces lead, and not only nearly there.
-        let mut is_exact = true;
         let (n_passes, mut trend) = (PASSES_PER_ITERATION * settings.max_newton, Trend::new());
         for pass in 0..n_passes {
             summary.n_newton += 1;
@@ -144,7 +134,7 @@ impl Island {
             let is_eased = pass >= self.n_exact_passes(settings);
             let near = self.enough(is_eased, NEAR * tolerance);
             let misleads = is_guess && self.measure_guess() > near;
-            let (mut arrives, mut gains) = (false, true);
+            let mut arrives = false;
             let mut error = 0.0;
             if !self.is_finite() || has_left && self.leads_around() {
                 return false;
@@ -163,15 +153,14 @@ impl Island {
                 self.list_near(&listing);
                 error = self.measure(false);
                 is_idle = error > SLOWEST * last;
-                gains = error < STALLED * last;
                 last = error;
             }
             let has_more = !misleads && self.add_violated(tolerance, kept, memory);
             // Forces of the last step that are kept must be right, or what rests creeps.
-            let enough = match (is_guess, gains) {
-                (true, _) => tolerance,
-                (false, true) => self.enough(is_eased, tolerance),
-                (false, false) => self.enough_at_last(is_eased, tolerance),
+            let enough = if is_guess {
+                tolerance
+            } else {
+                self.enough(is_eased, tolerance)
             };
             let lack = if is_eased && arrives {
                 self.shortfall(true).max(CLOSE_ENOUGH * turned.way / enough)
@@ -183,12 +172,6 @@ impl Island {
             } else {
                 error <= enough && (turned.angle <= ANGLE_TOLERANCE || turned.way <= enough)
             };
-            if arrives && is_close && !has_more && !is_exact {
-                is_exact = true;
-                self.let_be_rough(false);
-                turned = self.correct();
-                continue;
-            }
             if arrives && is_close && !has_more {
                 self.end_at_base();
                 self.keep_applied_rows();
@@ -230,20 +213,9 @@ impl Island {
             if n_stopped > 0 && !self.impact.is_known {
                 self.keep_impact();
             }
-            is_exact = !misleads && error <= ROUGHLY * self.enough(is_eased, tolerance);
-            self.let_be_rough(!is_exact);
             turned = self.correct();
         }
         false
-    }
-
-    /// Whether the end of bodies of large strain need be found no better than the forces are that lead there.
-    fn let_be_rough(&mut self, may: bool) {
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.let_be_rough(may);
-            }
-        }
     }
 
     /// Whether some block is led from the base: its iterate is not where the last way led any more.
@@ -309,6 +281,20 @@ impl Island {
             FEW_PASSES.min(settings.max_newton)
         } else {
             settings.max_newton
+        }
+    }
+
+    /// How far the laws may be from holding at the end of a pass (m).
+    fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
+        let margin = self.path.least_margin();
+        if is_eased {
+            CLOSE_ENOUGH * margin
+        } else if self.has_many_rows() {
+            tolerance.max(LARGE_TOLERANCE * margin)
+        } else if self.has_large() {
+            tolerance.max(CURVED_TOLERANCE * margin)
+        } else {
+            tolerance
         }
     }
 

@@ -127,7 +127,8 @@ impl FlexBlock {
         }
     }
 
-    /// Moves and turns the response of a body of large strain so that momentum and angular momentum gain exactly what the impulses give.
+    /// Moves the response of a body of large strain so that momentum gains exactly what the impulses give; turns it so that angular momentum does
+    /// where the body answers to turns with its masses alone.
     fn finish_large_velocity(&mut self) {
         if !self.impulses[0].is_used || self.kind != Frame::Free {
             return;
@@ -137,6 +138,9 @@ impl FlexBlock {
         let missing = total - self.arms.centre(self.kind, response, Vec2::zeros());
         for node in 0..response.len() / 2 {
             add_node_vec(response, node, missing);
+        }
+        if !self.large.as_ref().is_some_and(|large| large.led.takes_end) {
+            return;
         }
         let impulses = &self.impulses[0];
         // About the centre at the end: nodes are where the iterate is, whatever lever an impulse came with.

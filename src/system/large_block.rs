@@ -25,11 +25,14 @@ use crate::fe::model::Model;
 use crate::large::Evaluation;
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
-use crate::math::{Mat2, cross, node_vec, rotation, set_node_vec};
+use crate::math::{Mat2, Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec};
 use std::sync::Arc;
 
 /// Residual over the largest load or inertia force that ends the iterations (-): momentum is balanced beyond that by a shift of the whole body.
 const TOLERANCE: f64 = 1e-8;
+
+/// Turn that the tolerance of the iterations may leave (rad).
+const MOST_TURN: f64 = 1e-4;
 
 /// A residual of which an iteration leaves more than this asks for a new factor.
 const SLOWEST: f64 = 0.25;
@@ -42,21 +45,6 @@ pub(super) const NOT_FOUND: f64 = 1e3;
 
 /// Iterations under given contact forces.
 const MOST_ITERATIONS: usize = 24;
-
-/// Iterations while the contact forces are still sought. A number, and no share of the residual: rounding would decide which of two answers is given,
-/// and of the forces that friction may have the one that is found is the one that is sought from there.
-const FEW_ITERATIONS: usize = 2;
-
-/// How the iterations under given contact forces have ended.
-#[derive(Clone, Copy, Debug)]
-enum Ended {
-    /// The residual is within the tolerance.
-    Found,
-    /// It is smaller, which does while the contact forces are sought; how far the end is, relative to the body's size.
-    Roughly(f64),
-    /// The end was not found; how far it is.
-    Not(f64),
-}
 
 /// What a block of large strain has beside others.
 #[derive(Clone, Debug)]
@@ -81,8 +69,6 @@ pub(super) struct Large {
     is_ambiguous: bool,
     /// Whether what is not found without detours need not be found: the step is cut then.
     pub(super) may_give_up: bool,
-    /// Whether the contact forces are still sought: the end under them need be found no better than they are.
-    is_rough: bool,
     pub(super) led: Led,
 }
 
@@ -112,7 +98,6 @@ impl FlexBlock {
             row_sum: 0.0,
             is_ambiguous: false,
             may_give_up: false,
-            is_rough: false,
             led: Led::default(),
             model: large,
         }));
@@ -133,13 +118,6 @@ impl FlexBlock {
     pub fn let_give_up(&mut self, may: bool) {
         if let Some(large) = &mut self.large {
             large.may_give_up = may;
-        }
-    }
-
-    /// Whether the end under given contact forces need be found no better than these are.
-    pub fn let_be_rough(&mut self, may: bool) {
-        if let Some(large) = &mut self.large {
-            large.is_rough = may;
         }
     }
 
@@ -223,13 +201,8 @@ impl FlexBlock {
         };
         let mut left = NOT_FOUND;
         if !large.led.is_led {
-            let ended = self.iterate_large(&mut large);
-            let is_found = !matches!(ended, Ended::Not(_));
-            left = match ended {
-                Ended::Found => 0.0,
-                Ended::Roughly(left) | Ended::Not(left) => left,
-            };
-            large.led.is_led = !is_found && !large.may_give_up && large.led.has_base();
+            left = self.iterate_large(&mut large);
+            large.led.is_led = left > 0.0 && !large.may_give_up && large.led.has_base();
             if large.led.is_led {
                 large.led.takes_end = true;
                 self.linearize_at_base(&mut large);
@@ -262,7 +235,7 @@ impl FlexBlock {
         }
     }
 
-    fn iterate_large(&mut self, large: &mut Large) -> Ended {
+    fn iterate_large(&mut self, large: &mut Large) -> f64 {
         for &dof in &self.fixed_dofs {
             self.position[dof] = self.model.rest_positions()[dof] + self.prescribed[dof];
         }
@@ -280,14 +253,13 @@ impl FlexBlock {
             reaction,
             row_sum,
             may_give_up,
-            is_rough,
             led,
             ..
         } = large;
-        let not_found = Ended::Not(match may_give_up {
+        let not_found = match may_give_up {
             true => f64::INFINITY,
             false => NOT_FOUND,
-        });
+        };
         let equation = equation_of(
             model,
             &self.step,
@@ -296,7 +268,6 @@ impl FlexBlock {
             &self.is_fixed,
         );
         let mut last: Option<Evaluation> = None;
-        let mut first = None;
         let (mut n_cuts, mut n_iterations, mut n_guesses) = (0, 0, 0);
         // Whether the factor is that of where the last increment began.
         let mut is_fresh = false;
@@ -314,7 +285,7 @@ impl FlexBlock {
                     // The guess cannot be: nearer to the beginning of the step it can.
                     n_guesses += 1;
                     if n_guesses > 2 * MOST_CUTS {
-                        return Ended::Not(f64::INFINITY);
+                        return f64::INFINITY;
                     }
                     let part = if n_guesses == 2 * MOST_CUTS { 0.0 } else { 0.5 };
                     for (dof, x) in self.position.iter_mut().enumerate() {
@@ -347,20 +318,12 @@ impl FlexBlock {
             };
             let is_slow = last.is_some_and(|last| now.norm > SLOWEST * last.norm);
             let has_ended = now.norm <= TOLERANCE * now.scale || is_slow && now.norm <= rounding;
+            if n_iterations == MOST_ITERATIONS && !has_ended {
+                let moved = self.local.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+                return moved / self.size;
+            }
             if has_ended {
-                return Ended::Found;
-            }
-            let moved = || self.local.iter().fold(0.0f64, |most, x| most.max(x.abs())) / self.size;
-            if n_iterations == MOST_ITERATIONS {
-                return Ended::Not(moved());
-            }
-            let first = *first.get_or_insert(now.norm);
-            if let Some(last) = last
-                && *is_rough
-                && n_iterations >= FEW_ITERATIONS
-                && now.norm < first
-            {
-                return Ended::Roughly(moved() * now.norm / last.norm);
+                return 0.0;
             }
             is_fresh = is_slow || std::mem::take(&mut renews);
             if is_fresh {
@@ -390,6 +353,65 @@ impl FlexBlock {
             last = Some(now);
             n_cuts = 0;
             n_iterations += 1;
+        }
+    }
+
+    /// `2/dt² + α/dt` (1/s²).
+    fn momentum_factor(&self, large: &Large) -> f64 {
+        let dt = self.step.dt;
+        2.0 / (dt * dt) + large.model.damping().mass / dt
+    }
+
+    /// Load less inertia force of a node at `x` (N): all that inner forces would have to be.
+    fn lacking_force(&self, large: &Large, node: usize, x: Vec2) -> Vec2 {
+        let dt = self.step.dt;
+        let (inertia, drag) = (2.0 / (dt * dt), large.model.damping().mass / dt);
+        let (coast, start) = (
+            node_vec(&large.coast, node),
+            node_vec(&self.start_position, node),
+        );
+        // About where the iterate is, so that no digits are lost far from the origin.
+        let mass = self.arms.node_mass[node];
+        node_vec(&large.load, node) - mass * (inertia * (x - coast) + drag * (x - start))
+    }
+
+    /// How far the centre of a free body is from where the forces bring it (m).
+    pub(super) fn lacking_shift(&self, large: &Large) -> Vec2 {
+        let nodes = 0..self.arms.node_mass.len();
+        let lacking =
+            nodes.map(|node| self.lacking_force(large, node, node_vec(&self.position, node)));
+        lacking.sum::<Vec2>() / (self.arms.mass * self.momentum_factor(large))
+    }
+
+    /// Shifts and turns a free body so that its centre of mass is where the forces bring it, and its angular momentum what their couple makes
+    /// it, beyond the tolerance of the iterations.
+    ///
+    /// Inner forces have neither a resultant nor, about the middles `(x + x')/2`, a couple.
+    pub(super) fn balance_momentum(&mut self, large: &Large) {
+        let factor = self.momentum_factor(large);
+        let shift = self.lacking_shift(large);
+        let masses = || self.arms.node_mass.iter().enumerate();
+        let (mut first, mut moment) = (Vec2::zeros(), Vec2::zeros());
+        for (node, &mass) in masses() {
+            first += mass * (node_vec(&self.position, node) - self.start_frame.centre);
+            moment += mass * (node_vec(&self.start_position, node) - self.start_frame.centre);
+        }
+        let [centre, started] =
+            [first, moment].map(|sum| self.start_frame.centre + sum / self.arms.mass);
+        let (mut couple, mut polar) = (0.0, 0.0);
+        for (node, &mass) in masses() {
+            let x = node_vec(&self.position, node);
+            let (arm, before) = (x - centre, node_vec(&self.start_position, node) - started);
+            let middle = 0.5 * (arm + before);
+            couple += cross(middle, self.lacking_force(large, node, x + shift));
+            polar += mass * factor * middle.dot(&arm);
+        }
+        // A body that turns by half a circle within the step has no such middles.
+        let rest = Some(couple / polar).filter(|turn| turn.abs() <= MOST_TURN);
+        let turn = rest.unwrap_or(0.0);
+        for node in 0..self.arms.node_mass.len() {
+            let arm = node_vec(&self.position, node) - centre;
+            add_node_vec(&mut self.position, node, shift + turn * perp(arm));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The end of a step of a body of large strain: its momentum, velocities, accelerations, ways back to its beginning, and the state to commit.
+//! The end of a step of a body of large strain: velocities, accelerations, ways back to its beginning, and the state to commit.
 
 use super::flex_block::FlexBlock;
 use super::large_block::Large;
@@ -6,69 +6,7 @@ use super::large_equation::total_decay;
 use crate::body::{FlexState, Frame};
 use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec, sum_over};
 
-/// Turn that the tolerance of the iterations may leave (rad).
-const MOST_TURN: f64 = 1e-4;
-
 impl FlexBlock {
-    /// `2/dt² + α/dt` (1/s²).
-    fn momentum_factor(&self, large: &Large) -> f64 {
-        let dt = self.step.dt;
-        2.0 / (dt * dt) + large.model.damping().mass / dt
-    }
-
-    /// Load less inertia force of a node at `x` (N): all that inner forces would have to be.
-    fn lacking_force(&self, large: &Large, node: usize, x: Vec2) -> Vec2 {
-        let dt = self.step.dt;
-        let (inertia, drag) = (2.0 / (dt * dt), large.model.damping().mass / dt);
-        let (coast, start) = (
-            node_vec(&large.coast, node),
-            node_vec(&self.start_position, node),
-        );
-        // About where the iterate is, so that no digits are lost far from the origin.
-        let mass = self.arms.node_mass[node];
-        node_vec(&large.load, node) - mass * (inertia * (x - coast) + drag * (x - start))
-    }
-
-    /// How far the centre of a free body is from where the forces bring it (m).
-    pub(super) fn lacking_shift(&self, large: &Large) -> Vec2 {
-        let nodes = 0..self.arms.node_mass.len();
-        let lacking =
-            nodes.map(|node| self.lacking_force(large, node, node_vec(&self.position, node)));
-        lacking.sum::<Vec2>() / (self.arms.mass * self.momentum_factor(large))
-    }
-
-    /// Shifts and turns a free body so that its centre of mass is where the forces bring it, and its angular momentum what their couple makes
-    /// it, beyond the tolerance of the iterations.
-    ///
-    /// Inner forces have neither a resultant nor, about the middles `(x + x')/2`, a couple.
-    pub(super) fn balance_momentum(&mut self, large: &Large) {
-        let factor = self.momentum_factor(large);
-        let shift = self.lacking_shift(large);
-        let masses = || self.arms.node_mass.iter().enumerate();
-        let (mut first, mut moment) = (Vec2::zeros(), Vec2::zeros());
-        for (node, &mass) in masses() {
-            first += mass * (node_vec(&self.position, node) - self.start_frame.centre);
-            moment += mass * (node_vec(&self.start_position, node) - self.start_frame.centre);
-        }
-        let [centre, started] =
-            [first, moment].map(|sum| self.start_frame.centre + sum / self.arms.mass);
-        let (mut couple, mut polar) = (0.0, 0.0);
-        for (node, &mass) in masses() {
-            let x = node_vec(&self.position, node);
-            let (arm, before) = (x - centre, node_vec(&self.start_position, node) - started);
-            let middle = 0.5 * (arm + before);
-            couple += cross(middle, self.lacking_force(large, node, x + shift));
-            polar += mass * factor * middle.dot(&arm);
-        }
-        // A body that turns by half a circle within the step has no such middles.
-        let rest = Some(couple / polar).filter(|turn| turn.abs() <= MOST_TURN);
-        let turn = rest.unwrap_or(0.0);
-        for node in 0..self.arms.node_mass.len() {
-            let arm = node_vec(&self.position, node) - centre;
-            add_node_vec(&mut self.position, node, shift + turn * perp(arm));
-        }
-    }
-
     /// Writes the velocities and the centre that go with the positions.
     pub(super) fn follow_positions(&mut self) {
         let dt = self.step.dt;

@@ -4,46 +4,10 @@
 //! margins of the ways, then one where a contact has slid off the surface that it pressed on, as if that went on. An implicit step has
 //! no other end there: with the force the contact is over before the step is, and without it the bodies end in one another, however
 //! short the step.
-//!
-//! And how near is near enough.
 
-use super::{CLOSE_ENOUGH, CURVED_TOLERANCE, Island, LARGE_TOLERANCE, Passed};
-
-/// How far the laws may be from holding, as a share of the longest way that anything that touches has gone in the step (-): what comes to rest is
-/// not to be kept moving by what is left of its own laws.
-const SLIGHT: f64 = 1e-2;
+use super::{Island, Passed};
 
 impl Island {
-    /// How far the laws may be from holding at the end of a pass as long as passes make them better (m).
-    pub(super) fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
-        let last = self.enough_at_last(is_eased, tolerance);
-        if is_eased {
-            return last;
-        }
-        tolerance.max(last.min(SLIGHT * self.farthest_moved()))
-    }
-
-    /// How far they may be where these do not any more (m).
-    pub(super) fn enough_at_last(&self, is_eased: bool, tolerance: f64) -> f64 {
-        let margin = self.path.least_margin();
-        if is_eased {
-            CLOSE_ENOUGH * margin
-        } else if self.has_many_rows() {
-            tolerance.max(LARGE_TOLERANCE * margin)
-        } else if self.has_large() {
-            tolerance.max(CURVED_TOLERANCE * margin)
-        } else {
-            tolerance
-        }
-    }
-
-    /// Longest way of a point that touches something, since the beginning of the step (m).
-    fn farthest_moved(&self) -> f64 {
-        let grips = (self.contacts.iter()).flat_map(|contact| contact.kinematics.attachments());
-        let ways = grips.map(|of| self.blocks[of.block].displacement(of.grip).norm());
-        ways.fold(0.0, f64::max)
-    }
-
     /// How far the laws are from holding, relative to the margins of the ways (-); what has slid off counts only with `counts_lost`.
     pub(super) fn shortfall(&mut self, counts_lost: bool) -> f64 {
         let least = self.path.least_margin();
