@@ -574,11 +574,11 @@ fn soft_blocks_that_are_shot_at_seldom_stop_a_step() {
     assert!(unfinished.len() <= 4, "{unfinished:?}");
 }
 
-/// A box a hundred thousand times as heavy strikes a soft block at hundreds of metres a second. Cells are all but flat then, and as much as 10^20 times
-/// as stiff as their masses are in a step: where impulses were sought with what rounding left of the masses, one part of such a step made 10^9 J of
-/// 10^6, and bodies ended in each other.
+/// Soft blocks are thrown at the ground and at stones beside them at hundreds of metres a second. Cells are all but flat then, and as much as 10^20
+/// times as stiff as their masses are in a step: where impulses were sought with what rounding left of the masses, one of these scenes doubled its
+/// energy in a step, and others gained 3 % in parts of one that were not solved.
 #[test]
-fn blocks_that_are_struck_beyond_all_measure_gain_nothing() {
+fn blocks_that_are_thrown_beyond_all_measure_gain_nothing() {
     let mut findings = Findings::default();
     let mut n_unfinished = 0;
     for seed in 0..160 {
@@ -608,16 +608,12 @@ fn blocks_that_are_struck_beyond_all_measure_gain_nothing() {
             scene.rigid(stone, shape.friction(0.5));
         }
         let mut energy = energy_of(&scene);
-        let weight: f64 = (scene.world.bodies.iter())
-            .map(|(_, body)| 9.81 * f64::from(body.mass()))
-            .sum();
         for step in 0..12 {
             let report = scene.try_step().expect("the step can be taken");
             n_unfinished += usize::from(report.quality() == Quality::Unfinished);
             let told = report.gap_violation();
             let left = energy_of(&scene);
-            // What falls by as much as it is high has that energy to lose.
-            findings.check(left < 1.01 * energy + 0.01 * weight, || {
+            findings.check(left < 1.01 * energy, || {
                 format!("seed {seed}, step {step}: {left:e} J of {energy:e} J, {told:e} m")
             });
             energy = left;

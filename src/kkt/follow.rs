@@ -124,7 +124,7 @@ impl Island {
         self.note_yielding(settings.b0);
         let mut turned = self.correct();
         let mut n_stopped = 0;
-        let (mut has_left, mut has_begun_anew) = (false, false);
+        let mut has_left = false;
         let (mut last, mut is_idle) = (f64::INFINITY, false);
         let (n_passes, mut trend) = (PASSES_PER_ITERATION * settings.max_newton, Trend::new());
         for pass in 0..n_passes {
@@ -182,12 +182,6 @@ impl Island {
             }
             if is_eased && trend.is_hopeless(lack, n_passes - pass - 1) {
                 return false;
-            }
-            // The way that others led to may be blocked where the one from the beginning is free.
-            if !arrives && !has_begun_anew && !misleads && error <= enough {
-                has_begun_anew = true;
-                self.path.rest(&self.blocks);
-                continue;
             }
             let may_retreat = !misleads && !listing.keeps_rows && !self.is_led();
             if may_retreat && self.path.retreat(&self.blocks) {

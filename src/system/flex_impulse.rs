@@ -127,8 +127,7 @@ impl FlexBlock {
         }
     }
 
-    /// Moves the response of a body of large strain so that momentum gains exactly what the impulses give; turns it so that angular momentum does
-    /// where the body answers to turns with its masses alone.
+    /// Moves the response of a body of large strain so that momentum gains exactly what the impulses give.
     fn finish_large_velocity(&mut self) {
         if !self.impulses[0].is_used || self.kind != Frame::Free {
             return;
@@ -138,26 +137,6 @@ impl FlexBlock {
         let missing = total - self.arms.centre(self.kind, response, Vec2::zeros());
         for node in 0..response.len() / 2 {
             add_node_vec(response, node, missing);
-        }
-        if !self.large.as_ref().is_some_and(|large| large.led.takes_end) {
-            return;
-        }
-        let impulses = &self.impulses[0];
-        // About the centre at the end: nodes are where the iterate is, whatever lever an impulse came with.
-        let centre = self
-            .arms
-            .centre(self.kind, &self.position, self.start_frame.centre);
-        let (mut couple, mut gained, mut polar) = (0.0, 0.0, 0.0);
-        for (node, mass) in self.arms.node_mass.iter().enumerate() {
-            let arm = node_vec(&self.position, node) - centre;
-            couple += cross(arm, node_vec(&impulses.nodal, node));
-            gained += mass * cross(arm, node_vec(&impulses.response, node));
-            polar += mass * arm.norm_squared();
-        }
-        let spin = (couple / self.drag_share() - gained) / polar;
-        for node in 0..self.arms.node_mass.len() {
-            let arm = node_vec(&self.position, node) - centre;
-            add_node_vec(&mut self.impulses[0].response, node, spin * perp(arm));
         }
     }
 

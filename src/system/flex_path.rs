@@ -2,7 +2,7 @@
 
 use super::flex_block::FlexBlock;
 use super::large_block::{Large, NOT_FOUND};
-use super::large_equation::{equation_of, factorize, factorize_impulsive};
+use super::large_equation::{equation_of, factorize, factorize_definite, impulsive};
 use crate::body::{Frame, FrameMotion};
 use crate::fe::model::Model;
 use crate::linalg::block_matrix::BlockMatrix;
@@ -127,8 +127,8 @@ impl FlexBlock {
         self.n_factorizations += 1;
         self.compliance.clear();
         let matrices = (&mut large.tangent, &mut self.effective);
-        let found = factorize_impulsive(
-            &equation,
+        let found = factorize_definite(
+            (&equation, impulsive(&equation)),
             scale,
             &large.deformation,
             matrices,

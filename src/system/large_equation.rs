@@ -77,47 +77,31 @@ pub(super) fn factorize(
             is_definite: true,
         });
     }
-    factorize_definite(equation, scale, deformation, (tangent, effective), factor)
+    let asked = (equation, Linearization::Definite);
+    factorize_definite(asked, scale, deformation, (tangent, effective), factor)
 }
 
 /// Stiffness of a point over the masses' part of the matrix beyond which it is rigid in the step, and rounding would take the masses (-).
 const RIGID: f64 = 1e10;
 
-/// Factorizes the definite part of the tangent, so that `A >= M`: what the tangent alone leaves may be as near to singular as it likes, and throw
-/// what it answers for.
-pub(super) fn factorize_definite(
-    equation: &Equation<'_>,
-    scale: f64,
-    deformation: &Deformation,
-    matrices: (&mut BlockMatrix, &mut BlockMatrix),
-    factor: &mut BlockCholesky,
-) -> Result<Factored, CholeskyError> {
-    let kind = Linearization::Definite;
-    factorize_shifted((equation, kind), scale, deformation, matrices, factor)
-}
-
-/// Factorizes what impulses are answered by: masses and the definite part of the stiffness, which no rigid motion feels.
+/// What impulses are answered by: masses and the definite part of the stiffness, of which no point resists a turn.
 ///
 /// Impulses that bring velocities `A⁻¹ M v` to rest take kinetic energy from whatever moves, as long as `A >= M` (see [`FlexBlock::resolve`]); but
 /// they may only be sought with what then acts. Of cells that are all but flat the stiffness is 10^20 times the masses, rounding leaves nothing of
 /// these, and what is stiff enough not to move in the step may as well be a little softer.
 ///
 /// [`FlexBlock::resolve`]: super::flex_block::FlexBlock::resolve
-pub(super) fn factorize_impulsive(
-    equation: &Equation<'_>,
-    scale: f64,
-    deformation: &Deformation,
-    matrices: (&mut BlockMatrix, &mut BlockMatrix),
-    factor: &mut BlockCholesky,
-) -> Result<Factored, CholeskyError> {
+pub(super) fn impulsive(equation: &Equation<'_>) -> Linearization {
     let masses = equation.model.masses();
     let mean = masses.iter().sum::<f64>() / masses.len() as f64;
-    let most = RIGID * equation.inertia.acceleration * mean;
-    let kind = Linearization::Impulsive { most };
-    factorize_shifted((equation, kind), scale, deformation, matrices, factor)
+    Linearization::Impulsive {
+        most: RIGID * equation.inertia.acceleration * mean,
+    }
 }
 
-fn factorize_shifted(
+/// Factorizes a tangent whose stiffness is positive semidefinite, so that `A >= M`: what the consistent tangent alone leaves may be as near to
+/// singular as it likes, and throw what it answers for.
+pub(super) fn factorize_definite(
     (equation, kind): (&Equation<'_>, Linearization),
     scale: f64,
     deformation: &Deformation,

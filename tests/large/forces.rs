@@ -186,6 +186,48 @@ fn error_of_tangent(model: &FiniteStrainModel, form: Form, state: &[f64]) -> f64
     worst
 }
 
+/// What impulses are answered by knows of no rigid motion at the end, crushed or not: points, guards of nodes and hourglass modes.
+#[test]
+fn no_rigid_motion_is_felt_by_the_tangent_for_impulses() {
+    for kind in KINDS {
+        for law in laws(1e5, 0.3) {
+            let model = warped_plate(kind, law);
+            for (state, wave) in [(STRETCHED, 0.01), (CRUSHED, 1e-3)] {
+                let state = deformed(&model, state, wave);
+                let product = |linearization, way: &[f64]| {
+                    let mut deformation = model.deformation(&state);
+                    let mut unused = vec![0.0; model.n_dofs()];
+                    let form = Form::Equilibrium;
+                    model
+                        .subtract_force(form, &state, &mut deformation, &mut unused)
+                        .expect("the state is admissible");
+                    let mut matrix = model.new_matrix();
+                    model.add_tangent(form, linearization, &deformation, &mut matrix);
+                    let mut product = vec![0.0; model.n_dofs()];
+                    matrix.multiply(way, &mut product);
+                    product
+                };
+                let turn: Vec<f64> = state.chunks(2).flat_map(|x| [-x[1], x[0]]).collect();
+                let other: Vec<f64> = (0..model.n_dofs())
+                    .map(|dof| (1.7 * dof as f64).sin())
+                    .collect();
+                let free = Linearization::Impulsive { most: 1e12 };
+                let size = largest(&product(free, &other));
+                let felt = largest(&product(free, &turn)) / size;
+                let name = model.law().name();
+                assert!(felt < 1e-12, "{kind:?} {name}: {felt:e}");
+                let shift = [0.3, -0.7].repeat(model.n_nodes());
+                let felt = largest(&product(free, &shift)) / size;
+                assert!(felt < 1e-12, "{kind:?} {name}: {felt:e}");
+                // The definite tangent resists turns: else nothing was shown.
+                let resisted = largest(&product(Linearization::Definite, &turn)) / size;
+                assert!(resisted > 1e-6, "{kind:?} {name}: {resisted:e}");
+                assert!(dot(&other, &product(free, &other)) > 0.0, "{kind:?} {name}");
+            }
+        }
+    }
+}
+
 /// At rest a parallelogram is the QM6 element, turned or not.
 #[test]
 fn a_quadrilateral_at_rest_answers_as_with_its_inner_modes() {
