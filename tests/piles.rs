@@ -276,3 +276,30 @@ fn a_crowd_that_collides_in_free_space_keeps_its_momentum() {
     }
     findings.report();
 }
+
+/// Forces turn with the edges that they act along, and turn bodies by their levers. What the linear problem of a pass knows of that need not be
+/// found by more passes.
+#[test]
+fn soft_blocks_that_settle_take_few_passes() {
+    let mut scene = Scene::new(DT);
+    scene.ground(0.5);
+    for x in [-1.4, 1.4] {
+        scene.fixed(ColliderBuilder::cuboid(0.1, 3.0).translation(vec2(x, 3.0)));
+    }
+    for k in 0..16 {
+        let [column, row] = [k % 4, k / 4].map(f64::from);
+        scene.flexible(
+            FlexBodyBuilder::rectangle([0.4, 0.4], [6, 6])
+                .small_strain()
+                .material(elastic(1e6, 1000.0, 5e-3))
+                .friction(0.5)
+                .rotation(0.3 * (1.7 * f64::from(k)).sin())
+                .translation([-1.2 + 0.6 * column, 0.2 + 0.6 * row]),
+        );
+    }
+    scene.steps(120);
+    let n_steps = 120;
+    let n_passes: usize = (0..n_steps).map(|_| scene.step().n_newton()).sum();
+    println!("{:.2} passes a step", n_passes as f64 / n_steps as f64);
+    assert!(n_passes <= 5 * n_steps, "{n_passes} in {n_steps} steps");
+}

@@ -5,6 +5,7 @@
 //! one little more than factorizing the bodies: operations decide.
 
 mod layout;
+mod turning;
 
 use self::layout::Shape;
 use super::delassus::compliance;
@@ -17,6 +18,7 @@ use crate::linalg::complementarity::{RowKind, Status};
 use crate::linalg::cone::{
     ConeEntry, ConeLaw, ConeOutcome, ConeProblem, ConeRow, ConeSolver, ConeStatus,
 };
+use crate::math::Vec2;
 use crate::system::{Block, Point, Response};
 
 /// Scalar rows up to which the dense problem is always the quicker one.
@@ -62,6 +64,8 @@ pub(super) struct Sparse {
     load: Vec<f64>,
     multipliers: Vec<[f64; 2]>,
     slip: Vec<f64>,
+    /// Couples of every block by which forces turn it beyond what they did before, by their levers and by the reference arms (N m).
+    couples: Vec<[f64; 2]>,
     answer: Vec<f64>,
 }
 
@@ -145,6 +149,12 @@ impl Island {
         sparse.places.clear();
         sparse.multipliers.clear();
         sparse.slip.clear();
+        sparse.couples.clear();
+        sparse.couples.resize(self.blocks.len(), [0.0; 2]);
+        if asked.of == Response::Position {
+            let grips = [&self.applied_grips[..], &self.joint_grips];
+            sparse.add_up_couples(&self.blocks, &self.contacts, &self.ties, grips);
+        }
         let mut row = 0;
         while row < self.rows.len() {
             let index = self.rows[row].contact;
@@ -193,6 +203,9 @@ impl Island {
                 }
                 None => scale.map(|own| softness * own),
             };
+            let turned: Vec2 = (kinematics.attachments().iter())
+                .map(|a| a.weight * sparse.turned(&self.blocks, a.block, a.grip))
+                .sum();
             // Gaps are measured where the forces that act already have made it yield.
             let (give, given) = match asked.of {
                 Response::Position => {
@@ -221,7 +234,10 @@ impl Island {
             sparse.rows.push(ConeRow {
                 entries: (first, sparse.entries.len() as u32),
                 law: ConeLaw::Contact { friction },
-                free: [self.free[row] - given[0], second(&self.free) - given[1]],
+                free: [
+                    self.free[row] - given[0] + normal.dot(&turned),
+                    second(&self.free) - given[1] + tangent.dot(&turned),
+                ],
                 give,
                 acted,
                 scale,
@@ -264,6 +280,12 @@ impl Island {
                 Response::Position => YIELDING * scale,
                 _ => 0.0,
             };
+            let own = &grips[tie.row.grips.0..tie.row.grips.1];
+            let turned = own.iter().map(|grip| {
+                let turned = sparse.turned(&self.blocks, grip.block, grip.grip());
+                grip.weight * direction.dot(&turned)
+            });
+            let turned: f64 = turned.sum();
             sparse.rows.push(ConeRow {
                 entries: (first, sparse.entries.len() as u32),
                 law: match self.kinds[place] {
@@ -272,7 +294,7 @@ impl Island {
                     _ => ConeLaw::Unilateral,
                 },
                 free: [
-                    self.free[place] - (1.0 - JOINT_SHARE) * yielding * tie.multiplier,
+                    self.free[place] - (1.0 - JOINT_SHARE) * yielding * tie.multiplier + turned,
                     0.0,
                 ],
                 give: [
@@ -340,6 +362,7 @@ impl Island {
             multipliers,
             slip,
             answer,
+            ..
         } = sparse;
         let Some(Kept {
             matrix, solvers, ..

@@ -403,20 +403,45 @@ impl FlexBlock {
             return local;
         }
         let world = self.turn * local * self.turn.transpose();
-        let arm = |node| perp(self.turn * node_vec(&self.arms.reference, node));
+        let [by_levers, by_arms] = self.turning(of);
+        let [at_arm, from_arm] = [at, from].map(|node| self.turn_arm(node));
+        world + by_levers * perp(at_lever) * perp(from_lever).transpose()
+            - by_arms * at_arm * from_arm.transpose()
+    }
+
+    /// What turns a node beyond the answer of `A⁻¹`, per couple by the levers of forces and by their reference arms (1/(kg m²)).
+    fn turning(&self, of: Response) -> [f64; 2] {
         let damped = 1.0 + self.model.rayleigh().mass * self.step.weights.b1;
-        let reference = arm(at) * arm(from).transpose() / (self.arms.polar * damped);
+        let by_arms = 1.0 / (self.arms.polar * damped);
         // Beta-2 gives an angle `b0` per acceleration, the mean of two spins gives `dt b1 / 2`.
         let Weights { b0, b1 } = self.step.weights;
         let mean = 0.5 * self.step.dt * b1 / b0;
         if self.is_linear {
-            return world + (mean - 1.0) * reference;
+            return [0.0, (1.0 - mean) * by_arms];
         }
         let share = match of {
             Response::Position => mean / damped,
             _ => 1.0,
         };
-        let turned = perp(at_lever) * perp(from_lever).transpose() / self.inertia;
-        world - reference + share * turned
+        [share / self.inertia, by_arms]
+    }
+
+    /// How a node moves as the body turns by the reference arms.
+    fn turn_arm(&self, node: usize) -> Vec2 {
+        perp(self.turn * node_vec(&self.arms.reference, node))
+    }
+
+    /// The couples of a force at a node: by its lever, and by the reference arm of the node (N m).
+    pub fn couples(&self, (node, lever): (usize, Vec2), force: Vec2) -> [f64; 2] {
+        [cross(lever, force), self.turn_arm(node).dot(&force)]
+    }
+
+    /// How a node moves under the couples of forces beyond what `A⁻¹` answers to these: see [`FlexBlock::compliance`].
+    pub fn turned(&self, (node, lever): (usize, Vec2), couples: [f64; 2], of: Response) -> Vec2 {
+        if self.is_large() || self.is_explicit() || self.kind == Frame::Fixed {
+            return Vec2::zeros();
+        }
+        let [by_levers, by_arms] = self.turning(of);
+        by_levers * couples[0] * perp(lever) - by_arms * couples[1] * self.turn_arm(node)
     }
 }
