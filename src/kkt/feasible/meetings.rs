@@ -226,7 +226,7 @@ impl FeasiblePath {
         // The place where the vertex comes to lie.
         let away = arm - (near.distance - row.gap) * outward;
         row.normal = normal;
-        row.gap = normal.dot(&away);
+        row.gap = normal.dot(&away).min(self.gap_at(meeting, normal));
         let [cos, sin] = [
             normal.dot(&meeting.forces[0]),
             normal.perp(&meeting.forces[0]).abs(),
@@ -238,6 +238,20 @@ impl FeasiblePath {
         let mut key = self.key(&near);
         key.part |= MEETING;
         Some((near, row, away, law, key))
+    }
+
+    /// How far along a direction the vertices of a meeting are from touching where one of them lies over an edge of the other; without bound
+    /// where none does.
+    ///
+    /// Edges lean as bodies turn, and a vertex at its place beside another one may lie in the surface.
+    fn gap_at(&self, meeting: &Meeting, along: Vec2) -> f64 {
+        let near = self.near.iter().filter(|near| {
+            near.pair == meeting.way
+                && self.is_at(near, meeting.vertices)
+                && self.vertex_beyond(near).is_none()
+        });
+        near.map(|near| self.kinematics(near).gap / near.normal.dot(&along).abs())
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// Lets the vertices of a meeting go.

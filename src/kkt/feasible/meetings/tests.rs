@@ -196,3 +196,37 @@ fn a_tip_that_leaves_for_good_is_held_by_the_side_it_would_have_come_to() {
     assert!((row.normal - Vec2::new(0.0, 1.0)).norm() < 1e-12);
     assert!((law.friction - 0.3).abs() < 1e-12);
 }
+
+/// A wedge that has turned hangs over beside the ridge: with its tip at its place above the ridge it would be in the roof. The row of the
+/// meeting tells how far, and how far the tip must go along it to touch the roof.
+#[test]
+fn a_tip_that_is_held_above_a_ridge_lets_no_side_that_leans_into_the_roof() {
+    for (turn, is_wedge_first) in [(-1.3, true), (1.3, true), (-1.3, false), (1.3, false)] {
+        let mut ridge = Ridge::new(0.3, is_wedge_first);
+        ridge.slide(0.0, 1);
+        ridge.slide(0.0, 2);
+        let mut at = Vec2::new(0.0, CLOSING);
+        let mut gaps = [0.0; 2];
+        for gap in &mut gaps {
+            // It turns above the roof, by no more than a part of it at a time, and comes down.
+            for height in [0.5, 0.0] {
+                let Block::Rigid(wedge) = &mut ridge.blocks[0] else {
+                    return;
+                };
+                wedge.stop_at(at + Vec2::new(0.0, height), turn);
+                assert!((0..9).any(|_| ridge.path.advance(&ridge.blocks)));
+            }
+            ridge.path.list_near();
+            let Some((_, row, ..)) = ridge.path.held(0) else {
+                panic!("not held");
+            };
+            *gap = row.gap;
+            let sign = if is_wedge_first { 1.0 } else { -1.0 };
+            at -= sign * row.gap * row.normal;
+        }
+        let lean = 1.3 + f64::atan(0.5) - std::f64::consts::FRAC_PI_2;
+        let overlap = CLOSING * (1.0 / f64::cos(lean) - 1.0);
+        assert!((gaps[0] + overlap).abs() < 1e-12, "{turn}: {gaps:?}");
+        assert!(gaps[1].abs() < 1e-12, "{turn}: {gaps:?}");
+    }
+}
