@@ -37,7 +37,7 @@ pub use certificate::Certificate;
 pub use clearance::clearance;
 pub use impact::Hit;
 pub use motion::Motion;
-pub use near::{NearPair, Target};
+pub use near::{NearPair, Target, add_beyond};
 pub use surfaces::{MotionKind, Surfaces};
 
 /// How far below `closing` the guard lies, as a share of the margin: the rest, a fifth, is what the path keeps at least

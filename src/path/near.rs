@@ -7,7 +7,7 @@
 use super::distance::{Beside, Foot, direction, inner_foot};
 use super::search::Extent;
 use super::{MemberPair, MotionKind, Path, Surfaces};
-use crate::math::{Vec2, cross, mix};
+use crate::math::{Vec2, cross, mix, perp};
 
 /// Sine of the turn between two edges below which they may be meant as one (-): joints of a floor that is given in single precision.
 const FLAT: f64 = 1e-3;
@@ -30,7 +30,7 @@ pub struct NearPair {
     pub point: usize,
     /// What it is near to.
     pub target: Target,
-    /// Where on the edge, in (0, 1); 0 on a vertex.
+    /// Where on the edge, in (0, 1), or on its line beyond a notch; 0 on a vertex.
     pub xi: f64,
     /// From the target to the point, of length one; zero where the distance is.
     pub normal: Vec2,
@@ -85,6 +85,33 @@ impl Path {
             }
             rows[first..].sort_unstable_by_key(|row| (row.point, row.target));
         }
+    }
+}
+
+/// Adds the rows of the point of a near pair on the lines of the edges that go on from the ends of its edge, where they rise on its side and it has
+/// no foot inside them.
+///
+/// Between such edges, and nowhere else, what keeps off the lines keeps off the edges: a corner that the point stands for may touch one that
+/// the point is beyond.
+pub fn add_beyond(
+    surfaces: &Surfaces,
+    pairs: &[MemberPair],
+    near: &NearPair,
+    rows: &mut Vec<NearPair>,
+) {
+    let pair = &pairs[near.pair];
+    let owns = surfaces.members()[pair.one].points.contains(&near.point);
+    let asked = Asked {
+        surfaces,
+        pair,
+        index: near.pair,
+        side: usize::from(!owns),
+        within: f64::INFINITY,
+    };
+    if let Target::Edge(edge) = near.target
+        && pair.one != pair.other
+    {
+        asked.list_beyond(near, edge, rows);
     }
 }
 
@@ -170,6 +197,45 @@ impl Asked<'_> {
         })
     }
 
+    fn list_beyond(&self, near: &NearPair, edge: usize, rows: &mut Vec<NearPair>) {
+        let surfaces = self.surfaces;
+        let points = surfaces.points();
+        let position = points[near.point];
+        for vertex in surfaces.edges()[edge].map(|end| end as usize) {
+            let own = self.run(edge, vertex);
+            for &next in surfaces.edges_at(vertex) {
+                let next = next as usize;
+                let run = self.run(next, vertex);
+                let rises = run.dot(&near.normal) > FLAT * run.norm();
+                let end = usize::from(surfaces.edges()[next][0] as usize != vertex);
+                let is_beyond = Beside::of(position, surfaces.ends(next)).is_beyond(end);
+                if next == edge || !rises || !is_beyond {
+                    continue;
+                }
+                let [from, to] = surfaces.ends(next);
+                let across = perp(to - from).normalize();
+                let normal = across * across.dot(&own).signum();
+                let distance = normal.dot(&(position - points[vertex]));
+                if distance > 0.0 {
+                    let along = to - from;
+                    let foot = Foot {
+                        xi: along.dot(&(position - from)) / along.norm_squared(),
+                        normal,
+                        distance,
+                    };
+                    self.push(near.point, Target::Edge(next), foot, rows);
+                }
+            }
+        }
+    }
+
+    /// From a vertex to the other end of an edge.
+    fn run(&self, edge: usize, vertex: usize) -> Vec2 {
+        let [from, to] = self.surfaces.edges()[edge].map(|end| end as usize);
+        let far = if from == vertex { to } else { from };
+        self.surfaces.points()[far] - self.surfaces.points()[vertex]
+    }
+
     /// Whether a vertex of a surface that keeps its shape lies between its two edges as seen from where this normal comes from. Both rise
     /// towards what is there, and their own rows, or those of its ends, are closer wherever it goes.
     fn is_notch(&self, vertex: usize, normal: Vec2) -> bool {
@@ -181,11 +247,7 @@ impl Asked<'_> {
         if surfaces.members()[member].kind == MotionKind::Flexible {
             return false;
         }
-        let [one, other] = [one, other].map(|edge| {
-            let [from, to] = surfaces.edges()[edge as usize].map(|end| end as usize);
-            let far = if from == vertex { to } else { from };
-            surfaces.points()[far] - surfaces.points()[vertex]
-        });
+        let [one, other] = [one, other].map(|edge| self.run(edge as usize, vertex));
         // Between two runs of less than half a turn.
         let between = [cross(one, -normal), cross(-normal, other)];
         let turn = cross(one, other);
@@ -231,6 +293,8 @@ impl Asked<'_> {
     }
 }
 
+#[cfg(test)]
+mod beyond_tests;
 #[cfg(test)]
 mod own_tests;
 #[cfg(test)]

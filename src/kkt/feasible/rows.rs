@@ -3,7 +3,7 @@
 use super::{Carrier, FeasiblePath};
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
 use crate::math::{Vec2, node_vec, perp, rotation};
-use crate::path::{NearPair, Target};
+use crate::path::{NearPair, Target, add_beyond};
 use crate::system::{Block, Grip, Point};
 
 /// Marks the names of near pairs in contact keys.
@@ -21,12 +21,48 @@ impl FeasiblePath {
         let mut near = std::mem::take(&mut self.near);
         self.search
             .near(&self.surfaces, &self.pairs, farthest, &mut near);
+        self.add_beyond(&mut near);
         near.retain(|near| {
             let way = &self.ways[near.pair];
             near.distance - self.corner(near).max(0.0) <= way.closing + way.reach
         });
         self.near = near;
         self.note_own();
+    }
+
+    /// Adds the edges beyond a notch that sharp corners touch, where the vertices of cores that stand for them are beyond.
+    fn add_beyond(&self, near: &mut Vec<NearPair>) {
+        let n = near.len();
+        for index in 0..n {
+            let row = near[index];
+            if self.points[row.point].corner != Vec2::zeros() {
+                let first = near.len();
+                add_beyond(&self.surfaces, &self.pairs, &row, near);
+                let mut end = first;
+                for at in first..near.len() {
+                    if self.touches_edge(&near[at]) {
+                        near[end] = near[at];
+                        end += 1;
+                    }
+                }
+                near.truncate(end);
+            }
+        }
+        if near.len() > n {
+            near.sort_unstable_by_key(|row| (row.pair, row.point, row.target));
+            near.dedup_by_key(|row| (row.pair, row.point, row.target));
+        }
+    }
+
+    /// Whether the sharp corner of a near pair's point has its foot inside the edge.
+    fn touches_edge(&self, near: &NearPair) -> bool {
+        let Target::Edge(edge) = near.target else {
+            return false;
+        };
+        let [from, to] = self.surfaces.ends(edge);
+        let along = to - from;
+        let xi = near.xi + self.aside(near).dot(&along) / along.norm_squared();
+        (0.0..=1.0).contains(&xi)
     }
 
     /// What is near at the base.
@@ -227,3 +263,6 @@ impl FeasiblePath {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
