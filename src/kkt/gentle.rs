@@ -4,6 +4,7 @@
 //! approaches: a projection in the metric of the masses takes energy and never gives any, and its impulses come in pairs.
 
 use super::island::{Island, KktError, SolveSettings};
+use super::position::PARTING_RATE;
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::linalg::complementarity::Status;
@@ -11,6 +12,9 @@ use crate::system::Block;
 
 /// Energy beyond what there was and what loads have done that tells of forces that are none (-): as much as the tests of energy allow.
 pub const GAINED: f64 = 0.01;
+
+/// Energy gained in a step, relative to what there was and was brought, that no swing of stored accelerations explains (-).
+pub const DOUBLED: f64 = 1.0;
 
 /// Gap up to which bodies count as touching, relative to the margin (-).
 const TOUCHING: f64 = 1.0;
@@ -28,6 +32,22 @@ impl Island {
         let gain = after - before - supply;
         let share = GAINED * settings.dt / settings.whole;
         is_unsolved && (gain.is_nan() || gain > share * (before + supply))
+    }
+
+    /// Whether bodies led along a path have come to more kinetic energy than twice what was brought and what they part with: no forces that mean
+    /// anything do that.
+    pub(super) fn is_thrown(&self, summary: &IslandSummary) -> bool {
+        let deepest = self
+            .contacts
+            .iter()
+            .fold(0.0, |least: f64, one| least.min(one.allowance));
+        let masses = self.blocks.iter().map(|block| match block {
+            Block::Flex(block) => block.mass(),
+            Block::Rigid(block) => block.mass()[0].max(block.mass()[1]),
+        });
+        let parting = 2.0 * masses.sum::<f64>() * (PARTING_RATE * deepest).powi(2);
+        let most = (1.0 + DOUBLED) * summary.brought() + parting;
+        !self.path.is_empty() && summary.end_energy[0] > most
     }
 
     /// Ends the step where it was first stopped, or where it began, without forces of position.
@@ -76,5 +96,85 @@ impl Island {
         summary.work = self.actual_work(settings) + self.joint_work(settings);
         summary.end_energy = self.end_energy();
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constraint::contact::{ContactLaw, Kinematics, Owner, Remembered};
+    use crate::integrator::Beta2;
+    use crate::kkt::{ActiveContact, Way};
+    use crate::math::Vec2;
+    use crate::system::{Point, RigidBlock, RigidLoad, RigidMotion, Step};
+
+    /// Two balls of 2 kg, a metre apart, and whether they are led along a path.
+    fn balls(are_led: bool) -> Island {
+        let mut island = Island::default();
+        let load = RigidLoad {
+            inverse_mass: [0.5, 0.5, 1.0],
+            force: [0.0; 3],
+            damping: [0.0; 3],
+        };
+        let members = [0.0, 1.0].map(|x| {
+            let motion = RigidMotion {
+                centre: Vec2::new(x, 0.0),
+                ..RigidMotion::default()
+            };
+            let step = Step::new(&Beta2::default(), 1e-2);
+            let body = RigidBlock::free(motion, None, &load, &step);
+            island.blocks.push(Block::Rigid(body));
+            let centre = [(0, Vec2::zeros(), Vec2::zeros())];
+            let block = island.blocks.len() - 1;
+            let blocks = &island.blocks;
+            island
+                .path
+                .rigid_member(block, blocks, 0, 0.1, &centre, &[[0, 0]])
+        });
+        let way = Way {
+            members,
+            owners: [Owner::Collider(0), Owner::Collider(1)],
+            law: ContactLaw::default(),
+            closing: 0.2,
+            margin: 0.1,
+            reach: 0.1,
+        };
+        assert!(!are_led || island.path.add_way(way));
+        island
+    }
+
+    /// Twice what was brought is much, more than that is too much; what began in each other may part at its pace besides.
+    #[test]
+    fn bodies_are_thrown_by_more_than_twice_what_was_brought() {
+        let mut summary = IslandSummary {
+            start_energy: [10.0, 5.0],
+            work: -3.0,
+            load_energy: 2.0,
+            ..IslandSummary::default()
+        };
+        let mut island = balls(true);
+        for (kinetic, is_thrown) in [(0.0, false), (39.9, false), (40.1, true), (1e20, true)] {
+            summary.end_energy = [kinetic, 1e3];
+            assert_eq!(island.is_thrown(&summary), is_thrown, "{kinetic} J");
+            assert!(!balls(false).is_thrown(&summary));
+        }
+        let grips = [0, 1].map(|block| {
+            (
+                block,
+                Point::Arm(Vec2::zeros()),
+                1.0 - 2.0 * block as f64,
+                Vec2::zeros(),
+            )
+        });
+        let row = Kinematics::with_levers(0.0, Vec2::new(1.0, 0.0), Vec2::zeros(), &grips);
+        let mut contact = ActiveContact::new(0, row, Remembered::default(), 0.0, &island.blocks);
+        contact.allowance = -0.1;
+        island.contacts.push(contact);
+        // Both at twice the pace at which a tenth of a metre parts.
+        let parting = 2.0 * 0.5 * 2.0 * (2.0 * PARTING_RATE * 0.1f64).powi(2);
+        for (kinetic, is_thrown) in [(39.9 + parting, false), (40.1 + parting, true)] {
+            summary.end_energy = [kinetic, 0.0];
+            assert_eq!(island.is_thrown(&summary), is_thrown, "{kinetic} J");
+        }
     }
 }

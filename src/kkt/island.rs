@@ -345,7 +345,12 @@ impl Island {
         let allowance = loads + joint_work;
         summary.work = self.actual_work(settings) + joint_work;
         summary.end_energy = self.end_energy();
-        if self.has_gained(settings, &summary) {
+        let is_thrown = !summary.is_unsolved() && self.is_thrown(&summary);
+        if is_thrown && settings.may_be_cut {
+            summary.is_stopped = true;
+            return Ok(summary);
+        }
+        if is_thrown || self.has_gained(settings, &summary) {
             self.end_gently(settings, memory, &mut summary)?;
         }
         if self.has_gained(settings, &summary) {

@@ -36,7 +36,7 @@ mod velocity;
 
 pub use constraint_function::{ConstraintFunction, ContactMethod, EpsilonError};
 pub(crate) use feasible::Way;
-pub(crate) use gentle::GAINED;
+pub(crate) use gentle::{DOUBLED, GAINED};
 pub use impact::ImpactTreatment;
 pub use island::{ActiveContact, Island, KktError, SolveSettings};
 pub use joint_rows::ActiveJoint;

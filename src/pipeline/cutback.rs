@@ -13,11 +13,8 @@ use super::settings::FlexParameters;
 use super::solved::Entry;
 use crate::body::FlexBodySet;
 use crate::coupling::Span;
-use crate::kkt::GAINED;
+use crate::kkt::{DOUBLED, GAINED};
 use crate::system::Step;
-
-/// Energy gained in a step, relative to what there was and was brought, that no swing of stored accelerations explains (-).
-const DOUBLED: f64 = 1.0;
 
 impl Solver {
     /// Solves the step of one island, in parts if it must be.

@@ -132,6 +132,11 @@ impl FlexBlock {
         0.5 * (self.step.dt * total).norm_squared() / self.arms.mass
     }
 
+    /// Mass of the body (kg).
+    pub fn mass(&self) -> f64 {
+        self.arms.mass
+    }
+
     /// Length of the step (s).
     pub fn step_length(&self) -> f64 {
         self.step.dt
