@@ -34,3 +34,6 @@ mod coming_and_going;
 
 #[path = "joints/caught.rs"]
 mod caught;
+
+#[path = "joints/pinned_twice.rs"]
+mod pinned_twice;

@@ -3,6 +3,8 @@
 //! With `B` the bilateral rows and `C` the others, `p_B = -W_BB⁻¹ (b_B + W_BC p_C)` leaves
 //! `W_CC - W_CB W_BB⁻¹ W_BC` and `b_C - W_CB W_BB⁻¹ b_B`. A chain of a hundred links that carries one box then costs one factorization
 //! and a problem of the box's contacts, instead of a factorization per pivot.
+//!
+//! Bilateral rows that depend on each other are solved by proximal steps instead.
 
 use super::dense::{dot, factorize_cholesky, solve_cholesky_in_place};
 use super::problem::{ComplementarityError, Problem, RowKind, Status};
@@ -14,8 +16,25 @@ const LEAST: usize = 8;
 /// What must be left of a row's mobility once the bilateral rows hold (-); rows with less are redundant.
 const LEFT: f64 = 1e-9;
 
-/// Rank tolerance of the bilateral rows.
-const RANK_TOLERANCE: f64 = 1e-11;
+/// What must be left of a bilateral row's mobility once the others hold (-), or they depend on each other: what single precision knows of the places they
+/// are made of moves them by its square.
+const RANK_TOLERANCE: f64 = 1e-6;
+
+/// Share of its mobility by which a bilateral row gives way to the change of its force where such rows depend on each other (-), and how often that is
+/// solved: what they agree on is left to the cube of this share, and what they contradict each other about ends in few forces.
+const GIVE: f64 = 1e-3;
+const ROUNDS: usize = 3;
+
+/// What has become of the bilateral rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ties {
+    /// They are eliminated.
+    Eliminated,
+    /// There is nothing to gain by that.
+    Few,
+    /// They depend on each other, as those of two hinges between the same bodies.
+    Dependent,
+}
 
 /// Buffers of the condensed problem.
 #[derive(Debug, Clone, Default)]
@@ -52,7 +71,8 @@ impl Solver {
     ) -> Result<Outcome, ComplementarityError> {
         problem.check()?;
         let mut condensed = std::mem::take(&mut self.condensed);
-        let outcome = if condensed.condense(problem, multipliers, status) {
+        let ties = condensed.condense(problem, multipliers, status);
+        let outcome = if ties == Ties::Eliminated {
             let reduced = Problem {
                 delassus: &condensed.delassus,
                 free: &condensed.free,
@@ -68,32 +88,64 @@ impl Solver {
                 condensed.expand(multipliers, status);
             }
             solved
+        } else if ties == Ties::Dependent {
+            self.solve_dependent(problem, &mut condensed, multipliers, status)
         } else {
             self.solve(problem, multipliers, status)
         };
         self.condensed = condensed;
         outcome
     }
+
+    /// Solves a problem whose bilateral rows depend on each other, by proximal steps on their multipliers.
+    ///
+    /// Rows that are off by rounding and have no motion left to agree in would ask for any force, and rows that turn would make motions of it.
+    /// Steps from `p` leave of the forces what moves something, and add to the rest no more than what is asked for by `GIVE`.
+    fn solve_dependent(
+        &mut self,
+        problem: &Problem,
+        condensed: &mut Condensed,
+        multipliers: &mut [f64],
+        status: &mut [Status],
+    ) -> Result<Outcome, ComplementarityError> {
+        if !condensed.soften(problem, multipliers) {
+            return self.solve(problem, multipliers, status);
+        }
+        let n = problem.rows.len();
+        let mut outcome = Outcome::default();
+        for _ in 0..ROUNDS {
+            condensed.free.clear();
+            condensed.free.extend_from_slice(problem.free);
+            for &row in &condensed.tied {
+                let give = condensed.delassus[row * (n + 1)] - problem.delassus[row * (n + 1)];
+                condensed.free[row] -= give * multipliers[row];
+            }
+            let softened = Problem {
+                delassus: &condensed.delassus,
+                free: &condensed.free,
+                ..*problem
+            };
+            let n_pivots = outcome.n_pivots;
+            outcome = self.solve(&softened, multipliers, status)?;
+            outcome.n_pivots += n_pivots;
+        }
+        Ok(outcome)
+    }
 }
 
 impl Condensed {
-    /// Writes the condensed problem; false if there is nothing to gain or rows depend on each other.
-    fn condense(&mut self, problem: &Problem, multipliers: &[f64], status: &[Status]) -> bool {
-        let n = problem.rows.len();
+    /// Writes the condensed problem, if there is something to gain.
+    fn condense(&mut self, problem: &Problem, multipliers: &[f64], status: &[Status]) -> Ties {
         self.split(problem);
         let n_tied = self.tied.len();
-        if n_tied < LEAST {
-            return false;
-        }
-        self.matrix.clear();
-        for &row in &self.tied {
-            let line = &problem.delassus[row * n..(row + 1) * n];
-            self.matrix
-                .extend(self.tied.iter().map(|&column| line[column]));
-        }
+        self.copy_ties(problem.delassus, problem.rows.len());
         if !factorize_cholesky(&mut self.matrix, n_tied, RANK_TOLERANCE) {
-            return false;
+            return Ties::Dependent;
         }
+        if n_tied < LEAST {
+            return Ties::Few;
+        }
+        let n = problem.rows.len();
         self.columns.clear();
         for &other in &self.others {
             let line = &problem.delassus[other * n..(other + 1) * n];
@@ -104,7 +156,52 @@ impl Condensed {
         for column in self.columns.chunks_exact_mut(n_tied) {
             solve_cholesky_in_place(&self.matrix, n_tied, column);
         }
-        self.reduce(problem, multipliers, status)
+        match self.reduce(problem, multipliers, status) {
+            true => Ties::Eliminated,
+            false => Ties::Few,
+        }
+    }
+
+    /// Copies the part of a Delassus matrix that belongs to the bilateral rows.
+    fn copy_ties(&mut self, delassus: &[f64], n: usize) {
+        self.matrix.clear();
+        for &row in &self.tied {
+            let line = &delassus[row * n..(row + 1) * n];
+            self.matrix
+                .extend(self.tied.iter().map(|&column| line[column]));
+        }
+    }
+
+    /// Lets the bilateral rows give way by their share, and takes out of their multipliers what moves none of them; false if that is not enough to
+    /// factorize them.
+    fn soften(&mut self, problem: &Problem, multipliers: &mut [f64]) -> bool {
+        let n = problem.rows.len();
+        self.delassus.clear();
+        self.delassus.extend_from_slice(problem.delassus);
+        for &row in &self.tied {
+            self.delassus[row * (n + 1)] *= 1.0 + GIVE;
+        }
+        let delassus = std::mem::take(&mut self.delassus);
+        self.copy_ties(&delassus, n);
+        self.delassus = delassus;
+        let n_tied = self.tied.len();
+        if !factorize_cholesky(&mut self.matrix, n_tied, RANK_TOLERANCE) {
+            return false;
+        }
+        self.columns.clear();
+        for &row in &self.tied {
+            let line = &problem.delassus[row * n..(row + 1) * n];
+            let moved = self
+                .tied
+                .iter()
+                .map(|&column| line[column] * multipliers[column]);
+            self.columns.push(moved.sum());
+        }
+        solve_cholesky_in_place(&self.matrix, n_tied, &mut self.columns);
+        for (&row, kept) in self.tied.iter().zip(&self.columns) {
+            multipliers[row] = *kept;
+        }
+        true
     }
 
     fn split(&mut self, problem: &Problem) {
