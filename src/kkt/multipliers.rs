@@ -63,6 +63,7 @@ impl Island {
         let redundancy = self.redundancy_tolerance(tolerance / settings.b0);
         self.solver.set_redundancy_tolerance(redundancy);
         let has_joints = self.kinds.len() > self.rows.len();
+        self.tell_lightness();
         let problem = Problem {
             delassus: &self.delassus,
             free: &self.free,
@@ -166,6 +167,24 @@ impl Island {
                 _ => own * self.multipliers[row].abs(),
             };
         }
+    }
+
+    /// Tells the solver how much lighter the lightest body that joints hold is than the heaviest one.
+    pub(super) fn tell_lightness(&mut self) {
+        let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+        for grip in &self.joint_grips {
+            let mass = match &self.blocks[grip.block] {
+                Block::Flex(block) => block.mass(),
+                Block::Rigid(block) if block.is_prescribed() => continue,
+                Block::Rigid(block) => block.mass()[0].max(block.mass()[1]),
+            };
+            if mass > 0.0 {
+                (least, most) = (least.min(mass), most.max(mass));
+            }
+        }
+        let lightness = least / most;
+        self.solver
+            .set_lightness(if lightness <= 1.0 { lightness } else { 1.0 });
     }
 
     /// The natural-map residual of rows that move by `velocity` beyond what they may (m/s²): redundant rows that contradict

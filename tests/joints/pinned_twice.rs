@@ -72,3 +72,47 @@ fn boxes_that_are_pinned_together_twice_fall_and_lie_under_forces_of_their_size(
     }
     findings.report();
 }
+
+/// A box hangs on a rod ten million times lighter. Along the rod next to nothing of the light one's mobility is left, but all of the box's: these rows are
+/// no more than there are motions.
+#[test]
+fn a_heavy_box_on_a_light_rod_hangs() {
+    for heavy in [1e3, 1e5, 1e7] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        let anchor = scene
+            .world
+            .insert_body(RigidBodyBuilder::fixed().translation(vec2(0.0, 3.0)));
+        let rod = RigidBodyBuilder::dynamic().translation(vec2(0.0, 2.5));
+        let shape = ColliderBuilder::cuboid(real(0.02), real(0.5)).mass(real(1.0));
+        let rod = scene.rigid(rod, shape).0;
+        let body = RigidBodyBuilder::dynamic().translation(vec2(0.0, 1.8));
+        let shape = ColliderBuilder::cuboid(real(0.4), real(0.2)).mass(real(heavy));
+        let hung = scene.rigid(body, shape).0;
+        for (one, other, anchors) in [
+            (anchor, rod, [[0.0, 0.0], [0.0, 0.5]]),
+            (rod, hung, [[0.0, -0.5], [0.0, 0.2]]),
+        ] {
+            let [first, second] = anchors.map(|[x, y]| vec2(x, y));
+            let hinge = RevoluteJointBuilder::new()
+                .local_anchor1(first)
+                .local_anchor2(second)
+                .contacts_enabled(false);
+            scene.world.impulse_joints.insert(one, other, hinge, true);
+        }
+        let material = LinearElastic::plane_strain(1e6, 0.3).density(100.0);
+        let block = FlexBodyBuilder::rectangle([0.2, 0.2], [2, 2])
+            .material(material)
+            .friction(0.5)
+            .translation([0.1, 2.005]);
+        scene.flexible(block);
+        let mut n_claimed = 0;
+        for _ in 0..60 {
+            scene.step();
+            n_claimed = n_claimed.max(scene.report().n_claimed());
+        }
+        let fallen = 1.8 - f64::from(scene.world.bodies[hung].translation().y);
+        println!("{heavy:e} kg: {fallen:e} m");
+        assert_eq!(n_claimed, 2);
+        assert!(fallen.abs() < 1e-5, "{heavy:e} kg: {fallen:e} m");
+    }
+}

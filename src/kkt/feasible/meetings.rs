@@ -250,7 +250,7 @@ impl FeasiblePath {
                 && self.is_at(near, meeting.vertices)
                 && self.vertex_beyond(near).is_none()
         });
-        near.map(|near| self.kinematics(near).gap / near.normal.dot(&along).abs())
+        near.map(|near| self.kinematics(near).gap / near.normal.dot(&along).abs().max(LEANING))
             .fold(f64::INFINITY, f64::min)
     }
 

@@ -16,9 +16,12 @@ const LEAST: usize = 8;
 /// What must be left of a row's mobility once the bilateral rows hold (-); rows with less are redundant.
 const LEFT: f64 = 1e-9;
 
-/// What must be left of a bilateral row's mobility once the others hold (-), or they depend on each other: what single precision knows of the places they
-/// are made of moves them by its square.
-const RANK_TOLERANCE: f64 = 1e-6;
+/// What must be left of a bilateral row's mobility once the others hold, where all bodies are alike (-), or they depend on each other: what single
+/// precision knows of the places they are made of moves them by its square.
+const INDEPENDENT: f64 = 1e-6;
+
+/// Rank tolerance of the bilateral rows.
+const RANK_TOLERANCE: f64 = 1e-11;
 
 /// Share of its mobility by which a bilateral row gives way to the change of its force where such rows depend on each other (-), and how often that is
 /// solved: what they agree on is left to the cube of this share, and what they contradict each other about ends in few forces.
@@ -56,7 +59,8 @@ pub(super) struct Condensed {
 }
 
 impl Solver {
-    /// [`Solver::solve`] for problems with many bilateral rows, which are eliminated first where they are independent.
+    /// [`Solver::solve`] for problems with bilateral rows: many are eliminated first where they are independent, and those that depend on
+    /// each other are solved by proximal steps.
     ///
     /// # Panics
     /// If the shapes do not agree.
@@ -71,7 +75,7 @@ impl Solver {
     ) -> Result<Outcome, ComplementarityError> {
         problem.check()?;
         let mut condensed = std::mem::take(&mut self.condensed);
-        let ties = condensed.condense(problem, multipliers, status);
+        let ties = condensed.condense(problem, self.lightness, multipliers, status);
         let outcome = if ties == Ties::Eliminated {
             let reduced = Problem {
                 delassus: &condensed.delassus,
@@ -135,11 +139,18 @@ impl Solver {
 
 impl Condensed {
     /// Writes the condensed problem, if there is something to gain.
-    fn condense(&mut self, problem: &Problem, multipliers: &[f64], status: &[Status]) -> Ties {
+    fn condense(
+        &mut self,
+        problem: &Problem,
+        lightness: f64,
+        multipliers: &[f64],
+        status: &[Status],
+    ) -> Ties {
         self.split(problem);
         let n_tied = self.tied.len();
         self.copy_ties(problem.delassus, problem.rows.len());
-        if !factorize_cholesky(&mut self.matrix, n_tied, RANK_TOLERANCE) {
+        let least = (INDEPENDENT * lightness).max(RANK_TOLERANCE);
+        if !factorize_cholesky(&mut self.matrix, n_tied, least) {
             return Ties::Dependent;
         }
         if n_tied < LEAST {

@@ -137,6 +137,7 @@ impl Answer {
 #[derive(Debug, Clone)]
 pub struct Solver {
     redundancy_tolerance: f64,
+    lightness: f64,
     first: Method,
     active_set: ActiveSet,
     lemke: Lemke,
@@ -150,6 +151,7 @@ impl Default for Solver {
     fn default() -> Self {
         Self {
             redundancy_tolerance: 1e-6,
+            lightness: 1.0,
             first: Method::ActiveSet,
             active_set: ActiveSet::default(),
             lemke: Lemke::default(),
@@ -180,6 +182,12 @@ impl Solver {
     /// See [`Solver::with_redundancy_tolerance`].
     pub fn set_redundancy_tolerance(&mut self, residual: f64) {
         self.redundancy_tolerance = residual;
+    }
+
+    /// Tells how much lighter the lightest body is than the heaviest one, 1 if they are alike (-): so little of a row's mobility may be left to it
+    /// by the others where a heavy body moves along it, see [`Solver::solve_condensed`].
+    pub fn set_lightness(&mut self, lightness: f64) {
+        self.lightness = lightness;
     }
 
     /// Chooses the solver that is asked first: the active set by default.
