@@ -226,7 +226,7 @@ impl FeasiblePath {
         // The place where the vertex comes to lie.
         let away = arm - (near.distance - row.gap) * outward;
         row.normal = normal;
-        row.gap = normal.dot(&away).min(self.gap_at(meeting, normal));
+        row.gap = normal.dot(&away).min(self.gap_at(meeting));
         let [cos, sin] = [
             normal.dot(&meeting.forces[0]),
             normal.perp(&meeting.forces[0]).abs(),
@@ -240,17 +240,16 @@ impl FeasiblePath {
         Some((near, row, away, law, key))
     }
 
-    /// How far along a direction the vertices of a meeting are from touching where one of them lies over an edge of the other; without bound
-    /// where none does.
+    /// The gap of a meeting where one of its vertices lies over an edge of the other; without bound where none does (m).
     ///
     /// Edges lean as bodies turn, and a vertex at its place beside another one may lie in the surface.
-    fn gap_at(&self, meeting: &Meeting, along: Vec2) -> f64 {
+    fn gap_at(&self, meeting: &Meeting) -> f64 {
         let near = self.near.iter().filter(|near| {
             near.pair == meeting.way
                 && self.is_at(near, meeting.vertices)
                 && self.vertex_beyond(near).is_none()
         });
-        near.map(|near| self.kinematics(near).gap / near.normal.dot(&along).abs().max(LEANING))
+        near.map(|near| self.kinematics(near).gap)
             .fold(f64::INFINITY, f64::min)
     }
 
