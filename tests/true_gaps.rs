@@ -47,7 +47,7 @@ fn watch(scene: &mut Scene, seconds: f64, pairs: &[(FlexBodyHandle, ColliderHand
     for step in 0..n_steps {
         let report = scene.try_step().expect("the step can be taken");
         let told = report.gap_violation();
-        let is_solved = report.n_linearized() + report.n_held() == 0;
+        let is_solved = report.n_cut() + report.n_unfinished() == 0;
         n_other += usize::from(!is_solved);
         for &(flexible, collider) in pairs {
             let there = overlap(scene, scene.body(flexible), collider);

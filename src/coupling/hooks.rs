@@ -108,9 +108,6 @@ impl HookBook {
         if !removes {
             self.keep_unseen(nearest.map(|(_, law)| law), island);
         }
-        for candidate in &mut island.candidates[first..] {
-            candidate.law.may_pass = true;
-        }
         let [one, other] = pair.colliders;
         let is_left = island.candidates.len() > first;
         self.left.insert(pair_name(one, other), is_left);

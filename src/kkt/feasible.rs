@@ -130,6 +130,8 @@ impl FeasiblePath {
         self.references.clear();
         self.n_shared = None;
         self.is_led = false;
+        self.base.clear();
+        self.nodes.clear();
     }
 
     /// Whether there is no path to follow: no surfaces are kept apart, or only from themselves, where they are not near.

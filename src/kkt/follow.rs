@@ -13,16 +13,19 @@ mod trend;
 
 use self::listing::Listing;
 use self::trend::Trend;
+use super::delassus::compliance;
 use super::feasible::KeptBase;
 use super::island::{ActiveContact, Island, SolveSettings};
-use super::iterate::ANGLE_TOLERANCE;
 use super::joint_rows::ActiveJoint;
 use super::position::{PARTING_RATE, Turned};
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointGrip;
-use crate::math::{exp, is_held};
-use crate::system::Block;
+use crate::math::{Mat2, exp, is_held};
+use crate::system::{Block, Response};
+
+/// Turning below this angle (rad) changes no position by more than round-off.
+pub(super) const ANGLE_TOLERANCE: f64 = 1e-11;
 
 /// Passes of a step that stop short of where the forces lead. Every one of them goes on with forces that do not know what comes after: bodies
 /// that are stopped that often meet in ways that the step does not resolve.
@@ -82,7 +85,12 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) -> Passed {
-        self.path.rest(&self.blocks);
+        self.margin = self.path.least_margin();
+        if self.path.is_empty() {
+            self.margin = NEAR / CLOSE_ENOUGH * tolerance;
+        } else {
+            self.path.rest(&self.blocks);
+        }
         self.path.list_pressed(memory, &mut self.pressed_before);
         self.impact.is_known = false;
         self.arrival.is_known = false;
@@ -90,8 +98,9 @@ impl Island {
         self.softness = 0.0;
         self.left.clear();
         self.tell_base(false);
-        if self.try_passes(settings, memory, tolerance, summary) {
-            return Passed::Solved;
+        let passed = self.try_passes(settings, memory, tolerance, summary);
+        if passed != Passed::Stopped {
+            return passed;
         }
         if let Some(passed) = self.end_at_arrival() {
             return passed;
@@ -108,7 +117,7 @@ impl Island {
         memory: &ContactMemory,
         tolerance: f64,
         summary: &mut IslandSummary,
-    ) -> bool {
+    ) -> Passed {
         let kept = exp(-PARTING_RATE * settings.dt);
         let mut listing = Listing {
             memory: Some(memory),
@@ -137,10 +146,10 @@ impl Island {
             let mut arrives = false;
             let mut error = 0.0;
             if !self.is_finite() || has_left && self.leads_around() {
-                return false;
+                return Passed::Stopped;
             }
             if !misleads {
-                arrives = self.path.advance(&self.blocks);
+                arrives = self.path.is_empty() || self.path.advance(&self.blocks);
                 let led = self.tell_base(pass >= FEW_PASSES && is_idle);
                 (turned.angle, turned.way) = (turned.angle.max(led.angle), turned.way.max(led.way));
                 if !arrives {
@@ -148,10 +157,11 @@ impl Island {
                 }
                 n_stopped += usize::from(!arrives);
                 listing.pass = pass + 1;
-                // Rows that turn to and fro are left as they are in the end: gaps are true all the same.
+                // Rows that turn to and fro are left as they are in the end. Gaps along a path are true all the same; those of signed rows follow
+                // their rows.
                 listing.keeps_rows = is_eased && arrives;
                 self.list_near(&listing);
-                error = self.measure(false);
+                error = self.measure(listing.keeps_rows);
                 is_idle = error > SLOWEST * last;
                 last = error;
             }
@@ -170,20 +180,27 @@ impl Island {
             let is_close = if is_eased {
                 lack <= CLOSE_ENOUGH
             } else {
-                error <= enough && (turned.angle <= ANGLE_TOLERANCE || turned.way <= enough)
+                let is_near = !self.path.is_empty() && turned.way <= enough;
+                error <= enough && (turned.angle <= ANGLE_TOLERANCE || is_near)
             };
             if arrives && is_close && !has_more {
                 self.end_at_base();
                 self.keep_applied_rows();
-                return !self.leads_around();
+                let has_strayed = listing.keeps_rows && self.measure_signed() > self.margin;
+                return match (self.leads_around(), has_strayed) {
+                    (true, _) => Passed::Stopped,
+                    (false, true) => Passed::Arrived,
+                    (false, false) => Passed::Solved,
+                };
             }
             if arrives && !has_more && turned.angle <= CLOSE_ENOUGH {
                 self.keep_arrival();
             }
             if is_eased && trend.is_hopeless(lack, n_passes - pass - 1) {
-                return false;
+                return Passed::Stopped;
             }
-            let may_retreat = !misleads && !listing.keeps_rows && !self.is_led();
+            let may_retreat =
+                !(misleads || listing.keeps_rows || self.path.is_empty() || self.is_led());
             if may_retreat && self.path.retreat(&self.blocks) {
                 self.tell_base(false);
                 self.list_near(&Listing {
@@ -193,7 +210,7 @@ impl Island {
                 self.measure(false);
             }
             if !(error + turned.angle).is_finite() || n_stopped > MOST_STOPS {
-                return false;
+                return Passed::Stopped;
             }
             if !self.ties.is_empty() && pass > 0 && pass % 5 == 0 {
                 self.restiffen_turns(settings);
@@ -201,15 +218,16 @@ impl Island {
             has_left = self.note_left();
             self.turn_signed_rows(!misleads && !listing.keeps_rows);
             if !self.solve_consistently(settings, tolerance, summary) {
-                return false;
+                return Passed::Stopped;
             }
             self.note_yielding(settings.b0);
+            self.leave_immovable();
             if n_stopped > 0 && !self.impact.is_known {
                 self.keep_impact();
             }
             turned = self.correct();
         }
-        false
+        Passed::Stopped
     }
 
     /// Whether some block is led from the base: its iterate is not where the last way led any more.
@@ -280,7 +298,7 @@ impl Island {
 
     /// How far the laws may be from holding at the end of a pass (m).
     fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
-        let margin = self.path.least_margin();
+        let margin = self.margin;
         if is_eased {
             CLOSE_ENOUGH * margin
         } else if self.has_many_rows() {
@@ -377,6 +395,21 @@ impl Island {
             .any(|way| self.path.leads_around(*way, &self.blocks));
         self.left = left;
         is_led
+    }
+
+    /// Leaves overlaps that the step began with where nothing can part them: between surfaces that are pinned, or driven, both.
+    fn leave_immovable(&mut self) {
+        for contact in &mut self.contacts {
+            let row = &contact.kinematics;
+            let along = |own: Mat2| row.normal.dot(&(own * row.normal));
+            if contact.base.is_none() && contact.allowance < 0.0 && row.gap < 0.0 {
+                let own = compliance(&self.blocks, row, row, Response::Position);
+                if own.is_none_or(|own| along(own) <= 0.0) {
+                    contact.allowance += row.gap;
+                    contact.kinematics.gap = 0.0;
+                }
+            }
+        }
     }
 
     /// Goes back to the rows that the forces of the iterate acted along, with the gaps of the base.

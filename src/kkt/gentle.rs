@@ -8,6 +8,7 @@ use super::position::PARTING_RATE;
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::linalg::complementarity::Status;
+use crate::math::are_held;
 use crate::system::Block;
 
 /// Energy beyond what there was and what loads have done that tells of forces that are none (-): as much as the tests of energy allow.
@@ -20,13 +21,14 @@ pub const DOUBLED: f64 = 1.0;
 const TOUCHING: f64 = 1.0;
 
 impl Island {
-    /// Whether a step along the path that is not solved has gained energy.
+    /// Whether a step that is not solved has gained energy.
     ///
     /// Parts of a step that gain a little each are not to gain much together: each has its share. What contact has taken before is not theirs to
     /// give back.
     pub(super) fn has_gained(&self, settings: &SolveSettings, summary: &IslandSummary) -> bool {
         let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
-        let is_unsolved = (summary.is_cut || summary.is_stopped) && !self.path.is_empty();
+        // What stands together where the step began has gained nothing.
+        let is_unsolved = summary.is_cut || summary.is_stopped && !self.path.is_empty();
         // Forces that no solution gave do no work to count on: neither of joints nor of driven bodies.
         let supply = self.applied_work().max(0.0);
         let gain = after - before - supply;
@@ -34,18 +36,39 @@ impl Island {
         is_unsolved && (gain.is_nan() || gain > share * (before + supply))
     }
 
-    /// Whether bodies led along a path have come to more kinetic energy than twice what was brought and what they part with, by the margin at least: no
+    /// Whether bodies that touch have come to more kinetic energy than twice what was brought and what they part with, by the margin at least: no
     /// forces that mean anything do that.
     pub(super) fn is_thrown(&self, summary: &IslandSummary) -> bool {
         let overlaps = self.contacts.iter().map(|contact| -contact.allowance);
-        let deepest = overlaps.fold(self.path.least_margin(), f64::max);
+        let deepest = overlaps.fold(self.margin, f64::max);
         let masses = self.blocks.iter().map(|block| match block {
             Block::Flex(block) => block.mass(),
             Block::Rigid(block) => block.mass()[0].max(block.mass()[1]),
         });
         let parting = 2.0 * masses.sum::<f64>() * (PARTING_RATE * deepest).powi(2);
         let most = (1.0 + DOUBLED) * summary.brought() + parting;
-        !self.path.is_empty() && summary.end_energy[0] > most
+        let may_touch = !self.path.is_empty() || !self.contacts.is_empty();
+        may_touch && summary.end_energy[0] > most
+    }
+
+    /// Whether some rigid body has come to a motion that rapier's numbers do not hold.
+    pub(super) fn is_flung(&self) -> bool {
+        self.blocks.iter().any(|block| match block {
+            Block::Flex(_) => false,
+            Block::Rigid(block) => {
+                let motion = block.current();
+                let [place, velocity] = [motion.centre, motion.velocity];
+                let numbers = [
+                    place.x,
+                    place.y,
+                    velocity.x,
+                    velocity.y,
+                    motion.angle,
+                    motion.spin,
+                ];
+                !(are_held(&numbers) && block.smooth_end.iter().all(|value| value.is_finite()))
+            }
+        })
     }
 
     /// Ends the step where it was first stopped, or where it began, without forces of position.
@@ -153,6 +176,7 @@ mod tests {
             ..IslandSummary::default()
         };
         let mut island = balls(true);
+        island.margin = MARGIN;
         // Both at twice the pace at which so much parts.
         let parting = |way: f64| 2.0 * 0.5 * 2.0 * (2.0 * PARTING_RATE * way).powi(2);
         let at_margin = parting(MARGIN);

@@ -223,6 +223,8 @@ pub struct Island {
     pub(super) before_solve: Stage,
     /// Share of its own mobility that every contact gives way by to the change of its force (-).
     pub(super) softness: f64,
+    /// What the laws may miss at the very most: the least margin of the ways (m).
+    pub(super) margin: f64,
     /// Ways that a contact has slid off from.
     pub(super) left: Vec<usize>,
     /// The working set after a solve.
@@ -263,8 +265,6 @@ pub struct Island {
     pub(super) groups: Vec<usize>,
     /// Blocks with contacts of their own surface.
     pub(super) touch_themselves: Vec<bool>,
-    /// Whether overlaps that the step began with are left alone.
-    pub(super) ignores_overlaps: bool,
     /// Blocks of the contacts that pressed in the last step: their forces still act from the stored accelerations.
     pub(super) pressed_before: Vec<[usize; 2]>,
     pub(super) solver: Solver,
@@ -334,7 +334,7 @@ impl Island {
         summary.is_parting = contacts.any(|contact| contact.allowance < 0.0);
         let finished = treatment.finish(self, settings, &mut summary);
         let is_unsolved = summary.is_unsolved();
-        if finished.is_err() && is_unsolved {
+        if finished.is_err() && is_unsolved && !self.path.is_empty() {
             // Forces that are no numbers count no more than those that are too large.
             self.end_gently(settings, memory, &mut summary)?;
         } else {
@@ -345,15 +345,16 @@ impl Island {
         let allowance = loads + joint_work;
         summary.work = self.actual_work(settings) + joint_work;
         summary.end_energy = self.end_energy();
-        let is_thrown = !summary.is_unsolved() && self.is_thrown(&summary);
+        let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(&summary);
         if is_thrown && settings.may_be_cut {
             summary.is_stopped = true;
             return Ok(summary);
         }
-        if is_thrown || self.has_gained(settings, &summary) {
+        let has_path = !self.path.is_empty();
+        if has_path && (is_thrown || self.has_gained(settings, &summary)) {
             self.end_gently(settings, memory, &mut summary)?;
         }
-        if self.has_gained(settings, &summary) {
+        if is_thrown && !has_path || self.has_gained(settings, &summary) {
             self.end_together(&mut summary);
             self.measure_ended(settings, &mut summary);
         }
@@ -365,9 +366,6 @@ impl Island {
             if is_unsolved {
                 // What such a step has lost is lost.
                 *reserve = reserve.min(stored);
-            }
-            if self.path.is_empty() {
-                self.hold_if_flung(settings, allowance + stored, &mut summary);
             }
         }
         self.count_late_forces(settings);

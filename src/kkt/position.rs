@@ -44,7 +44,6 @@ impl Island {
         summary: &mut IslandSummary,
     ) {
         let tolerance = self.gap_tolerance(settings);
-        self.ignores_overlaps = false;
         self.open_working_set(settings, tolerance, memory);
         let is_solved = match &settings.contact {
             ContactMethod::Lagrange => false,
@@ -58,26 +57,28 @@ impl Island {
                 self.iterate_functions(&trial, summary)
             }
         };
+        let mut passed = if is_solved {
+            Passed::Solved
+        } else {
+            self.follow_path(settings, memory, tolerance, summary)
+        };
         if self.path.is_empty() {
-            let is_solved = is_solved || self.iterate(settings, memory, tolerance, summary);
-            if !is_solved || self.is_astray() {
-                self.fall_back(settings, memory, tolerance, summary);
-            }
             // What is out of range ends its body's step, and is told by name.
             if self.is_in_range() && self.path.has_met_itself(&self.blocks) {
                 self.start_again(settings, tolerance, memory);
+                passed = self.follow_path(settings, memory, tolerance, summary);
             }
         }
+        summary.is_cut = passed == Passed::Arrived;
+        summary.is_stopped = passed == Passed::Stopped;
         if !self.path.is_empty() {
-            match self.follow_path(settings, memory, tolerance, summary) {
-                Passed::Solved => {}
-                Passed::Arrived => summary.is_cut = true,
-                Passed::Stopped => summary.is_stopped = true,
-            }
-            if summary.is_cut || summary.is_stopped {
+            if summary.is_unsolved() {
                 self.path.stop(&mut self.blocks);
             }
             self.list_parted();
+        } else if summary.is_stopped && !settings.may_be_cut {
+            // No path tells how far the bodies may go.
+            self.end_together(summary);
         }
         if !self.ties.is_empty() {
             self.prepare_joints();
@@ -91,6 +92,21 @@ impl Island {
         }
         summary.gap_violation = self.gap_violation();
         summary.slip_violation = self.slip_violation();
+    }
+
+    /// Puts the bodies and the working set back to where the step begins.
+    pub(super) fn start_again(
+        &mut self,
+        settings: &SolveSettings,
+        tolerance: f64,
+        memory: &ContactMemory,
+    ) {
+        for block in &mut self.blocks {
+            if let Block::Flex(block) = block {
+                block.restart();
+            }
+        }
+        self.open_working_set(settings, tolerance, memory);
     }
 
     /// Empties the working set but for what pressed in the last step.
@@ -135,8 +151,8 @@ impl Island {
                 let blocks = &self.blocks;
                 let mut contact =
                     ActiveContact::new(index, kinematics, remembered, friction, blocks);
-                let is_overlap = contact.allow_overlap(kept, slop, candidate, &scene);
-                if is_overlap && self.ignores_overlaps || self.is_held_by_joints(&kinematics) {
+                contact.allow_overlap(kept, slop, candidate, &scene);
+                if self.is_held_by_joints(&kinematics) {
                     continue;
                 }
                 self.is_working[index] = true;
@@ -198,6 +214,15 @@ impl Island {
         error.max(self.measure_contacts(true))
     }
 
+    /// Measures the signed contacts where the blocks are now; returns how far their laws are from holding there in truth (m).
+    pub(super) fn measure_signed(&mut self) -> f64 {
+        let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
+        let signed = self.contacts.iter_mut().filter(|one| one.base.is_none());
+        let errors = signed
+            .map(|contact| contact.measure(&self.candidates[contact.candidate], &scene, false));
+        errors.fold(0.0, f64::max)
+    }
+
     fn measure_contacts(&mut self, extrapolates: bool) -> f64 {
         let mut error = 0.0f64;
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
@@ -214,18 +239,13 @@ impl Island {
         error
     }
 
-    /// Makes the measured geometry the rows that forces act along; with `is_eased` directions go only half the way, where they have
-    /// turned to and fro.
-    pub(super) fn refresh_rows(&mut self, is_eased: bool) {
+    /// Makes the measured geometry the rows that forces act along.
+    pub(super) fn refresh_rows(&mut self) {
         for contact in &mut self.contacts {
             let gap = contact.kinematics.gap;
             contact.applied = contact.kinematics;
             contact.kinematics = contact.measured;
             contact.kinematics.gap = gap;
-            if is_eased {
-                contact.kinematics.normal =
-                    between(contact.applied.normal, contact.measured.normal);
-            }
             contact.known = None;
         }
         self.refresh_joints();
@@ -254,9 +274,8 @@ impl Island {
             let mut contact =
                 ActiveContact::new(index, kinematics, remembered, friction, &self.blocks);
             let slop = OVERLAPPED * tolerance;
-            let is_overlap = contact.allow_overlap(kept, slop, candidate, &scene);
-            let is_left_alone =
-                is_overlap && self.ignores_overlaps || self.is_held_by_joints(&kinematics);
+            contact.allow_overlap(kept, slop, candidate, &scene);
+            let is_left_alone = self.is_held_by_joints(&kinematics);
             if !is_left_alone && contact.kinematics.gap < -tolerance {
                 self.is_working[index] = true;
                 self.contacts.push(contact);
@@ -292,27 +311,11 @@ fn moved(kinematics: &Kinematics, blocks: &[Block]) -> Vec2 {
     kinematics.relative(blocks, |block, grip| block.displacement(grip))
 }
 
-/// The direction half way between two unit vectors, or the second where they point apart.
-fn between(one: Vec2, other: Vec2) -> Vec2 {
-    if one.dot(&other) <= 0.0 {
-        return other;
-    }
-    (one + other).normalize()
-}
-
 impl ActiveContact {
     /// Where the step began with an overlap beyond `slop`, leaves the share `kept` of it for now.
-    ///
-    /// Returns whether it did.
-    fn allow_overlap(
-        &mut self,
-        kept: f64,
-        slop: f64,
-        candidate: &Candidate,
-        scene: &Scene<'_>,
-    ) -> bool {
+    fn allow_overlap(&mut self, kept: f64, slop: f64, candidate: &Candidate, scene: &Scene<'_>) {
         if candidate.began_outside(scene, &self.kinematics, slop) {
-            return false;
+            return;
         }
         let (began, is_clear) = match candidate.start_gap(scene) {
             Some(began) => (began, true),
@@ -326,7 +329,6 @@ impl ActiveContact {
             self.measured.gap = self.kinematics.gap;
             self.known = self.known.map(|(gap, at)| (gap - self.allowance, at));
         }
-        is_overlap
     }
 
     /// The gap that the step began with as its motion tells (m), and whether a turn does not blur it.

@@ -130,7 +130,7 @@ impl Island {
         };
         for contact in &mut self.contacts {
             (contact.yielding, contact.mobility) = ([0.0; 2], None);
-            if yields != [0.0; 2] && contact.base.is_some() && contact.multiplier[0] > 0.0 {
+            if yields != [0.0; 2] && contact.multiplier[0] > 0.0 {
                 let row = &contact.kinematics;
                 let own = compliance(&self.blocks, row, row, Response::Position);
                 let own = own.unwrap_or_default();

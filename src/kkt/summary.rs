@@ -13,16 +13,10 @@ pub struct IslandSummary {
     pub has_failed: bool,
     /// Whether Lagrange multipliers then solved the step.
     pub is_substituted: bool,
-    /// Whether the iterations ended along extrapolated gaps, or failed: the step may have left the motion that it continues.
-    pub is_doubtful: bool,
-    /// Whether Newton's iterations failed and a linearised step was taken.
-    pub is_linearized: bool,
     /// Whether the step ended where gaps miss the laws by up to the margin of the path.
     pub is_cut: bool,
     /// Whether the step was stopped at a state on its feasible path.
     pub is_stopped: bool,
-    /// Whether even that threw a body about, so that the island stayed where it was, at rest.
-    pub is_held: bool,
     /// Kinetic energy that the loads would give to the members at rest if nothing held them (J).
     pub load_energy: f64,
     /// Whether bodies that began in each other were pressed apart.

@@ -142,6 +142,8 @@ impl Island {
                 block.measure_elastic_energy();
             }
         }
+        let swings = self.blocks.iter().map(|block| block.swing()[1]);
+        (summary.swing, summary.pending) = (swings.sum(), 0.0);
         summary.work = self.actual_work(settings);
         summary.end_energy = self.end_energy();
     }

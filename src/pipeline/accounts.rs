@@ -64,20 +64,13 @@ impl StepReport {
                 false => self.tell(unsolved),
             }
         }
-        let counts = entry.count([
-            summary.has_failed,
-            summary.is_substituted,
-            summary.is_linearized,
-            summary.is_held,
-        ]);
+        let counts = entry.count([summary.has_failed, summary.is_substituted]);
         self.gap_violation = self.gap_violation.max(summary.gap_violation);
         self.slip_violation = self.slip_violation.max(summary.slip_violation);
         self.solver_residual = self.solver_residual.max(summary.residual);
         self.n_newton = self.n_newton.max(summary.n_newton);
         self.n_failed += counts[0];
         self.n_substituted += counts[1];
-        self.n_linearized += counts[2];
-        self.n_held += counts[3];
         self.n_pivots += summary.n_pivots;
         self.energy_limited += summary.limited;
         let gain: f64 =

@@ -40,7 +40,7 @@ pub struct Unsolved {
 impl IslandSummary {
     /// How well the island was solved.
     pub(super) fn quality(&self) -> Quality {
-        if self.is_stopped || self.is_linearized || self.is_held {
+        if self.is_stopped {
             Quality::Unfinished
         } else if self.is_cut {
             Quality::Cut

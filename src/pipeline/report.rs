@@ -196,8 +196,6 @@ pub struct StepReport {
     pub(super) n_parts: usize,
     pub(super) n_failed: usize,
     pub(super) n_substituted: usize,
-    pub(super) n_linearized: usize,
-    pub(super) n_held: usize,
     pub(super) n_pivots: usize,
     /// What was spent is no state.
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
@@ -341,15 +339,31 @@ impl StepReport {
         self.n_substituted
     }
 
-    /// Islands on no path whose Newton iterations did not converge, so that a linearised step was taken.
-    pub fn n_linearized(&self) -> usize {
-        self.n_linearized
+    /// Islands among the [unsolved](Self::unsolved) whose step was cut.
+    pub fn n_cut(&self) -> usize {
+        self.count_of(Quality::Cut)
     }
 
-    /// Islands on no path that stayed where they were for this step, or a part of it: no step could be found, as when bodies are jammed into each
-    /// other. What touches moves on together.
+    /// Islands among the [unsolved](Self::unsolved) whose step is unfinished.
+    pub fn n_unfinished(&self) -> usize {
+        self.count_of(Quality::Unfinished)
+    }
+
+    /// The name that [`n_cut`](Self::n_cut) had.
+    #[deprecated(note = "no step is linearised any more: ask `n_cut`")]
+    pub fn n_linearized(&self) -> usize {
+        self.n_cut()
+    }
+
+    /// The name that [`n_unfinished`](Self::n_unfinished) had.
+    #[deprecated(note = "no island is held any more: ask `n_unfinished`")]
     pub fn n_held(&self) -> usize {
-        self.n_held
+        self.n_unfinished()
+    }
+
+    fn count_of(&self, quality: Quality) -> usize {
+        let unsolved = self.unsolved.iter();
+        unsolved.filter(|one| one.quality == quality).count()
     }
 
     /// Pivots of the complementarity solver and factorizations of sparse contact problems, in all stages, summed over the islands.

@@ -99,7 +99,7 @@ pub(super) struct Entry {
     /// Whether the report tells that one of the parts was not solved.
     pub is_told: bool,
     /// What it has been counted for in the report.
-    counted: [bool; 4],
+    counted: [bool; 2],
 }
 
 impl Entry {
@@ -111,14 +111,14 @@ impl Entry {
             first_impulse,
             n_parts: 0,
             is_told: false,
-            counted: [false; 4],
+            counted: [false; 2],
         }
     }
 
     /// What of this happens for the first time in the step of the island: it is counted once, whatever the number of its parts.
-    pub fn count(&mut self, happened: [bool; 4]) -> [usize; 4] {
+    pub fn count(&mut self, happened: [bool; 2]) -> [usize; 2] {
         let pairs = self.counted.iter_mut().zip(happened);
-        let mut new = [0; 4];
+        let mut new = [0; 2];
         for ((counted, happened), new) in pairs.zip(&mut new) {
             *new = usize::from(happened && !*counted);
             *counted |= happened;
@@ -135,8 +135,8 @@ mod tests {
     #[test]
     fn what_happens_in_two_parts_of_a_step_is_counted_once() {
         let mut entry = Entry::begin([0; 3]);
-        assert_eq!(entry.count([true, false, false, false]), [1, 0, 0, 0]);
-        assert_eq!(entry.count([true, false, true, false]), [0, 0, 1, 0]);
-        assert_eq!(entry.count([true, false, true, false]), [0; 4]);
+        assert_eq!(entry.count([true, false]), [1, 0]);
+        assert_eq!(entry.count([true, true]), [0, 1]);
+        assert_eq!(entry.count([true, true]), [0; 2]);
     }
 }

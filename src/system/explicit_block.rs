@@ -106,7 +106,6 @@ impl FlexBlock {
             .copy_from_slice(&state.displacement);
         self.frame = state.frame;
         self.turn = rotation(self.frame.angle);
-        self.is_linear = false;
         self.inertia = self.arms.polar;
         self.clear_contact_force();
         if self.kind != Frame::Fixed {

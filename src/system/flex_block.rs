@@ -103,9 +103,6 @@ pub struct FlexBlock {
     pub(super) torque: f64,
     /// `I(u)` of the iterate (kg m²).
     pub(super) inertia: f64,
-    /// Whether the step is linearised; see [`FlexBlock::linearize`].
-    pub(super) is_linear: bool,
-    pub(super) middle_cell: usize,
     pub(super) explicit: Explicit,
     pub(super) large: Option<Box<Large>>,
 }
@@ -190,8 +187,6 @@ impl FlexBlock {
             velocity: zeros(),
             torque: 0.0,
             inertia: 0.0,
-            is_linear: false,
-            middle_cell: model.mesh().middle_cell(),
             explicit,
             large: None,
             model,
@@ -301,7 +296,6 @@ impl FlexBlock {
             self.displacement.copy_from_slice(&state.displacement);
             self.rate.copy_from_slice(&state.rate);
         }
-        self.is_linear = false;
         self.solved_angle = None;
         self.inertia = self.arms.polar;
         self.predict_frame();

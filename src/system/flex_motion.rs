@@ -132,11 +132,6 @@ impl FlexBlock {
         forces.copy_from_slice(&self.contact_force);
     }
 
-    /// Applied force at a node, gravity included (N).
-    pub fn applied_force(&self, node: usize) -> Vec2 {
-        node_vec(&self.force, node)
-    }
-
     /// Mobility of the whole body moving rigidly, `n·M⁻¹·n` at a node (1/kg); zero when its pins hold it.
     pub fn rigid_mobility(&self, node: usize, direction: Vec2) -> f64 {
         let centre = self.frame.centre;

@@ -36,29 +36,6 @@ impl FlexBlock {
         }
     }
 
-    /// Goes back to the beginning and drops what makes the step non-linear: the inertial terms of the displacement in a
-    /// turning frame, and the balance of angular momentum in favour of the row; and with them the stored second rates,
-    /// which is where unresolved vibrations live.
-    ///
-    /// Such a step is first order and stable; it is taken where Newton's iterations do not converge.
-    pub fn linearize(&mut self) {
-        if self.is_explicit() || self.is_large() {
-            self.restart();
-            return;
-        }
-        let dt = self.step.dt;
-        let half = 0.5 * dt * dt;
-        for dof in 0..self.start_acceleration.len() {
-            let acceleration = std::mem::take(&mut self.start_acceleration[dof]);
-            if !self.is_following(dof) {
-                self.rate_q[dof] -= dt * acceleration;
-                self.displacement_q[dof] -= half * acceleration;
-            }
-        }
-        self.restart();
-        self.is_linear = true;
-    }
-
     /// Ends the step where it began, without velocities.
     pub fn hold(&mut self) {
         if self.is_explicit() {
@@ -135,38 +112,5 @@ impl FlexBlock {
     /// Mass of the body (kg).
     pub fn mass(&self) -> f64 {
         self.arms.mass
-    }
-
-    /// Length of the step (s).
-    pub fn step_length(&self) -> f64 {
-        self.step.dt
-    }
-
-    /// Largest velocity component of a node at the beginning, and in and at the end of the step (m/s).
-    pub fn fastest(&self) -> [f64; 2] {
-        let largest = |velocity: &[f64]| velocity.iter().fold(0.0f64, |most, v| most.max(v.abs()));
-        let moved = self.position.iter().zip(&self.start_position);
-        let moved = moved.fold(0.0f64, |most, (end, start)| most.max((end - start).abs()));
-        let end = largest(&self.velocity).max(moved / self.step.dt);
-        [largest(&self.start_velocity), end]
-    }
-
-    /// Corners of the cell nearest to the middle of the body.
-    pub fn middle_cell(&self) -> &[usize] {
-        self.model.mesh().cell(self.middle_cell).corners()
-    }
-
-    /// How far a node has moved beyond what its own velocity would have done, relative to the body (-).
-    pub fn excess_motion(&self) -> f64 {
-        let dt = self.step.dt;
-        let (mut moved, mut drift) = (0.0f64, 0.0f64);
-        for (dof, end) in self.position.iter().enumerate() {
-            if !end.is_finite() {
-                return f64::INFINITY;
-            }
-            moved = moved.max((end - self.start_position[dof]).abs());
-            drift = drift.max((dt * self.start_velocity[dof]).abs());
-        }
-        (moved - drift) / self.size
     }
 }

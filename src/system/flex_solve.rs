@@ -53,7 +53,7 @@ impl FlexBlock {
 
     /// Whether only contact forces have changed since the last solve.
     fn may_add(&self) -> bool {
-        let Some(angle) = self.solved_angle.filter(|_| !self.is_linear) else {
+        let Some(angle) = self.solved_angle else {
             return false;
         };
         let is_at_rest = self.step.dt * self.frame.spin.abs() <= AT_REST;
@@ -124,11 +124,7 @@ impl FlexBlock {
     /// Turns the forces into the frame and adds its accelerations, `h` included, to the scratch vector.
     pub(super) fn add_frame_inertia(&mut self, alpha: f64) {
         let back = self.turn.transpose();
-        let frame = if self.is_linear {
-            &self.frame_q
-        } else {
-            &self.frame
-        };
+        let frame = &self.frame;
         let shift = back * (self.frame_q.acceleration + alpha * self.frame_q.velocity);
         let turn = alpha * self.frame_q.spin;
         // α J u, with the mean turn of the iterate, beyond what δ_θ J X holds.
@@ -137,11 +133,9 @@ impl FlexBlock {
         for node in 0..self.model.n_nodes() {
             let reference = node_vec(&self.arms.reference, node);
             let mut inertial = shift + turn * perp(reference) - squared * reference;
-            if !self.is_linear {
-                let u = node_vec(&self.displacement, node);
-                inertial += swing * perp(u) - squared * u
-                    + 2.0 * frame.spin * perp(node_vec(&self.rate, node));
-            }
+            let u = node_vec(&self.displacement, node);
+            inertial +=
+                swing * perp(u) - squared * u + 2.0 * frame.spin * perp(node_vec(&self.rate, node));
             add_node_vec(&mut self.scratch, node, inertial);
             let force = node_vec(&self.force, node) + node_vec(&self.contact_force, node);
             set_node_vec(&mut self.local, node, back * force);
@@ -221,11 +215,6 @@ impl FlexBlock {
         let (_, turn) = self.arms.split(self.kind, &mut self.increment);
         let angle = self.frame.angle;
         self.advance(turn);
-        if self.is_linear {
-            self.torque = turn * self.inertia;
-            self.place();
-            return 0.0;
-        }
         self.balance_angular_momentum();
         let turned = (self.frame.angle - angle).abs();
         if self.step.dt * self.frame.spin.abs() > AT_REST {
@@ -346,11 +335,6 @@ impl FlexBlock {
         }
     }
 
-    /// Whether the frame turns, so that the step is non-linear.
-    pub fn is_nonlinear(&self) -> bool {
-        self.kind != Frame::Fixed || self.is_large()
-    }
-
     /// Makes [`super::Block::compliance`] known from `node`.
     pub fn prepare_compliance(&mut self, node: usize) {
         if self.is_explicit() {
@@ -416,9 +400,6 @@ impl FlexBlock {
         // Beta-2 gives an angle `b0` per acceleration, the mean of two spins gives `dt b1 / 2`.
         let Weights { b0, b1 } = self.step.weights;
         let mean = 0.5 * self.step.dt * b1 / b0;
-        if self.is_linear {
-            return [0.0, (1.0 - mean) * by_arms];
-        }
         let share = match of {
             Response::Position => mean / damped,
             _ => 1.0,

@@ -127,7 +127,6 @@ impl FlexBlock {
         self.turn = Mat2::identity();
         self.frame = state.frame;
         self.frame_q = state.frame;
-        self.is_linear = false;
         self.clear_contact_force();
         let Some(large) = &mut self.large else {
             return Ok(());

@@ -226,15 +226,6 @@ impl RigidBlock {
         }
     }
 
-    /// How far the body has turned beyond what its own spin would have done (rad).
-    pub fn excess_turn(&self) -> f64 {
-        if self.is_prescribed() {
-            return 0.0;
-        }
-        let turned = (self.current.angle - self.start.angle).abs();
-        turned - (self.dt * self.start.spin).abs()
-    }
-
     /// Whether the motion is given.
     pub fn is_prescribed(&self) -> bool {
         matches!(self.kind, Kind::Prescribed)

@@ -136,7 +136,7 @@ pub struct Outcome {
     pub error: Option<String>,
     pub tunnelled: Option<String>,
     pub not_finite: bool,
-    pub n_held: usize,
+    pub n_unfinished: usize,
 }
 
 impl Range {
@@ -307,7 +307,7 @@ impl Range {
         for step in 0..n_steps {
             let (is_overbent, is_whole) = match self.scene.try_step() {
                 Ok(report) => {
-                    outcome.n_held += report.n_held();
+                    outcome.n_unfinished += report.n_unfinished();
                     let mut overbent = report.overbent().iter();
                     let is_overbent = overbent.any(|one| Some(one.body) == self.bullet);
                     (is_overbent, report.n_parts() <= 1)

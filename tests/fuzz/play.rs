@@ -50,10 +50,10 @@ pub struct Play {
     /// What is being done.
     pub context: String,
     pub n_steps: usize,
-    pub n_held: usize,
+    pub n_unfinished: usize,
     pub n_steps_untied: usize,
-    pub n_held_untied: usize,
-    pub n_linearized: usize,
+    pub n_unfinished_untied: usize,
+    pub n_cut: usize,
     pub n_refused: usize,
     pub n_quarantined: usize,
     pub n_lost: usize,
@@ -92,10 +92,10 @@ impl Play {
             gone: Vec::new(),
             context: String::new(),
             n_steps: 0,
-            n_held: 0,
+            n_unfinished: 0,
             n_steps_untied: 0,
-            n_held_untied: 0,
-            n_linearized: 0,
+            n_unfinished_untied: 0,
+            n_cut: 0,
             n_refused: 0,
             n_quarantined: 0,
             n_lost: 0,
@@ -105,13 +105,13 @@ impl Play {
 
     pub fn summary(&self) -> String {
         format!(
-            "seed {:#x}: {} steps, {} held ({} of {} steps without attachments), {} linearised, {} refused as they must be, {} quarantined, {} lost, {:?} events, fastest {:.0} m/s",
+            "seed {:#x}: {} steps, {} unfinished ({} of {} steps without attachments), {} cut, {} refused as they must be, {} quarantined, {} lost, {:?} events, fastest {:.0} m/s",
             self.seed,
             self.n_steps,
-            self.n_held,
-            self.n_held_untied,
+            self.n_unfinished,
+            self.n_unfinished_untied,
             self.n_steps_untied,
-            self.n_linearized,
+            self.n_cut,
             self.n_refused,
             self.n_quarantined,
             self.n_lost,
@@ -200,10 +200,10 @@ impl Play {
         let report = self.scene.report();
         if self.ties.is_empty() {
             self.n_steps_untied += 1;
-            self.n_held_untied += report.n_held();
+            self.n_unfinished_untied += report.n_unfinished();
         }
-        self.n_held += report.n_held();
-        self.n_linearized += report.n_linearized();
+        self.n_unfinished += report.n_unfinished();
+        self.n_cut += report.n_cut();
         self.n_quarantined += report.quarantined_flex_bodies().len();
         self.forget_orphans();
         self.assert_counted();

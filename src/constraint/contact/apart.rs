@@ -148,7 +148,6 @@ mod tests {
                 restitution: 0.0,
                 skin,
                 direction: None,
-                may_pass: false,
             },
         };
         candidate.distance(&scene)

@@ -13,8 +13,6 @@ pub struct ContactLaw {
     pub skin: f64,
     /// Direction of the normal force, if the user chose it.
     pub direction: Option<Direction>,
-    /// Whether the user lets some of the pair's contacts go, so that one may pass through the other.
-    pub may_pass: bool,
 }
 
 /// A direction for the normal force that geometry did not give.

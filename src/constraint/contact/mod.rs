@@ -5,7 +5,6 @@ mod candidate;
 mod kinematics;
 mod law;
 mod memory;
-mod passage;
 mod rigid_pair;
 mod surface;
 
@@ -13,5 +12,4 @@ pub use candidate::{Candidate, ContactKey, Owner, Pair};
 pub use kinematics::{Attachment, Kinematics, PlacedPart, Scene};
 pub use law::{ContactLaw, Direction};
 pub use memory::{ContactMemory, Remembered};
-pub use passage::{core_of, enters_surface, middle_of, pierces_surface};
 pub use surface::{Cone, SurfacePoint, closest_surface_point};

@@ -16,7 +16,6 @@ mod entered;
 mod entry;
 mod outline;
 mod pair_axis;
-mod passage;
 mod polygon_pair;
 mod pose;
 mod segment_query;
@@ -24,7 +23,6 @@ mod separation;
 
 pub use convex_part::{ConvexPart, Feature};
 pub use entered::{crossing_overlap, entered_separation, start_separation};
-pub use passage::{Path, passage_through};
 pub use polygon_pair::{FaceOrVertex, PairContact, PairContacts, PairReference, polygon_pair};
 pub use pose::Pose2;
 pub use segment_query::{SegmentQuery, SegmentRegion, segment_query};

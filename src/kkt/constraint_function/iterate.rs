@@ -8,8 +8,8 @@ use super::ConstraintFunction;
 use super::newton::Scale;
 use crate::constraint::contact::ContactMemory;
 use crate::kkt::delassus::assemble;
+use crate::kkt::follow::ANGLE_TOLERANCE;
 use crate::kkt::island::{Island, SolveSettings};
-use crate::kkt::iterate::{ANGLE_TOLERANCE, ROWS_KEPT_FROM, STRAYED};
 use crate::kkt::multipliers::prepare;
 use crate::kkt::position::PARTING_RATE;
 use crate::kkt::summary::IslandSummary;
@@ -27,6 +27,13 @@ const NEARLY: f64 = 1e-3;
 
 /// Iteration from which gaps are extrapolated along the rows.
 const GAPS_KEPT_FROM: usize = 30;
+
+/// Iteration from which the rows, directions and levers of the forces, stay what they are.
+const ROWS_KEPT_FROM: usize = 2;
+
+/// Multiple of the tolerance by which the true gaps may differ from the extrapolated ones that the iterations ended with: some 1e-6 m in
+/// scenes of a metre, where bodies press on an edge that they slide to and fro over.
+const STRAYED: f64 = 2e5;
 
 /// Least length of a problem, of the size of its bodies.
 const LEAST_LENGTH: f64 = 1e-9;
@@ -96,7 +103,7 @@ impl Island {
             let refreshes = iteration < ROWS_KEPT_FROM || residual < NEARLY && !is_near;
             is_near |= residual < NEARLY;
             if refreshes {
-                self.refresh_rows(false);
+                self.refresh_rows();
             }
             for (now, end) in epsilon.iter_mut().zip(functions.epsilon) {
                 *now = (NARROWER * *now).max(end);

@@ -10,7 +10,7 @@ use super::{Island, Passed};
 impl Island {
     /// How far the laws are from holding, relative to the margins of the ways (-); what has slid off counts only with `counts_lost`.
     pub(super) fn shortfall(&mut self, counts_lost: bool) -> f64 {
-        let least = self.path.least_margin();
+        let least = self.margin;
         let mut worst = self.measure_joints() / least;
         let counted = |is_lost: bool| counts_lost || !is_lost;
         for contact in self.contacts.iter().filter(|one| counted(one.is_lost)) {

@@ -37,6 +37,9 @@ impl Island {
     /// Lists the near pairs of the base as contacts, and keeps the signed ones. A contact that is near no more stays for one solve, which
     /// takes its force out.
     pub(super) fn list_near(&mut self, listing: &Listing<'_>) {
+        if self.path.is_empty() {
+            return;
+        }
         self.part_meetings();
         self.path.list_near();
         std::mem::swap(&mut self.contacts, &mut self.contacts_before);

@@ -95,7 +95,8 @@ impl ActiveContact {
             error = error.max(self.apart);
         }
         self.slip = slip(&self.kinematics, scene.blocks);
-        error.max(self.law_error(gap, self.slip, candidate.law.friction))
+        let [gap, slip] = self.rest();
+        error.max(self.law_error(gap, slip, candidate.law.friction))
     }
 
     /// The gap beyond the allowance where the blocks are, with the points moved to `at` (m).
