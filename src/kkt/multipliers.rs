@@ -7,7 +7,7 @@ use super::position::slip;
 use super::sparse::Asked;
 use super::summary::IslandSummary;
 use crate::constraint::contact::Kinematics;
-use crate::linalg::complementarity::{Problem, RowKind};
+use crate::linalg::complementarity::{INDEPENDENT, Problem, RowKind};
 use crate::math::Vec2;
 use crate::system::{Block, Point, Response};
 
@@ -63,7 +63,7 @@ impl Island {
         let redundancy = self.redundancy_tolerance(tolerance / settings.b0);
         self.solver.set_redundancy_tolerance(redundancy);
         let has_joints = self.kinds.len() > self.rows.len();
-        self.tell_lightness();
+        self.tell_independence();
         let problem = Problem {
             delassus: &self.delassus,
             free: &self.free,
@@ -169,8 +169,9 @@ impl Island {
         }
     }
 
-    /// Tells the solver how much lighter the lightest body that joints hold is than the heaviest one.
-    pub(super) fn tell_lightness(&mut self) {
+    /// Tells the solver how much of a joint row's mobility others must leave: less where the lightest body that joints hold is lighter than the
+    /// heaviest one, and anything on what is attached to flexible bodies, whose places are known in double precision and which may be stiff.
+    pub(super) fn tell_independence(&mut self) {
         let (mut least, mut most) = (f64::INFINITY, 0.0f64);
         for grip in &self.joint_grips {
             let mass = match &self.blocks[grip.block] {
@@ -183,8 +184,14 @@ impl Island {
             }
         }
         let lightness = least / most;
-        self.solver
-            .set_lightness(if lightness <= 1.0 { lightness } else { 1.0 });
+        let of_rigid = INDEPENDENT * if lightness <= 1.0 { lightness } else { 1.0 };
+        let of_contacts = self.rows.iter().map(|_| 0.0);
+        let is_rigid = |&row: &usize| self.ties.get(row).is_some_and(|tie| tie.is_hard);
+        let of_joints = self
+            .joint_rows
+            .iter()
+            .map(|row| if is_rigid(row) { of_rigid } else { 0.0 });
+        self.solver.set_independence(of_contacts.chain(of_joints));
     }
 
     /// The natural-map residual of rows that move by `velocity` beyond what they may (m/s²): redundant rows that contradict

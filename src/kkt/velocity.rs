@@ -260,7 +260,7 @@ impl Island {
         self.statuses.resize(self.kinds.len(), Status::Stick);
         self.solver.set_redundancy_tolerance(1e-6);
         let has_joints = self.kinds.len() > self.rows.len();
-        self.tell_lightness();
+        self.tell_independence();
         if !self.acted.is_empty() {
             // Rows of joints follow those of contacts.
             self.acted.resize(self.kinds.len(), 0.0);

@@ -1,5 +1,8 @@
 //! Cutback: what is not solved in one piece is solved in halves, these in halves again, as implicit codes do.
 //!
+//! A part of the smallest length that finds no end is halved further, a few times in a step: where a corner slides off what it presses on, its force
+//! acts to the end of the part, and a shorter one has less of it.
+//!
 //! Only the island that asks for it is cut, on our side: rapier takes the whole step at once. The report tells of the step as a whole:
 //! impulses of the parts over its length, what dissipates summed, the rest as it is at the end.
 
@@ -15,6 +18,9 @@ use crate::body::FlexBodySet;
 use crate::coupling::Span;
 use crate::kkt::{DOUBLED, GAINED};
 use crate::system::Step;
+
+/// How often a part of the smallest length that has found no end is halved all the same: it would be left with another motion than its own.
+const FURTHER: usize = 3;
 
 impl Solver {
     /// Solves the step of one island, in parts if it must be.
@@ -78,7 +84,12 @@ impl Solver {
         let owes_more = -reserve > share * summary.brought() + (-before).max(0.0);
         let is_coarse = owes_more && !summary.is_parting;
         let is_good = !is_coarse && summary.quality() == Quality::Solved;
-        if !is_good && self.may_be_cut(step, part.n_cuts, parameters) {
+        let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters);
+        let goes_on = !may_be_cut && summary.quality() == Quality::Unfinished && {
+            let n_cuts = part.n_cuts.saturating_sub(FURTHER);
+            self.may_be_cut(step, n_cuts, parameters) && entry.may_go_further()
+        };
+        if !is_good && may_be_cut || goes_on {
             let step = step.halved(&parameters.integrator);
             self.under_way.keep(&self.island, flex_bodies);
             for span in part.span.halves() {

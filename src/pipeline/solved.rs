@@ -87,6 +87,9 @@ impl SolvedPart<'_> {
     }
 }
 
+/// Parts of a step that are halved though they have the smallest length: what fails in more of them is jammed, and would fail in all.
+const MOST_FURTHER: usize = 8;
+
 /// What has been entered of one island, whose step may be taken in parts.
 pub(super) struct Entry {
     /// Where its contacts and joints begin in the report.
@@ -96,6 +99,8 @@ pub(super) struct Entry {
     pub first_impulse: usize,
     /// Parts that are over.
     pub n_parts: usize,
+    /// Parts that were halved though they had the smallest length.
+    n_further: usize,
     /// Whether the report tells that one of the parts was not solved.
     pub is_told: bool,
     /// What it has been counted for in the report.
@@ -110,9 +115,17 @@ impl Entry {
             first_joint,
             first_impulse,
             n_parts: 0,
+            n_further: 0,
             is_told: false,
             counted: [false; 2],
         }
+    }
+
+    /// Whether a part that has found no end may be halved further; counts it if so.
+    pub fn may_go_further(&mut self) -> bool {
+        let may = self.n_further < MOST_FURTHER;
+        self.n_further += usize::from(may);
+        may
     }
 
     /// What of this happens for the first time in the step of the island: it is counted once, whatever the number of its parts.

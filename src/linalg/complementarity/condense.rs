@@ -18,15 +18,22 @@ const LEFT: f64 = 1e-9;
 
 /// What must be left of a bilateral row's mobility once the others hold, where all bodies are alike (-), or they depend on each other: what single
 /// precision knows of the places they are made of moves them by its square.
-const INDEPENDENT: f64 = 1e-6;
+pub(crate) const INDEPENDENT: f64 = 1e-6;
 
 /// Rank tolerance of the bilateral rows.
 const RANK_TOLERANCE: f64 = 1e-11;
 
-/// Share of its mobility by which a bilateral row gives way to the change of its force where such rows depend on each other (-), and how often that is
-/// solved: what they agree on is left to the cube of this share, and what they contradict each other about ends in few forces.
-const GIVE: f64 = 1e-3;
+/// How often bilateral rows that depend on each other are solved with what they give way by, see [`give`].
 const ROUNDS: usize = 3;
+
+/// Share of its mobility by which a bilateral row gives way to the change of its force where such rows depend on each other (-), half way in
+/// digits between the share with which it depends on them and the whole: what moves is found to within the cube of that, and what is contradicted ends in
+/// few forces.
+///
+/// - `least`: what must be left of the row's mobility.
+fn give(least: f64) -> f64 {
+    least.max(RANK_TOLERANCE).sqrt()
+}
 
 /// What has become of the bilateral rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,7 +82,7 @@ impl Solver {
     ) -> Result<Outcome, ComplementarityError> {
         problem.check()?;
         let mut condensed = std::mem::take(&mut self.condensed);
-        let ties = condensed.condense(problem, self.lightness, multipliers, status);
+        let ties = condensed.condense(problem, &self.independence, multipliers, status);
         let outcome = if ties == Ties::Eliminated {
             let reduced = Problem {
                 delassus: &condensed.delassus,
@@ -104,7 +111,7 @@ impl Solver {
     /// Solves a problem whose bilateral rows depend on each other, by proximal steps on their multipliers.
     ///
     /// Rows that are off by rounding and have no motion left to agree in would ask for any force, and rows that turn would make motions of it.
-    /// Steps from `p` leave of the forces what moves something, and add to the rest no more than what is asked for by `GIVE`.
+    /// Steps from `p` leave of the forces what moves something, and add to the rest no more than what is asked for by [`give`].
     fn solve_dependent(
         &mut self,
         problem: &Problem,
@@ -112,7 +119,7 @@ impl Solver {
         multipliers: &mut [f64],
         status: &mut [Status],
     ) -> Result<Outcome, ComplementarityError> {
-        if !condensed.soften(problem, multipliers) {
+        if !condensed.soften(problem, &self.independence, multipliers) {
             return self.solve(problem, multipliers, status);
         }
         let n = problem.rows.len();
@@ -142,15 +149,20 @@ impl Condensed {
     fn condense(
         &mut self,
         problem: &Problem,
-        lightness: f64,
+        independence: &[f64],
         multipliers: &[f64],
         status: &[Status],
     ) -> Ties {
         self.split(problem);
         let n_tied = self.tied.len();
         self.copy_ties(problem.delassus, problem.rows.len());
-        let least = (INDEPENDENT * lightness).max(RANK_TOLERANCE);
-        if !factorize_cholesky(&mut self.matrix, n_tied, least) {
+        let is_regular = factorize_cholesky(&mut self.matrix, n_tied, RANK_TOLERANCE);
+        let has_left = |(slot, &row): (usize, &usize)| {
+            let least = independence.get(row).unwrap_or(&INDEPENDENT);
+            let left = self.matrix[slot * (n_tied + 1)].powi(2);
+            left > least * problem.delassus[row * (problem.rows.len() + 1)]
+        };
+        if !(is_regular && self.tied.iter().enumerate().all(has_left)) {
             return Ties::Dependent;
         }
         if n_tied < LEAST {
@@ -185,12 +197,13 @@ impl Condensed {
 
     /// Lets the bilateral rows give way by their share, and takes out of their multipliers what moves none of them; false if that is not enough to
     /// factorize them.
-    fn soften(&mut self, problem: &Problem, multipliers: &mut [f64]) -> bool {
+    fn soften(&mut self, problem: &Problem, independence: &[f64], multipliers: &mut [f64]) -> bool {
         let n = problem.rows.len();
         self.delassus.clear();
         self.delassus.extend_from_slice(problem.delassus);
         for &row in &self.tied {
-            self.delassus[row * (n + 1)] *= 1.0 + GIVE;
+            let least = independence.get(row).unwrap_or(&INDEPENDENT);
+            self.delassus[row * (n + 1)] *= 1.0 + give(*least);
         }
         let delassus = std::mem::take(&mut self.delassus);
         self.copy_ties(&delassus, n);

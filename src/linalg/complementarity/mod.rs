@@ -45,6 +45,7 @@ mod status;
 pub use problem::{ComplementarityError, Problem, RowKind, Status};
 pub use residual::natural_map_residual;
 
+pub(crate) use condense::INDEPENDENT;
 pub(crate) use dense::{factorize_cholesky, solve_cholesky_in_place, solve_lu_in_place};
 
 use active_set::{ActiveSet, Redundancy};
@@ -137,7 +138,7 @@ impl Answer {
 #[derive(Debug, Clone)]
 pub struct Solver {
     redundancy_tolerance: f64,
-    lightness: f64,
+    independence: Vec<f64>,
     first: Method,
     active_set: ActiveSet,
     lemke: Lemke,
@@ -151,7 +152,7 @@ impl Default for Solver {
     fn default() -> Self {
         Self {
             redundancy_tolerance: 1e-6,
-            lightness: 1.0,
+            independence: Vec::new(),
             first: Method::ActiveSet,
             active_set: ActiveSet::default(),
             lemke: Lemke::default(),
@@ -184,10 +185,11 @@ impl Solver {
         self.redundancy_tolerance = residual;
     }
 
-    /// Tells how much lighter the lightest body is than the heaviest one, 1 if they are alike (-): so little of a row's mobility may be left to it
-    /// by the others where a heavy body moves along it, see [`Solver::solve_condensed`].
-    pub fn set_lightness(&mut self, lightness: f64) {
-        self.lightness = lightness;
+    /// Tells how much of every row's mobility the bilateral rows before it must leave (-), in the order of the rows; a millionth of rows that
+    /// nothing is told of. Bilateral rows with less depend on each other, see [`Solver::solve_condensed`].
+    pub fn set_independence(&mut self, least: impl IntoIterator<Item = f64>) {
+        self.independence.clear();
+        self.independence.extend(least);
     }
 
     /// Chooses the solver that is asked first: the active set by default.
