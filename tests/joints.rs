@@ -37,3 +37,5 @@ mod caught;
 
 #[path = "joints/pinned_twice.rs"]
 mod pinned_twice;
+#[path = "joints/welded_twice.rs"]
+mod welded_twice;
