@@ -85,10 +85,8 @@ impl Island {
         tolerance: f64,
         summary: &mut IslandSummary,
     ) -> Passed {
-        self.margin = self.path.least_margin();
-        if self.path.is_empty() {
-            self.margin = NEAR / CLOSE_ENOUGH * tolerance;
-        } else {
+        self.find_margin(tolerance);
+        if !self.path.is_empty() {
             self.path.rest(&self.blocks);
         }
         self.path.list_pressed(memory, &mut self.pressed_before);
@@ -109,6 +107,15 @@ impl Island {
             self.correct();
         }
         Passed::Stopped
+    }
+
+    /// Finds what the laws may miss at the very most: the least margin of the ways, or where there is no path, what counts as near.
+    pub(super) fn find_margin(&mut self, tolerance: f64) {
+        self.margin = if self.path.is_empty() {
+            NEAR / CLOSE_ENOUGH * tolerance
+        } else {
+            self.path.least_margin()
+        };
     }
 
     fn try_passes(

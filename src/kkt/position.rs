@@ -45,6 +45,7 @@ impl Island {
     ) {
         let tolerance = self.gap_tolerance(settings);
         self.open_working_set(settings, tolerance, memory);
+        self.find_margin(tolerance);
         let is_solved = match &settings.contact {
             ContactMethod::Lagrange => false,
             ContactMethod::ConstraintFunction(functions) => {
