@@ -6,6 +6,7 @@
 use super::claim::Claims;
 use super::ends::Ends;
 use super::sets::RapierSets;
+use super::sweep::farthest_travel;
 use super::unlisted::Listed;
 use crate::body::FlexBodySet;
 use crate::rapier::math::Real;
@@ -13,10 +14,22 @@ use crate::rapier::math::Real;
 /// By how much more the boxes grow than they were left by: with more members the motion is another one.
 const MORE: Real = 1.5;
 
+/// How far beyond their boxes members are thrown where a step has to be cut, relative to the farthest way that one of them was to go in it.
+const THROWN: Real = 0.25;
+
 impl Claims {
     /// By how much members have left the boxes they were looked for in (m).
     pub fn excess(&self) -> f64 {
         f64::from(self.excess)
+    }
+
+    /// By how much members are likely to leave the boxes that they are looked for in where a step has to be cut; zero if they have grown
+    /// already (m).
+    pub fn likely_excess(&self, sets: &RapierSets<'_>) -> Real {
+        if self.excess > 0.0 {
+            return 0.0;
+        }
+        THROWN * farthest_travel(sets, &self.flex)
     }
 
     /// By how much members have left the boxes that they were looked for in; zero if none has (m).

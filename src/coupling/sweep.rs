@@ -233,7 +233,7 @@ pub(super) fn farthest_travel(sets: &RapierSets<'_>, flex: &Roster) -> Real {
 }
 
 /// Whether a collider stays where it is, and rapier knows it: the user may have moved or disabled its body.
-fn is_fixed_and_settled(sets: &RapierSets<'_>, collider: &Collider) -> bool {
+pub(super) fn is_fixed_and_settled(sets: &RapierSets<'_>, collider: &Collider) -> bool {
     let Some(body) = collider.parent().and_then(|parent| sets.bodies.get(parent)) else {
         return true;
     };

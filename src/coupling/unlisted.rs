@@ -14,7 +14,7 @@ use super::roster::{ClaimedFlex, Roster};
 use super::sets::RapierSets;
 use super::sleep::reaches;
 use super::strikes::Strikes;
-use super::sweep::farthest_travel;
+use super::sweep::{farthest_travel, is_fixed_and_settled};
 use super::walk::ClaimedPair;
 use crate::math::to_rapier;
 use crate::rapier::math::Real;
@@ -157,6 +157,7 @@ impl Listed<'_> {
             }
             let names = [own.collider, handle];
             swept_box(sets.bodies, other, dt).intersects(&own.way)
+                && may_reach(&own.way, other, sets)
                 && !self.is_listed(names, own.out, sets)
                 && self.may_press(names, sets, answers)
         };
@@ -286,6 +287,21 @@ impl Listed<'_> {
             && !forbids([own, met])
             && !forbids([met, own])
     }
+}
+
+/// Whether a box may meet a collider that its box meets: shapes that stay where they are tell exactly.
+fn may_reach(way: &Aabb, other: &Collider, sets: &RapierSets<'_>) -> bool {
+    if !is_fixed_and_settled(sets, other) {
+        return true;
+    }
+    let way = loosened(*way, other.contact_skin());
+    let at = Pose::from_translation(way.center());
+    let cuboid = Cuboid::new(way.half_extents());
+    let dispatcher = sets.narrow_phase.query_dispatcher();
+    let between = at.inverse() * *other.position();
+    dispatcher
+        .intersection_test(&between, &cuboid, other.shape())
+        .map_or(true, |met| met.intersecting)
 }
 
 fn parent_of(handle: ColliderHandle, sets: &RapierSets<'_>) -> Option<RigidBodyHandle> {

@@ -9,7 +9,7 @@
 use super::accounts::Books;
 use super::checks::SHORTEST;
 use super::error::StepError;
-use super::islands::{Part, Solver, Task};
+use super::islands::{Part, Progress, Solver, Task};
 use super::names::Names;
 use super::quality::Quality;
 use super::settings::FlexParameters;
@@ -30,7 +30,7 @@ impl Solver {
         task: Task<'_, '_>,
         flex_bodies: &mut FlexBodySet,
         books: &mut Books<'_>,
-    ) -> Result<(), StepError> {
+    ) -> Result<Progress, StepError> {
         let mut entry = books.open();
         self.under_way.begin();
         let whole = Part {
@@ -65,7 +65,7 @@ impl Solver {
         task: Task<'_, '_>,
         flex_bodies: &mut FlexBodySet,
         (books, entry): (&mut Books<'_>, &mut Entry),
-    ) -> Result<(), StepError> {
+    ) -> Result<Progress, StepError> {
         let Task {
             parameters,
             step,
@@ -90,6 +90,9 @@ impl Solver {
             self.may_be_cut(step, n_cuts, parameters) && entry.may_go_further()
         };
         if !is_good && may_be_cut || goes_on {
+            if part.n_cuts > 0 && task.may_call_for_room {
+                return Ok(Progress::CallsForRoom);
+            }
             let step = step.halved(&parameters.integrator);
             self.under_way.keep(&self.island, flex_bodies);
             for span in part.span.halves() {
@@ -101,9 +104,12 @@ impl Solver {
                     ..part
                 };
                 let task = Task { step, ..task };
-                self.solve_parts(half, task, flex_bodies, (books, entry))?;
+                let progress = self.solve_parts(half, task, flex_bodies, (books, entry))?;
+                if progress == Progress::CallsForRoom {
+                    return Ok(progress);
+                }
             }
-            return Ok(());
+            return Ok(Progress::Done);
         }
         let names = Names { sets, flex_bodies };
         self.enter_part((part, step), (&summary, reserve), (names, entry), books);
@@ -112,6 +118,6 @@ impl Solver {
             self.under_way
                 .go_on(&self.island, claimed, reserve, part.span, flex_bodies);
         }
-        Ok(())
+        Ok(Progress::Done)
     }
 }

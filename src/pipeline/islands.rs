@@ -20,6 +20,17 @@ pub(super) struct Task<'a, 'r> {
     pub step: Step,
     pub claims: &'a Claims,
     pub sets: &'a RapierSets<'r>,
+    /// Whether a step that has to be cut had better be solved with more of what is around.
+    pub may_call_for_room: bool,
+}
+
+/// How far the solution of a step, or of a part of it, has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Progress {
+    /// To its end.
+    Done,
+    /// It has to be cut: it is better solved with more of what is around, and goes no further.
+    CallsForRoom,
 }
 
 /// A part of the step of an island, which has been cut so many times for it.
@@ -74,7 +85,7 @@ impl Solver {
         task: Task<'_, '_>,
         flex_bodies: &mut FlexBodySet,
         books: &mut Books<'_>,
-    ) -> Result<(), StepError> {
+    ) -> Result<Progress, StepError> {
         self.under_way.begin_step();
         self.island.begin_step();
         self.list_components(task.claims, flex_bodies);
@@ -93,12 +104,15 @@ impl Solver {
                 return outcome;
             }
             self.gatherer.pool.put_back(&mut self.island);
+            if outcome == Ok(Progress::CallsForRoom) {
+                return outcome;
+            }
         }
         let pool = &self.gatherer.pool;
         books.report.n_islands = self.components.len();
         books.report.n_claimed = books.outcome.landings.len();
         books.report.n_factorizations = pool.n_factorizations().saturating_sub(factorizations);
-        Ok(())
+        Ok(Progress::Done)
     }
 
     fn list_components(&mut self, claims: &Claims, flex_bodies: &FlexBodySet) {
@@ -130,6 +144,7 @@ impl Solver {
             step,
             claims,
             sets,
+            ..
         } = task;
         let settings = GatherSettings {
             component: part.component,
