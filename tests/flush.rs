@@ -133,3 +133,28 @@ fn blocks_that_overlap_a_little_come_apart() {
         );
     }
 }
+
+/// Two blocks that no force moves, put into each other, with a free one on top: what cannot be parted stays as it was put, and does not keep
+/// the step from being solved.
+#[test]
+fn pinned_blocks_that_overlap_are_left_alone() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let block = |x: f64| {
+        FlexBodyBuilder::rectangle([1.0, 0.4], [5, 2])
+            .material(elastic(1e7, 1000.0, 1e-3))
+            .friction(0.5)
+            .translation([x, 0.0])
+    };
+    let held = [-0.9, 0.0].map(|x| scene.flexible(block(x).pin_where(|_| true, Pin::both())));
+    let free = scene.flexible(block(-0.5).translation([-0.45, 0.41]));
+    let starts = held.map(|body| scene.body(body).positions().to_vec());
+    for step in 0..120 {
+        let report = scene.try_step().expect("nothing is wrong with it");
+        assert!(is_solved(report), "step {step}: {:?}", report.quality());
+    }
+    for (body, start) in held.into_iter().zip(&starts) {
+        assert_eq!(scene.body(body).positions(), start);
+    }
+    let height = scene.body(free).positions()[1];
+    assert!((height - 0.4).abs() < 0.01, "it rests at {height} m");
+}
