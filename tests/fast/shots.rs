@@ -7,7 +7,8 @@ use crate::range::{Range, Shot};
 /// strains describe. Even so the middle of what was shot must stay on its side, whatever rapier's own continuous detection does, and no
 /// step may be refused.
 ///
-/// Shots that no step can be found for are held for a step: less than a third of them, or the bound below fails.
+/// Where a step finds no end, parts of it are halved further: without that one shot in sixteen has an unfinished step, with it one in five
+/// hundred; between half and twice of how often and in how many places, one in fifty at most.
 #[test]
 fn a_thousand_random_shots_never_pass_through_what_they_hit() {
     let mut findings = Findings::default();
@@ -27,7 +28,7 @@ fn a_thousand_random_shots_never_pass_through_what_they_hit() {
     }
     println!("{n_unfinished} of 1000 shots with an unfinished step");
     assert!(
-        n_unfinished < 333,
+        n_unfinished < 40,
         "{n_unfinished} of 1000 shots with an unfinished step"
     );
     findings.report();
