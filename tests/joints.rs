@@ -35,6 +35,8 @@ mod coming_and_going;
 #[path = "joints/caught.rs"]
 mod caught;
 
+#[path = "joints/contradiction.rs"]
+mod contradiction;
 #[path = "joints/pinned_twice.rs"]
 mod pinned_twice;
 #[path = "joints/welded_twice.rs"]

@@ -168,6 +168,7 @@ impl Island {
                 // their rows.
                 listing.keeps_rows = is_eased && arrives;
                 self.list_near(&listing);
+                self.leave_contradictions(arrives, settings);
                 error = self.measure(listing.keeps_rows);
                 is_idle = error > SLOWEST * last;
                 last = error;

@@ -8,36 +8,15 @@
 //! *Soft* rows, with a flexible block, act as (C.5) says, along rows that follow the iterates as those of contacts do.
 
 use super::island::{Island, SolveSettings};
-use super::position::PARTING_RATE;
-use crate::constraint::joint::{JointGrip, JointLaw, JointRow, Spring, When, unit_wrench};
+use super::joint_law::{Finish, resolve};
+use crate::constraint::joint::{JointGrip, JointRow, When, unit_wrench};
 use crate::linalg::complementarity::{RowKind, Status};
-use crate::math::{Vec2, exp, perp};
+use crate::math::{Vec2, perp};
 use crate::system::{Block, Point, Response};
-
-/// Violation at the beginning of a step (m or rad) beyond which a joint closes over several steps: someone has put it there.
-const SLACK: f64 = 1e-3;
 
 /// Mobility of a row, relative to that across it, up to which nothing moves it (-): the square of a lever's rounding. Forces of any size would
 /// answer a row that points at the axis of what can only turn.
 const SINGULAR: f64 = 1e-16;
-
-/// What the velocity stage does about a row.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Finish {
-    /// `G'v' = rate`, for rows that hold, or drive with bounds.
-    Hold {
-        /// Velocity (m/s or rad/s).
-        rate: f64,
-    },
-    /// `0 <= P ⊥ G'v' >= 0` where the row is closed.
-    Limit,
-    /// A resolved spring: the force of the position stage acts at the end too.
-    Spring,
-    /// A spring or damper that the step does not resolve, implicit once more.
-    Stiff(Spring),
-    /// Nothing: a spring at a flexible block.
-    Nothing,
-}
 
 /// A joint row at work.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +50,10 @@ pub struct ActiveJoint {
     pub(super) impulse: f64,
     /// Whether something can move the row at all.
     pub(super) is_movable: bool,
+    /// Gap after the pass before (m or rad), how often it has been the same, and what is left open as other rows contradict it (m or rad).
+    pub(super) seen: f64,
+    pub(super) n_same: usize,
+    pub(super) left: f64,
 }
 
 impl ActiveJoint {
@@ -82,16 +65,21 @@ impl ActiveJoint {
     }
 
     /// How far the law is from holding (m or rad).
-    fn error(&self) -> f64 {
+    pub(super) fn error(&self) -> f64 {
         if !self.is_movable {
             return 0.0;
         }
-        let off = self.gap + self.give * self.multiplier;
+        let off = self.off();
         match (self.kind, self.status) {
             (RowKind::Unilateral, Status::Open) | (_, Status::SlipNegative) => (-off).max(0.0),
             (_, Status::SlipPositive) => off.max(0.0),
             _ => off.abs(),
         }
+    }
+
+    /// Distance from the goal, and from where the force lets the row give way to (m or rad).
+    pub(super) fn off(&self) -> f64 {
+        self.gap + self.give * self.multiplier
     }
 
     /// Share of the row's motion that a problem holds (-).
@@ -106,14 +94,6 @@ impl ActiveJoint {
     pub(super) fn is_closed(&self) -> bool {
         !matches!(self.kind, RowKind::Unilateral) || self.multiplier > 0.0
     }
-}
-
-/// The law of a row at this step length.
-struct Resolved {
-    goal: f64,
-    give: f64,
-    kind: RowKind,
-    finish: Finish,
 }
 
 impl Island {
@@ -162,6 +142,9 @@ impl Island {
                 kick: 0.0,
                 impulse: 0.0,
                 is_movable: mobility > SINGULAR * across,
+                seen: f64::INFINITY,
+                n_same: 0,
+                left: 0.0,
             });
         }
         self.applied_grips.clear();
@@ -329,121 +312,5 @@ pub(super) fn pair_mobility(
             let compliance = blocks[at.block].compliance(at.grip(), from.grip(), of);
             at.weight * from.weight * along.dot(&(compliance * push))
         }
-    }
-}
-
-fn resolve(
-    row: &JointRow,
-    is_hard: bool,
-    (start, mobility): (f64, f64),
-    settings: &SolveSettings,
-) -> Resolved {
-    let kept = exp(-PARTING_RATE * settings.dt);
-    // A force over the step, λ, is `scale` times the multiplier.
-    let scale = if is_hard {
-        2.0 * settings.b0 / (settings.dt * settings.dt)
-    } else {
-        1.0
-    };
-    match row.law {
-        JointLaw::Rigid { goal, rate } => {
-            let (goal, rate) = (row.sign * goal, row.sign * rate);
-            let off = start + settings.dt * rate - goal;
-            Resolved {
-                goal: if off.abs() > SLACK {
-                    goal + kept * off
-                } else {
-                    goal
-                },
-                give: 0.0,
-                kind: RowKind::Bilateral,
-                finish: Finish::Hold { rate },
-            }
-        }
-        JointLaw::Limit { bound } => {
-            let bound = row.sign * bound;
-            let off = start - bound;
-            Resolved {
-                goal: if off < -SLACK {
-                    bound + kept * off
-                } else {
-                    bound
-                },
-                give: 0.0,
-                kind: RowKind::Unilateral,
-                finish: Finish::Limit,
-            }
-        }
-        JointLaw::Drive { rate, most } => Resolved {
-            goal: start + settings.dt * rate,
-            give: 0.0,
-            kind: bounded(most / scale),
-            finish: Finish::Hold { rate },
-        },
-        JointLaw::Spring(spring) => {
-            let spring = spring.absolute(mobility);
-            let is_mean = is_hard || settings.is_within;
-            resolve_spring(
-                spring,
-                (is_hard, is_mean),
-                (start, mobility, scale),
-                settings.dt,
-            )
-        }
-    }
-}
-
-/// A spring that the step resolves acts with its mean force, `q` in the middle of the step, where multipliers act wholly within the step
-/// or on rigid blocks only; others with that of the end.
-fn resolve_spring(
-    spring: Spring,
-    (is_hard, is_mean): (bool, bool),
-    (start, mobility, scale): (f64, f64, f64),
-    dt: f64,
-) -> Resolved {
-    let Spring {
-        stiffness: k,
-        damping: c,
-        rest,
-        rate,
-        most,
-        ..
-    } = spring;
-    let sampling = mobility * (0.25 * dt * dt * k + 0.5 * dt * c);
-    let is_resolved = is_mean && sampling <= 1.0;
-    let share = if is_resolved { 0.5 } else { 1.0 };
-    let total = share * k + c / dt;
-    let held = k * (rest - (1.0 - share) * start) + c * (start / dt + rate);
-    let (goal, give, kind) = if total > 0.0 {
-        (held / total, scale / total, bounded(most / scale))
-    } else {
-        let none = RowKind::Box {
-            low: 0.0,
-            high: 0.0,
-        };
-        (start, 0.0, none)
-    };
-    let finish = match (is_hard, is_resolved) {
-        (false, _) => Finish::Nothing,
-        (true, true) => Finish::Spring,
-        (true, false) => Finish::Stiff(spring),
-    };
-    Resolved {
-        goal,
-        give,
-        kind,
-        finish,
-    }
-}
-
-/// The law of a row whose multiplier is at most `most`, either way.
-pub(super) fn bounded(most: f64) -> RowKind {
-    if most.is_finite() {
-        RowKind::Box {
-            low: -most,
-            high: most,
-        }
-    } else {
-        RowKind::Bilateral
     }
 }

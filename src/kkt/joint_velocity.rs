@@ -1,7 +1,8 @@
 //! Joint rows in the velocity and acceleration problems, and what joints do to the energy.
 
 use super::island::{Island, KktError, SolveSettings};
-use super::joint_rows::{ActiveJoint, Finish, add_wrench, bounded};
+use super::joint_law::{Finish, bounded};
+use super::joint_rows::{ActiveJoint, add_wrench};
 use super::joint_system::Rows;
 use crate::constraint::joint::{JointGrip, Spring, When, unit_wrench};
 use crate::linalg::complementarity::{Problem, RowKind, Status};

@@ -16,6 +16,7 @@ mod gentle;
 mod impact;
 mod island;
 mod joint_held;
+mod joint_law;
 mod joint_mass;
 mod joint_rows;
 mod joint_system;

@@ -93,6 +93,7 @@ impl Island {
         }
         summary.gap_violation = self.gap_violation();
         summary.slip_violation = self.slip_violation();
+        summary.joint_violation = self.joint_violation();
     }
 
     /// Puts the bodies and the working set back to where the step begins.

@@ -25,6 +25,8 @@ pub struct IslandSummary {
     pub gap_violation: f64,
     /// Largest slip that friction wedged against itself has given way by (m).
     pub slip_violation: f64,
+    /// What joints and attachments were left open by as they contradict each other, at most (m or rad).
+    pub joint_violation: f64,
     /// Energy at the beginning: kinetic, elastic (J).
     pub start_energy: [f64; 2],
     /// Energy at the end: kinetic, elastic (J).

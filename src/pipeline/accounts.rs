@@ -67,6 +67,7 @@ impl StepReport {
         let counts = entry.count([summary.has_failed, summary.is_substituted]);
         self.gap_violation = self.gap_violation.max(summary.gap_violation);
         self.slip_violation = self.slip_violation.max(summary.slip_violation);
+        self.joint_violation = self.joint_violation.max(summary.joint_violation);
         self.solver_residual = self.solver_residual.max(summary.residual);
         self.n_newton = self.n_newton.max(summary.n_newton);
         self.n_failed += counts[0];

@@ -83,7 +83,7 @@ impl Solver {
         };
         let owes_more = -reserve > share * summary.brought() + (-before).max(0.0);
         let is_coarse = owes_more && !summary.is_parting;
-        let is_good = !is_coarse && summary.quality() == Quality::Solved;
+        let is_good = !is_coarse && !summary.is_unsolved();
         let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters);
         let goes_on = !may_be_cut && summary.quality() == Quality::Unfinished && {
             let n_cuts = part.n_cuts.saturating_sub(FURTHER);

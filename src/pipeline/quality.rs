@@ -14,7 +14,8 @@ pub enum Quality {
     #[default]
     Solved,
     /// The whole of the step was taken along a feasible path, with forces under which gaps miss the laws by up to the offset of the surfaces,
-    /// a hundredth of an edge; or a contact has slid off what it pressed on within the step, and its force has acted to the end.
+    /// a hundredth of an edge; or a contact has slid off what it pressed on within the step, and its force has acted to the end; or joints and
+    /// attachments contradict each other, and were left open.
     Cut,
     /// Its budget ran out, in the smallest parts that it may be cut into. Surfaces on a feasible path are apart where it was stopped, velocities
     /// come from the last forces; what lies on no path (pairs shown to hooks, what was put into each other) may overlap. Or rapier's own step has
@@ -42,7 +43,7 @@ impl IslandSummary {
     pub(super) fn quality(&self) -> Quality {
         if self.is_stopped {
             Quality::Unfinished
-        } else if self.is_cut {
+        } else if self.is_cut || self.joint_violation > 0.0 {
             Quality::Cut
         } else {
             Quality::Solved

@@ -184,6 +184,7 @@ pub struct StepReport {
     pub(super) self_crossing: Vec<FlexBodyHandle>,
     pub(super) gap_violation: f64,
     pub(super) slip_violation: f64,
+    pub(super) joint_violation: f64,
     pub(super) complementarity_residual: f64,
     pub(super) cone: ConeExcess,
     pub(super) solver_residual: f64,
@@ -267,6 +268,12 @@ impl StepReport {
     /// Largest slip of the step (m) that friction wedged against itself gave way by: no forces within its law hold such a contact.
     pub fn slip_violation(&self) -> f64 {
         self.slip_violation
+    }
+
+    /// Largest distance from where they should be that joints and attachments were left at as they contradict each other (m, or rad of what keeps an angle):
+    /// as of a body that is welded to two places which are farther apart than it is long. What was only put there closes over some steps and does not count.
+    pub fn joint_violation(&self) -> f64 {
+        self.joint_violation
     }
 
     /// Largest `|gap|` of a contact that carries a force (m): complementarity.

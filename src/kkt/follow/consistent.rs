@@ -11,7 +11,7 @@
 //! each other grow no faster than what they cannot close. Along its tangent a contact gives way to the whole of its force, `p₀ = 0`: friction that
 //! holds a corner in a notch against itself slips by a thousandth of what the force alone would move it, and there is one answer.
 
-use super::Island;
+use super::{CLOSE_ENOUGH, FEW_PASSES, Island, LARGE_TOLERANCE};
 use crate::kkt::delassus::compliance;
 use crate::kkt::island::SolveSettings;
 use crate::kkt::joint_system::Rows;
@@ -58,6 +58,35 @@ impl Island {
         };
         self.before_solve = before;
         is_consistent
+    }
+
+    /// Leaves open what joints and attachments cannot close as they contradict each other: a body that is welded to two places a little farther
+    /// apart than it is long. Nothing has changed there for [`FEW_PASSES`] passes whose base arrived, and nothing would in another; forces are
+    /// those of the compromise. Where the step is to be cut first, for joints that turn far, only what was open when it began is left.
+    pub(super) fn leave_contradictions(&mut self, arrives: bool, settings: &SolveSettings) {
+        if !arrives {
+            return;
+        }
+        let least = CLOSE_ENOUGH * self.margin;
+        for tie in &mut self.ties {
+            let before = std::mem::replace(&mut tie.seen, tie.gap);
+            let is_same = (tie.gap - before).abs() <= LARGE_TOLERANCE * tie.gap.abs();
+            tie.n_same = if is_same { tie.n_same + 1 } else { 0 };
+            let began = (tie.start - tie.goal).abs();
+            let is_old = began > least && tie.error() <= 2.0 * began;
+            let may_be_left = !settings.may_be_cut || is_old;
+            if tie.n_same >= FEW_PASSES && tie.error() > least && may_be_left {
+                let off = tie.off();
+                tie.left += off;
+                tie.goal += off;
+            }
+        }
+    }
+
+    /// By how much joints and attachments were left open at most (m or rad).
+    pub(in crate::kkt) fn joint_violation(&self) -> f64 {
+        let left = self.ties.iter().map(|tie| tie.left.abs());
+        left.fold(0.0, f64::max)
     }
 
     /// Whether some joint is in that contradiction.

@@ -1,0 +1,153 @@
+//! Laws of joint rows at a step's length: where a row is to be at its end, how far its force lets it give way, and between what bounds the force is.
+
+use super::island::SolveSettings;
+use super::position::PARTING_RATE;
+use crate::constraint::joint::{JointLaw, JointRow, Spring};
+use crate::linalg::complementarity::RowKind;
+use crate::math::exp;
+
+/// Violation at the beginning of a step (m or rad) beyond which a joint closes over several steps: someone has put it there.
+const SLACK: f64 = 1e-3;
+
+/// What the velocity stage does about a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Finish {
+    /// `G'v' = rate`, for rows that hold, or drive with bounds.
+    Hold {
+        /// Velocity (m/s or rad/s).
+        rate: f64,
+    },
+    /// `0 <= P ⊥ G'v' >= 0` where the row is closed.
+    Limit,
+    /// A resolved spring: the force of the position stage acts at the end too.
+    Spring,
+    /// A spring or damper that the step does not resolve, implicit once more.
+    Stiff(Spring),
+    /// Nothing: a spring at a flexible block.
+    Nothing,
+}
+
+/// The law of a row at this step length.
+pub(super) struct Resolved {
+    pub goal: f64,
+    pub give: f64,
+    pub kind: RowKind,
+    pub finish: Finish,
+}
+
+/// The law of a row that measures `start` when the step begins, and has this mobility.
+pub(super) fn resolve(
+    row: &JointRow,
+    is_hard: bool,
+    (start, mobility): (f64, f64),
+    settings: &SolveSettings,
+) -> Resolved {
+    let kept = exp(-PARTING_RATE * settings.dt);
+    // A force over the step, λ, is `scale` times the multiplier.
+    let scale = if is_hard {
+        2.0 * settings.b0 / (settings.dt * settings.dt)
+    } else {
+        1.0
+    };
+    match row.law {
+        JointLaw::Rigid { goal, rate } => {
+            let (goal, rate) = (row.sign * goal, row.sign * rate);
+            let off = start + settings.dt * rate - goal;
+            Resolved {
+                goal: if off.abs() > SLACK {
+                    goal + kept * off
+                } else {
+                    goal
+                },
+                give: 0.0,
+                kind: RowKind::Bilateral,
+                finish: Finish::Hold { rate },
+            }
+        }
+        JointLaw::Limit { bound } => {
+            let bound = row.sign * bound;
+            let off = start - bound;
+            Resolved {
+                goal: if off < -SLACK {
+                    bound + kept * off
+                } else {
+                    bound
+                },
+                give: 0.0,
+                kind: RowKind::Unilateral,
+                finish: Finish::Limit,
+            }
+        }
+        JointLaw::Drive { rate, most } => Resolved {
+            goal: start + settings.dt * rate,
+            give: 0.0,
+            kind: bounded(most / scale),
+            finish: Finish::Hold { rate },
+        },
+        JointLaw::Spring(spring) => {
+            let spring = spring.absolute(mobility);
+            let is_mean = is_hard || settings.is_within;
+            resolve_spring(
+                spring,
+                (is_hard, is_mean),
+                (start, mobility, scale),
+                settings.dt,
+            )
+        }
+    }
+}
+
+/// A spring that the step resolves acts with its mean force, `q` in the middle of the step, where multipliers act wholly within the step
+/// or on rigid blocks only; others with that of the end.
+fn resolve_spring(
+    spring: Spring,
+    (is_hard, is_mean): (bool, bool),
+    (start, mobility, scale): (f64, f64, f64),
+    dt: f64,
+) -> Resolved {
+    let Spring {
+        stiffness: k,
+        damping: c,
+        rest,
+        rate,
+        most,
+        ..
+    } = spring;
+    let sampling = mobility * (0.25 * dt * dt * k + 0.5 * dt * c);
+    let is_resolved = is_mean && sampling <= 1.0;
+    let share = if is_resolved { 0.5 } else { 1.0 };
+    let total = share * k + c / dt;
+    let held = k * (rest - (1.0 - share) * start) + c * (start / dt + rate);
+    let (goal, give, kind) = if total > 0.0 {
+        (held / total, scale / total, bounded(most / scale))
+    } else {
+        let none = RowKind::Box {
+            low: 0.0,
+            high: 0.0,
+        };
+        (start, 0.0, none)
+    };
+    let finish = match (is_hard, is_resolved) {
+        (false, _) => Finish::Nothing,
+        (true, true) => Finish::Spring,
+        (true, false) => Finish::Stiff(spring),
+    };
+    Resolved {
+        goal,
+        give,
+        kind,
+        finish,
+    }
+}
+
+/// The law of a row whose multiplier is at most `most`, either way.
+pub(super) fn bounded(most: f64) -> RowKind {
+    if most.is_finite() {
+        RowKind::Box {
+            low: -most,
+            high: most,
+        }
+    } else {
+        RowKind::Bilateral
+    }
+}
