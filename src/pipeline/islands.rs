@@ -79,6 +79,11 @@ impl Solver {
         }
     }
 
+    /// Begins a step, however often it is solved.
+    pub fn begin_step(&mut self) {
+        self.island.begin_step();
+    }
+
     /// Solves every component.
     pub fn solve(
         &mut self,
@@ -87,7 +92,6 @@ impl Solver {
         books: &mut Books<'_>,
     ) -> Result<Progress, StepError> {
         self.under_way.begin_step();
-        self.island.begin_step();
         self.list_components(task.claims, flex_bodies);
         let factorizations = self.gatherer.pool.n_factorizations();
         for slot in 0..self.components.len() {

@@ -26,6 +26,7 @@ impl FlexPipeline {
     ) -> Result<(), StepError> {
         let dissipated = self.report.energy.dissipated;
         let mut looks = 0;
+        self.solver.begin_step();
         loop {
             let likely = self.claims.likely_excess(sets);
             let may_call = likely > 0.0 && looks == 0;
