@@ -69,17 +69,12 @@ impl ActiveJoint {
         if !self.is_movable {
             return 0.0;
         }
-        let off = self.off();
+        let off = self.gap + self.give * self.multiplier;
         match (self.kind, self.status) {
             (RowKind::Unilateral, Status::Open) | (_, Status::SlipNegative) => (-off).max(0.0),
             (_, Status::SlipPositive) => off.max(0.0),
             _ => off.abs(),
         }
-    }
-
-    /// Distance from the goal, and from where the force lets the row give way to (m or rad).
-    pub(super) fn off(&self) -> f64 {
-        self.gap + self.give * self.multiplier
     }
 
     /// Share of the row's motion that a problem holds (-).

@@ -68,7 +68,8 @@ impl Island {
             return;
         }
         let least = CLOSE_ENOUGH * self.margin;
-        for tie in &mut self.ties {
+        // Springs give way by themselves.
+        for tie in self.ties.iter_mut().filter(|tie| tie.give == 0.0) {
             let before = std::mem::replace(&mut tie.seen, tie.gap);
             let is_same = (tie.gap - before).abs() <= LARGE_TOLERANCE * tie.gap.abs();
             tie.n_same = if is_same { tie.n_same + 1 } else { 0 };
@@ -76,9 +77,8 @@ impl Island {
             let is_old = began > least && tie.error() <= 2.0 * began;
             let may_be_left = !settings.may_be_cut || is_old;
             if tie.n_same >= FEW_PASSES && tie.error() > least && may_be_left {
-                let off = tie.off();
-                tie.left += off;
-                tie.goal += off;
+                tie.left += tie.gap;
+                tie.goal += tie.gap;
             }
         }
     }
