@@ -5,8 +5,8 @@
 
 use super::claim::Claims;
 use super::ends::Ends;
+use super::places::travel_of;
 use super::sets::RapierSets;
-use super::sweep::farthest_travel;
 use super::unlisted::Listed;
 use crate::body::FlexBodySet;
 use crate::rapier::math::Real;
@@ -29,7 +29,11 @@ impl Claims {
         if self.excess > 0.0 {
             return 0.0;
         }
-        THROWN * farthest_travel(sets, &self.flex)
+        let dt = sets.integration_parameters.dt;
+        let rigid = self.walk.members.rigid().iter();
+        let rigid = rigid.filter_map(|&handle| Some(travel_of(sets.bodies.get(handle)?, dt)));
+        let flexible = self.flex.iter().map(|own| own.travel);
+        THROWN * rigid.chain(flexible).fold(0.0, Real::max)
     }
 
     /// By how much members have left the boxes that they were looked for in; zero if none has (m).

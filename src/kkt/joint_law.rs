@@ -30,6 +30,8 @@ pub(super) enum Finish {
 /// The law of a row at this step length.
 pub(super) struct Resolved {
     pub goal: f64,
+    /// Where the row is to be in the end (m or rad), which what was put elsewhere comes to over several steps.
+    pub target: f64,
     pub give: f64,
     pub kind: RowKind,
     pub finish: Finish,
@@ -59,6 +61,7 @@ pub(super) fn resolve(
                 } else {
                     goal
                 },
+                target: goal,
                 give: 0.0,
                 kind: RowKind::Bilateral,
                 finish: Finish::Hold { rate },
@@ -73,6 +76,7 @@ pub(super) fn resolve(
                 } else {
                     bound
                 },
+                target: bound,
                 give: 0.0,
                 kind: RowKind::Unilateral,
                 finish: Finish::Limit,
@@ -80,6 +84,7 @@ pub(super) fn resolve(
         }
         JointLaw::Drive { rate, most } => Resolved {
             goal: start + settings.dt * rate,
+            target: start + settings.dt * rate,
             give: 0.0,
             kind: bounded(most / scale),
             finish: Finish::Hold { rate },
@@ -134,6 +139,7 @@ fn resolve_spring(
     };
     Resolved {
         goal,
+        target: goal,
         give,
         kind,
         finish,

@@ -50,10 +50,12 @@ pub struct ActiveJoint {
     pub(super) impulse: f64,
     /// Whether something can move the row at all.
     pub(super) is_movable: bool,
-    /// Gap after the pass before (m or rad), how often it has been the same, and what is left open as other rows contradict it (m or rad).
+    /// Where the row is to be in the end (m or rad).
+    pub(super) target: f64,
+    /// Gap after the pass before (m or rad), how often it has been the same, and whether it is left open as other rows contradict it.
     pub(super) seen: f64,
     pub(super) n_same: usize,
-    pub(super) left: f64,
+    pub(super) is_left: bool,
 }
 
 impl ActiveJoint {
@@ -126,6 +128,7 @@ impl Island {
                 finish: resolved.finish,
                 start,
                 goal: resolved.goal,
+                target: resolved.target,
                 give: resolved.give,
                 kind: resolved.kind,
                 gap: start - resolved.goal,
@@ -139,7 +142,7 @@ impl Island {
                 is_movable: mobility > SINGULAR * across,
                 seen: f64::INFINITY,
                 n_same: 0,
-                left: 0.0,
+                is_left: false,
             });
         }
         self.applied_grips.clear();

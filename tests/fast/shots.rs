@@ -8,7 +8,7 @@ use crate::range::{Range, Shot};
 /// step may be refused.
 ///
 /// Where a step finds no end, parts of it are halved further: without that one shot in sixteen has an unfinished step, with it one in five
-/// hundred; between half and twice of how often and in how many places, one in fifty at most.
+/// hundred; between half and twice of how often and in how many places, one in forty at most.
 #[test]
 fn a_thousand_random_shots_never_pass_through_what_they_hit() {
     let mut findings = Findings::default();

@@ -62,7 +62,8 @@ impl Island {
 
     /// Leaves open what joints and attachments cannot close as they contradict each other: a body that is welded to two places a little farther
     /// apart than it is long. Nothing has changed there for [`FEW_PASSES`] passes whose base arrived, and nothing would in another; forces are
-    /// those of the compromise. Where the step is to be cut first, for joints that turn far, only what was open when it began is left.
+    /// those of the compromise. Where the step is to be cut first, for joints that turn far, only what was open when it began is left, up to twice as
+    /// far: the body sways between what holds it.
     pub(super) fn leave_contradictions(&mut self, arrives: bool, settings: &SolveSettings) {
         if !arrives {
             return;
@@ -77,16 +78,17 @@ impl Island {
             let is_old = began > least && tie.error() <= 2.0 * began;
             let may_be_left = !settings.may_be_cut || is_old;
             if tie.n_same >= FEW_PASSES && tie.error() > least && may_be_left {
-                tie.left += tie.gap;
+                tie.is_left = true;
                 tie.goal += tie.gap;
             }
         }
     }
 
-    /// By how much joints and attachments were left open at most (m or rad).
+    /// How far from where they are to be in the end joints and attachments were left open at most (m or rad).
     pub(in crate::kkt) fn joint_violation(&self) -> f64 {
-        let left = self.ties.iter().map(|tie| tie.left.abs());
-        left.fold(0.0, f64::max)
+        let left = self.ties.iter().filter(|tie| tie.is_left);
+        let off = left.map(|tie| (tie.goal + tie.gap - tie.target).abs());
+        off.fold(0.0, f64::max)
     }
 
     /// Whether some joint is in that contradiction.
