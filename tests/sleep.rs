@@ -295,3 +295,53 @@ fn a_tower_of_flush_rigid_and_flexible_blocks_sleeps_within_five_seconds() {
     });
     assert!(asleep.is_some(), "awake after 300 steps");
 }
+
+/// Rapier stops a body in the step in which it has been still for half a second, whatever is found for it in that step.
+#[test]
+fn a_box_that_is_hit_as_it_falls_asleep_takes_the_blow() {
+    for speed in [5.0, 20.0] {
+        for late in 0..4 {
+            let mut scene = Scene::in_free_space(1.0 / 60.0);
+            // At the box in its thirtieth step.
+            let gap = speed * (29.0 + 0.25 * f64::from(late)) / 60.0;
+            let striker = block(1e6).translation([0.2 + gap, -0.125]);
+            let striker = scene.flexible(striker.linvel([-speed, 0.0]));
+            let (hit, _) = scene.rigid(
+                RigidBodyBuilder::dynamic(),
+                ColliderBuilder::cuboid(real(0.2), real(0.2)).density(real(1000.0)),
+            );
+            let before = momentum_of(&scene)[0];
+            for step in 0..40 {
+                scene.step();
+                let now = momentum_of(&scene)[0];
+                let name = format!("{speed} m/s, {late}, step {step}: {now} of {before} N s");
+                assert!((now / before - 1.0).abs() < 1e-5, "{name}");
+            }
+            let after = velocity_of(&scene.world.bodies[hit])[0];
+            assert!(after < -0.1 * speed, "the box moves at {after} m/s");
+            assert!(!sleeps(&scene, striker));
+        }
+    }
+}
+
+#[test]
+fn what_is_attached_to_a_flexible_body_does_not_sleep_while_it_drifts() {
+    let mut scene = Scene::in_free_space(1.0 / 60.0);
+    let body = scene.flexible(block(1e6).linvel([0.0, 0.05]));
+    let rider = RigidBodyBuilder::dynamic()
+        .translation(vec2(0.25, 0.5))
+        .linvel(vec2(0.0, 0.05));
+    let (rider, _) = scene.rigid(rider, ColliderBuilder::cuboid(real(0.1), real(0.1)));
+    let pin = AttachmentBuilder::pin(body).node(0);
+    let attached = scene
+        .bodies
+        .attach(pin.to_rigid_body(rider), &scene.world.bodies);
+    attached.expect("both are there");
+    let before = momentum_of(&scene)[1];
+    scene.steps(120);
+    let after = momentum_of(&scene)[1];
+    assert!(
+        (after / before - 1.0).abs() < 1e-5,
+        "{after} of {before} N s"
+    );
+}

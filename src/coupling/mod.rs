@@ -83,7 +83,9 @@ pub(crate) use record::CouplingRecord;
 pub(crate) use seats::Seats;
 pub use sets::RapierSets;
 pub(crate) use shapes::{ShapeFault, rounding};
-pub(crate) use sleep::{is_asleep, keep_awake, rests, stop_if_asleep, wake_disturbed, wake_moving};
+pub(crate) use sleep::{
+    is_asleep, keep_awake, keep_landing_awake, rests, stop_if_asleep, wake_disturbed, wake_moving,
+};
 pub(crate) use trespassers::{Trespasser, Trespassers};
 pub(crate) use under_way::{Span, UnderWay};
 pub(crate) use walk::ClaimedPair;

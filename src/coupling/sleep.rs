@@ -3,8 +3,10 @@
 //! A carrier never moves, so rapier would let it sleep at once: its timer is set back while a node of the body moves. What
 //! rapier wakes is awake here too. What is awake and comes near a sleeper wakes it before they touch: see [`super::waking`].
 
+use super::landing::Landing;
 use super::sets::RapierSets;
 use crate::body::{FlexBody, FlexBodySet};
+use crate::math::from_rapier;
 use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::Aabb;
 use crate::rapier::prelude::*;
@@ -96,6 +98,46 @@ pub(crate) fn keep_awake(
     {
         // The step adds its length.
         carrier.activation_mut().time_since_can_sleep = -dt;
+    }
+}
+
+/// Keeps a claimed rigid body awake that its solved step moves faster than rapier lets a body at rest, or that is attached to a flexible one.
+/// Rapier counts how long a body has been still by the steps before, and would stop it in the step in which it is hit.
+pub(crate) fn keep_landing_awake(landing: &Landing, is_attached: bool, sets: &mut RapierSets<'_>) {
+    let RapierSets {
+        bodies,
+        colliders,
+        integration_parameters: parameters,
+        ..
+    } = sets;
+    let Some(body) = bodies.get(landing.handle) else {
+        return;
+    };
+    let activation = body.activation();
+    let (dt, patience) = (parameters.dt, activation.time_until_sleep);
+    let is_due = activation.time_since_can_sleep + dt >= SET_BACK * patience;
+    let threshold = activation.normalized_linear_threshold * parameters.length_unit;
+    if threshold < 0.0 || !is_due {
+        return;
+    }
+    let centre = body.center_of_mass();
+    let reaches = body.colliders().iter().map(|&handle| {
+        let shape = colliders.get(handle).map(Collider::compute_aabb);
+        shape.map_or(0.0, |aabb| {
+            (aabb.center() - centre).length() + aabb.half_extents().length()
+        })
+    });
+    let extent = f64::from(reaches.fold(0.0, Real::max));
+    let motion = &landing.motion;
+    let speed = motion.velocity.norm() + motion.spin.abs() * extent;
+    let moved = (motion.centre - from_rapier(centre)).norm();
+    // As rapier judges: half of the way of the farthest point.
+    let is_moving = 0.5 * speed.max(moved / f64::from(dt)) >= f64::from(threshold);
+    if (is_attached || is_moving)
+        && let Some(body) = bodies.get_mut(landing.handle)
+    {
+        // The step adds its length.
+        body.activation_mut().time_since_can_sleep = -dt;
     }
 }
 

@@ -5,7 +5,7 @@ use super::mass_matrix::MassMatrix;
 use super::model::ModelDescription;
 use crate::linalg::block_matrix::BlockMatrix;
 
-/// Moves the mass of massless nodes inwards, unless a free body would turn or balance differently by it: the nodes inside
+/// Moves the mass of massless nodes inwards, unless the body would balance or, where it may turn, turn differently by it: the nodes inside
 /// of a coarse mesh may be too few to carry its centre and polar moment. Then all mass stays where it is.
 ///
 /// Where at most half of the boundary is massless, the moments are restored near it: a wave that comes from afar must not meet
@@ -27,7 +27,8 @@ pub(super) fn redistribute(
             all.filter(|&n| n != node && !is_held(n)).collect()
         })
         .collect();
-    let is_free = !(0..nodes.len()).any(is_held);
+    // Held at one node it is a pendulum.
+    let may_turn = (0..nodes.len()).filter(|&node| is_held(node)).count() <= 1;
     let neighbours = |node: usize| &neighbours[node][..];
     let massless = &description.massless;
     let is_part =
@@ -43,7 +44,7 @@ pub(super) fn redistribute(
                 mass::redistribute_consistent(&nodes, matrix, massless, neighbours, &weight)
             }
         }?;
-        if !is_free || found.keeps_centre && found.keeps_polar_moment {
+        if found.keeps_centre && (found.keeps_polar_moment || !may_turn) {
             *mass = changed;
             return Ok(());
         }

@@ -5,8 +5,8 @@
 //! the energy and no more: the rest is heat of dampers and impacts, which gives nothing back. Beyond that the end velocity is
 //! changed along the response to the contact forces, which leaves momentum alone.
 //!
-//! With joints the reserve is all that was taken: their forces swing in the stored accelerations by more than that, and velocities
-//! that are changed against it make it grow.
+//! With joints the reserve is all that was taken, unless forces act wholly within their step: they swing in the stored accelerations by more
+//! than that, and velocities that are changed against it make it grow.
 
 use super::delassus::RowDirection;
 use super::island::{Island, SolveSettings};
@@ -119,7 +119,8 @@ impl Island {
             .iter()
             .any(|contact| contact.multiplier[0] > 0.0 || contact.remembered.normal > 0.0);
         let [kinetic, elastic] = summary.end_energy;
-        let kept = match (touches, self.ties.is_empty()) {
+        let keeps_none = self.ties.is_empty() || settings.is_within;
+        let kept = match (touches, keeps_none) {
             (false, _) => 0.0,
             (true, true) => SWING * (kinetic + elastic),
             (true, false) => f64::INFINITY,
@@ -179,9 +180,19 @@ impl Island {
         let mirrored = self.add_responses(-2.0);
         let curvature = 0.5 * (after + mirrored) - before;
         let slope = 0.5 * (after - mirrored);
-        let step = step_of_parabola(curvature, slope, excess);
+        // What presses against something that does not give way moves nothing, however often it is taken: it is taken no more often than would
+        // undo it and bring all that moves to rest.
+        let pressed: f64 = self.multipliers[..self.rows.len()].iter().sum();
+        let most = 1.0 + self.momentum_at_most() / pressed;
+        let step = step_of_parabola(curvature, slope, excess)
+            .min(most)
+            .max(-most);
         for (row, impulse) in self.rows.iter().zip(&self.multipliers) {
             self.contacts[row.contact].impulse[0] += step * impulse;
+        }
+        let of_joints = &self.multipliers[self.rows.len()..];
+        for (&row, impulse) in self.joint_rows.iter().zip(of_joints) {
+            self.ties[row].impulse += step * impulse;
         }
         self.add_responses(1.0 + step);
         // What has flown away has slid since its row was measured: the levers of its force have a couple.
@@ -215,6 +226,21 @@ impl Island {
             }
         }
         before - self.kinetic_energy()
+    }
+
+    /// The momentum of all blocks if each moved along one line with its kinetic energy (N s).
+    fn momentum_at_most(&self) -> f64 {
+        let momenta = self.blocks.iter().map(|block| {
+            let (mass, energy) = match block {
+                Block::Flex(block) => (block.mass(), block.kinetic_energy()),
+                Block::Rigid(block) => {
+                    let [x, y, _] = block.mass();
+                    (x.max(y), block.kinetic_energy(block.current()))
+                }
+            };
+            (2.0 * mass * energy).sqrt()
+        });
+        momenta.sum()
     }
 
     pub(super) fn kinetic_energy(&self) -> f64 {

@@ -3,7 +3,9 @@
 use super::solved::{Entry, SolvedPart};
 use crate::body::FlexBodySet;
 use crate::constraint::joint::{JointOwner, Measure};
-use crate::coupling::{FlexPool, JointImpulse, Landing, Push, RapierSets, keep_awake, wake_moving};
+use crate::coupling::{
+    FlexPool, JointImpulse, Landing, Push, RapierSets, keep_awake, keep_landing_awake, wake_moving,
+};
 use crate::rapier::prelude::ImpulseJointHandle;
 use crate::system::Block;
 
@@ -76,7 +78,7 @@ impl Outcome {
         }
     }
 
-    /// Keeps the carriers of bodies that move awake.
+    /// Keeps what moves awake: the carriers of flexible bodies, and claimed rigid bodies.
     pub fn keep_awake(
         &self,
         pool: &FlexPool,
@@ -89,6 +91,10 @@ impl Outcome {
                 let is_attached = flex_bodies.is_attached(handle);
                 keep_awake(body, block.velocities(), is_attached, sets);
             }
+        }
+        for landing in &self.landings {
+            let is_attached = flex_bodies.has_attached(landing.handle);
+            keep_landing_awake(landing, is_attached, sets);
         }
     }
 

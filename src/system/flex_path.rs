@@ -110,7 +110,7 @@ impl FlexBlock {
     }
 
     /// Answers impulses by what the body is at the iterate.
-    fn answer_as_at_the_end(&mut self, large: &mut Large) {
+    pub(super) fn answer_as_at_the_end(&mut self, large: &mut Large) {
         let scale = self.step.weights.b0;
         let equation = equation_of(
             &large.model,

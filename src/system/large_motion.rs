@@ -6,6 +6,9 @@ use super::large_equation::total_decay;
 use crate::body::{FlexState, Frame};
 use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec, sum_over};
 
+/// Rounding of a sum of products (-).
+const ROUNDING: f64 = 1e-12;
+
 impl FlexBlock {
     /// Writes the velocities and the centre that go with the positions.
     pub(super) fn follow_positions(&mut self) {
@@ -92,18 +95,37 @@ impl FlexBlock {
         let Some(mut large) = self.large.take() else {
             return;
         };
-        let (position, velocity) = (
-            std::mem::take(&mut self.position),
-            std::mem::take(&mut self.velocity),
-        );
-        self.resolve(&position, &velocity, &mut large.resolved);
-        (self.position, self.velocity) = (position, velocity);
+        self.resolve_end(&mut large.resolved);
+        if self.is_magnified(&large.resolved) {
+            self.answer_as_at_the_end(&mut large);
+            self.resolve_end(&mut large.resolved);
+        }
         self.damp_unresolved(&mut large);
         let pairs = large.resolved.iter().zip(&large.start_resolved);
         for (acceleration, (now, before)) in large.acceleration.iter_mut().zip(pairs) {
             *acceleration = (now - before) / self.step.dt;
         }
         self.large = Some(large);
+    }
+
+    /// The resolved part of the velocities at hand.
+    fn resolve_end(&mut self, resolved: &mut [f64]) {
+        let [position, velocity] = [&mut self.position, &mut self.velocity].map(std::mem::take);
+        self.resolve(&position, &velocity, resolved);
+        (self.position, self.velocity) = (position, velocity);
+    }
+
+    /// Whether the part of the velocities that is called resolved has more of their kinetic energy than all of it, `v·M A⁻¹ M v > v·M v`: then `A >= M`
+    /// does not hold. What is compressed and held by others has an indefinite stiffness, and neither damping what is not resolved nor impulses
+    /// would take energy.
+    fn is_magnified(&self, resolved: &[f64]) -> bool {
+        let mass = |dof: usize| self.arms.node_mass[dof / 2];
+        let own = |other: &[f64]| {
+            let pairs = self.velocity.iter().zip(other).enumerate();
+            let products = pairs.map(|(dof, (v, other))| mass(dof) * v * other);
+            products.sum::<f64>()
+        };
+        own(resolved) > own(&self.velocity) * (1.0 + ROUNDING)
     }
 
     /// Takes the share `min(χ, 1)` of the velocities that the step does not resolve, `(1 - A⁻¹ M)² v`, and of neither momentum.

@@ -2,6 +2,7 @@
 
 use super::{Attachment, AttachmentError, AttachmentTarget};
 use crate::body::{FlexBodyHandle, FlexBodySet};
+use crate::rapier::prelude::RigidBodyHandle;
 
 /// Names an attachment of one [`FlexBodySet`]; stays invalid for ever once it is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -175,6 +176,13 @@ impl FlexBodySet {
         self.attachments().iter().any(|(_, attachment)| {
             attachment.body() == handle || attachment.target() == AttachmentTarget::Flexible(handle)
         })
+    }
+
+    /// Whether a rigid body is attached to a flexible one.
+    pub(crate) fn has_attached(&self, rigid: RigidBodyHandle) -> bool {
+        let target = AttachmentTarget::RigidBody(rigid);
+        let mut attachments = self.attachments().iter();
+        attachments.any(|(_, attachment)| attachment.target() == target)
     }
 
     pub(crate) fn attachment_handle(&self, (index, generation): (u32, u32)) -> AttachmentHandle {
