@@ -103,7 +103,11 @@ pub(crate) fn keep_awake(
 
 /// Keeps a claimed rigid body awake that its solved step moves faster than rapier lets a body at rest, or that is attached to a flexible one.
 /// Rapier counts how long a body has been still by the steps before, and would stop it in the step in which it is hit.
-pub(crate) fn keep_landing_awake(landing: &Landing, is_attached: bool, sets: &mut RapierSets<'_>) {
+pub(crate) fn keep_landing_awake(
+    landing: &Landing,
+    is_attached: impl Fn() -> bool,
+    sets: &mut RapierSets<'_>,
+) {
     let RapierSets {
         bodies,
         colliders,
@@ -133,7 +137,7 @@ pub(crate) fn keep_landing_awake(landing: &Landing, is_attached: bool, sets: &mu
     let moved = (motion.centre - from_rapier(centre)).norm();
     // As rapier judges: half of the way of the farthest point.
     let is_moving = 0.5 * speed.max(moved / f64::from(dt)) >= f64::from(threshold);
-    if (is_attached || is_moving)
+    if (is_moving || is_attached())
         && let Some(body) = bodies.get_mut(landing.handle)
     {
         // The step adds its length.

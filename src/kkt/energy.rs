@@ -119,11 +119,10 @@ impl Island {
             .iter()
             .any(|contact| contact.multiplier[0] > 0.0 || contact.remembered.normal > 0.0);
         let [kinetic, elastic] = summary.end_energy;
-        let keeps_none = self.ties.is_empty() || settings.is_within;
-        let kept = match (touches, keeps_none) {
+        let kept = match (touches, self.has_swinging_joints(settings.is_within)) {
             (false, _) => 0.0,
-            (true, true) => SWING * (kinetic + elastic),
-            (true, false) => f64::INFINITY,
+            (true, false) => SWING * (kinetic + elastic),
+            (true, true) => f64::INFINITY,
         };
         *reserve = reserve.min(kept);
         let gain =
@@ -226,6 +225,11 @@ impl Island {
             }
         }
         before - self.kinetic_energy()
+    }
+
+    /// Whether joints leave forces in stored accelerations, which swing from step to step.
+    pub fn has_swinging_joints(&self, is_within: bool) -> bool {
+        !self.ties.is_empty() && !is_within
     }
 
     /// The momentum of all blocks if each moved along one line with its kinetic energy (N s).

@@ -91,6 +91,8 @@ impl Island {
                 block.measure_elastic_energy();
             }
         }
+        // Blocks may answer by another factor from here on.
+        self.prepare_joints();
         summary.gap_violation = self.gap_violation();
         summary.slip_violation = self.slip_violation();
         summary.joint_violation = self.joint_violation();

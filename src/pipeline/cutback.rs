@@ -76,11 +76,11 @@ impl Solver {
         // What contact adds and cannot take back is the error of a step that is longer than the impact; what is parted costs energy at any pace.
         // What joints leave in stored accelerations swings, and a change of the step's length makes it swing more: with joints it must be as
         // much as there was, on a path.
-        let keeps_none = self.island.ties.is_empty() || step.is_within();
-        let share = match (keeps_none, parameters.leads(step)) {
-            (true, _) => GAINED,
-            (false, true) => DOUBLED,
-            (false, false) => f64::INFINITY,
+        let swings = self.island.has_swinging_joints(step.is_within());
+        let share = match (swings, parameters.leads(step)) {
+            (false, _) => GAINED,
+            (true, true) => DOUBLED,
+            (true, false) => f64::INFINITY,
         };
         let owes_more = -reserve > share * summary.brought() + (-before).max(0.0);
         let is_coarse = owes_more && !summary.is_parting;

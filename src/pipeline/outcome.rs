@@ -93,7 +93,7 @@ impl Outcome {
             }
         }
         for landing in &self.landings {
-            let is_attached = flex_bodies.has_attached(landing.handle);
+            let is_attached = || flex_bodies.has_attached(landing.handle);
             keep_landing_awake(landing, is_attached, sets);
         }
     }
