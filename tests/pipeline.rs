@@ -5,6 +5,8 @@ mod coming_and_going;
 mod common;
 #[path = "pipeline/loads.rs"]
 mod loads;
+#[path = "pipeline/put_together.rs"]
+mod put_together;
 #[path = "pipeline/rapier_features.rs"]
 mod rapier_features;
 #[path = "pipeline/stability.rs"]

@@ -244,7 +244,7 @@ fn bodies_that_go_before_the_first_full_step_leave_a_world_that_goes_on() {
             scene.world.remove_body(lower);
         }),
     ];
-    for (name, spoil) in spoils {
+    for ((name, spoil), has_joint) in spoils.into_iter().flat_map(|it| [(it, false), (it, true)]) {
         let mut scene = Scene::new(1.0 / 60.0);
         scene.ground(0.5);
         let sick = scene.flexible(block(0.0, 0.001));
@@ -254,7 +254,12 @@ fn bodies_that_go_before_the_first_full_step_leave_a_world_that_goes_on() {
                 .rigid(body, ColliderBuilder::ball(real(0.25)).density(real(500.0)))
                 .0
         };
-        let (lower, _) = (ball(1.252), ball(30.0));
+        let (lower, upper) = (ball(1.252), ball(30.0));
+        if has_joint {
+            let other = ball(31.0);
+            let rod = RopeJointBuilder::new(2.0).build();
+            scene.world.insert_impulse_joint(upper, other, rod);
+        }
         spoil(&mut scene, sick, lower);
         for _ in 0..60 {
             scene

@@ -32,6 +32,8 @@ pub struct FlexBody {
     pub(super) contact_force: Vec<f64>,
     pub(super) reaction: Vec<f64>,
     pub(super) energy_reserve: f64,
+    /// Steps on end that were not finished.
+    pub(super) n_unfinished: u32,
     pub(super) frequency: OnceLock<f64>,
     pub(super) carrier: RigidBodyHandle,
     pub(super) collider: ColliderHandle,
@@ -69,6 +71,7 @@ impl FlexBody {
             contact_force: zeros.clone(),
             reaction: zeros,
             energy_reserve: 0.0,
+            n_unfinished: 0,
             frequency: OnceLock::new(),
             carrier: RigidBodyHandle::invalid(),
             collider: ColliderHandle::invalid(),
@@ -105,21 +108,6 @@ impl FlexBody {
         self.nodal_force = nodal_force;
         self.body_force = body_force;
         self.gravity_scale = gravity_scale;
-    }
-
-    /// Whether no step has been taken with the body.
-    pub(crate) fn is_new(&self) -> bool {
-        self.is_new
-    }
-
-    /// Notes that a step has been taken with it.
-    pub(crate) fn greet(&mut self) {
-        self.is_new = false;
-    }
-
-    /// How many calls of `pin_where` chose no node.
-    pub(crate) fn n_idle_pins(&self) -> usize {
-        self.n_idle_pins
     }
 
     /// The assembled body of large strain, if its material has a law for that; [`model`](Self::model) is it at rest then.
@@ -346,15 +334,6 @@ impl FlexBody {
         self.collider = collider;
     }
 
-    /// Whether the user has changed something since the last step.
-    pub(crate) fn is_disturbed(&self) -> bool {
-        self.is_disturbed
-    }
-
-    pub(crate) fn clear_disturbance(&mut self) {
-        self.is_disturbed = false;
-    }
-
     pub(crate) fn set_quarantined(&mut self, is_quarantined: bool) {
         self.is_quarantined = is_quarantined;
         self.is_disturbed = true;
@@ -405,14 +384,6 @@ impl FlexBody {
         if !self.is_started {
             self.state.clear_accelerations();
         }
-    }
-
-    pub(crate) fn energy_reserve(&self) -> f64 {
-        self.energy_reserve
-    }
-
-    pub(crate) fn set_energy_reserve(&mut self, reserve: f64) {
-        self.energy_reserve = reserve;
     }
 
     pub(crate) fn contact_force_mut(&mut self) -> &mut [f64] {

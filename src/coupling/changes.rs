@@ -21,6 +21,8 @@ pub(super) struct Changes {
     bodies: Vec<RigidBodyHandle>,
     /// Marked colliders and those of marked bodies; some twice.
     colliders: Vec<ColliderHandle>,
+    /// Those that the user has inserted, moved or altered since rapier's last step; some twice.
+    altered: Vec<ColliderHandle>,
     /// What the next step is compared with: the number of colliders, and gravity.
     noted: (usize, Vector),
 }
@@ -59,6 +61,11 @@ impl Changes {
         &self.colliders
     }
 
+    /// Whether the user has inserted, moved or altered a collider since rapier's last step.
+    pub fn has_altered(&self, collider: ColliderHandle) -> bool {
+        self.altered.contains(&collider)
+    }
+
     /// Gathers what was changed since rapier's last step, and says whether it may concern what sleeps. Where nothing sleeps, nothing
     /// does.
     pub fn look(
@@ -71,10 +78,13 @@ impl Changes {
         let (n_colliders, gravity) = self.noted;
         let is_counted = n_colliders == sets.colliders.len();
         let is_weighed = gravity == sets.gravity;
-        let mut changed = self.colliders.iter();
+        self.altered.clear();
+        let changed = self.colliders.iter().copied();
+        self.altered
+            .extend(changed.filter(|&handle| is_altered(sets, flex, handle)));
         let change = if !is_weighed {
             WorldChange::Everywhere
-        } else if !is_counted || changed.any(|&handle| is_altered(sets, flex, handle)) {
+        } else if !is_counted || !self.altered.is_empty() {
             WorldChange::Somewhere
         } else {
             return WorldChange::None;

@@ -114,6 +114,11 @@ impl Claims {
         self.changes.colliders()
     }
 
+    /// Whether the user has inserted, moved or altered a collider since rapier's last step.
+    pub fn has_altered(&self, collider: ColliderHandle) -> bool {
+        self.changes.has_altered(collider)
+    }
+
     /// Claimed rigid bodies, in the order they were reached.
     pub fn rigid(&self) -> &[RigidBodyHandle] {
         self.walk.members.rigid()

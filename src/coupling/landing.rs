@@ -14,16 +14,19 @@ pub(crate) struct Landing {
     pub acceleration: [f64; 3],
     /// What of it the user's forces and gravity give to the body alone.
     pub drive: [f64; 3],
+    /// Whether the step of its island is not finished: it has not come to rest, however still it is.
+    pub is_unfinished: bool,
 }
 
 impl Landing {
     /// Notes the end of a claimed body's step.
-    pub fn new(handle: RigidBodyHandle, block: &RigidBlock) -> Self {
+    pub fn new(handle: RigidBodyHandle, block: &RigidBlock, is_unfinished: bool) -> Self {
         Self {
             handle,
             motion: *block.current(),
             acceleration: block.smooth_end,
             drive: block.drive(),
+            is_unfinished,
         }
     }
 }

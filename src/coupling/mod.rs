@@ -73,7 +73,7 @@ pub(crate) use landing::Landing;
 pub(crate) use links::Push;
 pub(crate) use loan::{Lent, Loan};
 pub(crate) use memory::Memory;
-pub(crate) use newcomers::overlaps_of_newcomers;
+pub(crate) use newcomers::{PutTogether, overlaps_of_newcomers};
 pub(crate) use pool::FlexPool;
 pub(crate) use pressed_point::PressedPoint;
 pub(crate) use quarantine::{quarantine, quarantine_carriers};

@@ -1,11 +1,11 @@
-//! What a body that has just been inserted overlaps: looked at once, in its first step, when all that was inserted with it is there.
+//! What a body that has just been put where it is overlaps: looked at once, in its first step there, when all that was inserted with it is there.
 
 use super::claim::Claims;
 use super::places::placed_on;
 use super::roster::Roster;
 use super::sets::RapierSets;
 use super::walk::ClaimedPair;
-use crate::body::{FlexBody, FlexBodySet};
+use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
 use crate::math::{Vec2, from_rapier, node_vec};
 use crate::rapier::parry::query;
 use crate::rapier::prelude::*;
@@ -14,7 +14,8 @@ use crate::rapier::prelude::*;
 /// rounding of rapier's numbers, and boxes at rest in rapier by a few thousandths of their size.
 pub(super) const DEEP: f64 = 1e-2;
 
-/// The pairs of this step in which a body that has not been stepped before overlaps what it meets.
+/// The pairs of this step in which a flexible body that has not been stepped before, or a rigid one that the user has inserted, moved or altered,
+/// overlaps what it meets.
 pub(crate) fn overlaps_of_newcomers(
     claims: &Claims,
     sets: &RapierSets<'_>,
@@ -27,7 +28,7 @@ pub(crate) fn overlaps_of_newcomers(
     };
     let overlaps = |pair: &ClaimedPair| match *pair {
         ClaimedPair::FlexRigid(slot, other) => {
-            let body = body_of(slot).filter(|body| body.is_new());
+            let body = body_of(slot).filter(|body| body.is_new() || claims.has_altered(other));
             body.is_some_and(|body| depth_in(body, other, sets) > least_depth(flex, slot))
         }
         ClaimedPair::FlexFlex(one, other) => {
@@ -40,6 +41,71 @@ pub(crate) fn overlaps_of_newcomers(
         ClaimedPair::RigidRigid(..) => false,
     };
     claims.pairs().iter().copied().filter(overlaps).collect()
+}
+
+/// What was put into each other, until it is apart: rows of contact tell of the overlaps that they part, and may find no way out of deep ones.
+#[derive(Debug, Default)]
+pub(crate) struct PutTogether {
+    pairs: Vec<(FlexBodyHandle, Other)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Other {
+    Rigid(ColliderHandle),
+    Flex(FlexBodyHandle),
+}
+
+impl PutTogether {
+    /// Notes pairs of this step.
+    pub fn note(&mut self, pairs: &[ClaimedPair], flex: &Roster, flex_bodies: &FlexBodySet) {
+        let handle = |slot: usize| {
+            let found = flex_bodies.at_index(flex[slot].index);
+            found.map(|(handle, _)| handle)
+        };
+        for pair in pairs {
+            let (one, other) = match *pair {
+                ClaimedPair::FlexRigid(one, other) => (handle(one), Some(Other::Rigid(other))),
+                ClaimedPair::FlexFlex(one, other) => (handle(one), handle(other).map(Other::Flex)),
+                ClaimedPair::RigidRigid(..) => continue,
+            };
+            if let (Some(one), Some(other)) = (one, other)
+                && !self.pairs.contains(&(one, other))
+            {
+                self.pairs.push((one, other));
+            }
+        }
+    }
+
+    /// The largest overlap that is left where a step ends (m); what is apart is forgotten.
+    pub fn measure(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> f64 {
+        let mut largest = 0.0_f64;
+        self.pairs.retain(|&(one, other)| {
+            let in_world = |handle| {
+                let body = flex_bodies.get(handle);
+                body.filter(|body| !body.is_quarantined())
+            };
+            let Some(body) = in_world(one) else {
+                return false;
+            };
+            let edge = |body: &FlexBody| body.mesh().boundary().mean_segment_length();
+            let (depth, edge) = match other {
+                Other::Rigid(collider) => (depth_in(body, collider, sets), edge(body)),
+                Other::Flex(other) => match in_world(other) {
+                    Some(met) => {
+                        let surfaces = [body, met].map(FlexBody::collider_handle);
+                        (
+                            crossing(surfaces[0], surfaces[1], sets),
+                            edge(body).min(edge(met)),
+                        )
+                    }
+                    None => return false,
+                },
+            };
+            largest = largest.max(depth);
+            depth > DEEP * edge
+        });
+        largest
+    }
 }
 
 /// Depth from which a body overlaps (m).

@@ -89,16 +89,15 @@ impl<'a> RapierSets<'a> {
     /// numbers: a body that is disabled or removed after a step without length, and before any other, leaves them out of range and
     /// rapier panics. A step of empty sets founds the islands while there is nothing to number.
     ///
-    /// Worlds with joints or soft bodies are left alone: one that was restored from a snapshot knows of these links only by founding its
-    /// islands with them.
+    /// Rapier hears of impulse joints as if all were new: one that was restored from a snapshot knows of them only by founding its islands
+    /// with them. Of multibodies and soft bodies it cannot be told again, and worlds that have any are left alone.
     fn found_islands(&mut self) {
         let mut all = self.bodies.iter();
         let is_new = self.islands.active_bodies().next().is_none()
             && !all.any(|(_, body)| body.is_sleeping());
-        let has_links = self.impulse_joints.iter().next().is_some()
-            || self.multibody_joints.iter().next().is_some()
+        let has_other_links = self.multibody_joints.iter().next().is_some()
             || self.soft_bodies.iter().next().is_some();
-        if is_new && !has_links {
+        if is_new && !has_other_links {
             PhysicsPipeline::new().step(
                 Vector::ZERO,
                 &IntegrationParameters::default(),
@@ -114,6 +113,7 @@ impl<'a> RapierSets<'a> {
                 &(),
                 &(),
             );
+            let _all_told_anew = self.impulse_joints.iter_mut();
         }
     }
 

@@ -74,12 +74,12 @@ pub(super) fn reaches(sets: &RapierSets<'_>, surface: ColliderHandle, other: &Aa
     polyline.is_none_or(|polyline| polyline.bvh().intersect_aabb(other).next().is_some())
 }
 
-/// Keeps the carrier of a body awake while a node moves, or while it is attached to something, of which rapier knows nothing. To be
-/// called before rapier's step counts the time that it has been still.
+/// Keeps the carrier of a body awake while a node moves, or while it is restless: attached to something, of which rapier knows nothing, or in a
+/// step that is not finished. To be called before rapier's step counts the time that it has been still.
 pub(crate) fn keep_awake(
     body: &FlexBody,
     velocities: &[f64],
-    is_attached: bool,
+    is_restless: bool,
     sets: &mut RapierSets<'_>,
 ) {
     let handle = body.rigid_body_handle();
@@ -93,7 +93,7 @@ pub(crate) fn keep_awake(
     if activation.normalized_linear_threshold < 0.0 || !is_due {
         return;
     }
-    if (is_attached || moves(body, velocities, patience, sets))
+    if (is_restless || moves(body, velocities, patience, sets))
         && let Some(carrier) = sets.bodies.get_mut(handle)
     {
         // The step adds its length.
@@ -101,7 +101,8 @@ pub(crate) fn keep_awake(
     }
 }
 
-/// Keeps a claimed rigid body awake that its solved step moves faster than rapier lets a body at rest, or that is attached to a flexible one.
+/// Keeps a claimed rigid body awake that its solved step moves faster than rapier lets a body at rest, or whose step is not finished, or that is
+/// attached to a flexible one.
 /// Rapier counts how long a body has been still by the steps before, and would stop it in the step in which it is hit.
 pub(crate) fn keep_landing_awake(
     landing: &Landing,
@@ -137,7 +138,7 @@ pub(crate) fn keep_landing_awake(
     let moved = (motion.centre - from_rapier(centre)).norm();
     // As rapier judges: half of the way of the farthest point.
     let is_moving = 0.5 * speed.max(moved / f64::from(dt)) >= f64::from(threshold);
-    if (is_moving || is_attached())
+    if (is_moving || landing.is_unfinished || is_attached())
         && let Some(body) = bodies.get_mut(landing.handle)
     {
         // The step adds its length.
@@ -145,12 +146,12 @@ pub(crate) fn keep_landing_awake(
     }
 }
 
-/// Wakes the carrier of a body that moves all the same: surfaces that were written set its timer to zero, and a step may be longer
+/// Wakes the carrier of a body that moves, or is restless, all the same: surfaces that were written set its timer to zero, and a step may be longer
 /// than the time until sleep.
 pub(crate) fn wake_moving(
     body: &FlexBody,
     velocities: &[f64],
-    is_attached: bool,
+    is_restless: bool,
     sets: &mut RapierSets<'_>,
 ) {
     let handle = body.rigid_body_handle();
@@ -159,7 +160,7 @@ pub(crate) fn wake_moving(
         return;
     };
     let patience = carrier.activation().time_until_sleep;
-    if is_attached || moves(body, velocities, patience, sets) {
+    if is_restless || moves(body, velocities, patience, sets) {
         sets.islands.wake_up(sets.bodies, handle, true);
     }
 }

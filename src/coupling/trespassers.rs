@@ -73,7 +73,8 @@ impl Trespassers {
                     let surface = flexible.collider_handle();
                     let least = DEEP * flexible.mesh().boundary().mean_segment_length();
                     let depth = depth_in(flexible, collider, sets);
-                    if depth > known.max(least) && claims.may_touch(sets, surface, collider) {
+                    let mut may_touch = || claims.may_touch(sets, surface, collider);
+                    if depth > known.max(least) && pushes(flexible, collider, sets) && may_touch() {
                         self.found.push(Trespasser {
                             body,
                             collider,
@@ -85,6 +86,12 @@ impl Trespassers {
         }
         &self.found
     }
+}
+
+/// Whether what a body meets at a collider is to be solved for.
+fn pushes(body: &FlexBody, collider: ColliderHandle, sets: &RapierSets<'_>) -> bool {
+    let groups = sets.colliders.get(collider).map(Collider::solver_groups);
+    groups.is_some_and(|groups| body.contact_settings().solver_groups.test(groups))
 }
 
 fn flexible_in_world(bodies: &FlexBodySet) -> impl Iterator<Item = (FlexBodyHandle, &FlexBody)> {

@@ -3,7 +3,7 @@
 use super::clock::Clock;
 use super::names::Names;
 use super::outcome::Outcome;
-use super::quality::Unsolved;
+use super::quality::{Quality, Unsolved};
 use super::report::{ContactReport, JointReport, StepReport};
 use super::solved::{Entry, SolvedPart};
 use crate::body::FlexBodySet;
@@ -38,6 +38,7 @@ impl Books<'_> {
                 self.events.note(point, names.sets);
             }
         }
+        entry.is_unfinished |= part.summary.quality() == Quality::Unfinished;
         self.outcome.enter(part, entry);
         self.report.enter(part, names, entry);
         entry.n_parts += 1;

@@ -45,14 +45,17 @@ impl Solver {
     }
 
     /// Whether a part of the step of the island that was gathered, which has been cut `n_cuts` times, may be solved in halves. Links of
-    /// multibodies move as rapier moves them, in one piece.
+    /// multibodies move as rapier moves them, in one piece. What could not be finished in the steps before, as bodies that were put into each other
+    /// for good, is cut once less for each: it would not be finished in all the parts either, and cost their number.
     pub(super) fn may_be_cut(
         &self,
         step: Step,
         n_cuts: usize,
         parameters: &FlexParameters,
+        flex_bodies: &FlexBodySet,
     ) -> bool {
         let most = parameters.most_cutbacks(self.island.has_large());
+        let most = most.saturating_sub(self.n_unfinished(flex_bodies));
         let is_long = 0.5 * step.dt >= SHORTEST;
         let has_links = !self.gatherer.seats.links().is_empty();
         n_cuts < most && is_long && !step.is_explicit() && !has_links
@@ -85,10 +88,10 @@ impl Solver {
         let owes_more = -reserve > share * summary.brought() + (-before).max(0.0);
         let is_coarse = owes_more && !summary.is_parting;
         let is_good = !is_coarse && !summary.is_unsolved();
-        let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters);
+        let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters, flex_bodies);
         let goes_on = !may_be_cut && summary.quality() == Quality::Unfinished && {
             let n_cuts = part.n_cuts.saturating_sub(FURTHER);
-            self.may_be_cut(step, n_cuts, parameters) && entry.may_go_further()
+            self.may_be_cut(step, n_cuts, parameters, flex_bodies) && entry.may_go_further()
         };
         if !is_good && may_be_cut || goes_on {
             if part.n_cuts > 0 && task.may_call_for_room {

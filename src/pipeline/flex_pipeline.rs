@@ -6,7 +6,7 @@ use super::outcome::Outcome;
 use super::report::StepReport;
 use super::settings::FlexParameters;
 use crate::body::{FlexBodyHandle, FlexBodySet};
-use crate::coupling::{Claims, EventBook, Lent, Memory, RapierSets, Trespassers};
+use crate::coupling::{Claims, EventBook, Lent, Memory, PutTogether, RapierSets, Trespassers};
 use crate::integrator::Beta2;
 use crate::kkt::{ContactMethod, ImpactTreatment};
 use crate::linalg::complementarity::Method;
@@ -48,6 +48,7 @@ pub struct FlexPipeline {
     pub(super) report: StepReport,
     pub(super) lent: Lent,
     pub(super) trespassers: Trespassers,
+    pub(super) put_together: PutTogether,
     /// Bodies taken out of the world in this step.
     pub(super) sick: Vec<FlexBodyHandle>,
 }
@@ -71,6 +72,7 @@ impl FlexPipeline {
             report: StepReport::default(),
             lent: Lent::default(),
             trespassers: Trespassers::default(),
+            put_together: PutTogether::default(),
             sick: Vec::new(),
         }
     }

@@ -167,7 +167,8 @@ impl Solver {
         self.gatherer
             .gather(sources, books.memory, flex_bodies, &mut self.island)?;
         books.clock.lap(&mut books.report.times.gather);
-        let settings = settings_of(task, self.may_be_cut(step, part.n_cuts, parameters));
+        let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters, flex_bodies);
+        let settings = settings_of(task, may_be_cut);
         let before = self.reserve(flex_bodies);
         let mut reserve = before;
         let memory = if part.span.is_first() {
@@ -219,11 +220,21 @@ impl Solver {
 
     /// Energy that contact has taken from the island's bodies and may return (J).
     fn reserve(&self, flex_bodies: &FlexBodySet) -> f64 {
+        let bodies = self.flexible(flex_bodies);
+        bodies.map(FlexBody::energy_reserve).sum()
+    }
+
+    /// Steps on end that were not finished for any of the island's bodies.
+    pub(super) fn n_unfinished(&self, flex_bodies: &FlexBodySet) -> usize {
+        let bodies = self.flexible(flex_bodies);
+        bodies.map(FlexBody::n_unfinished).min().unwrap_or(0) as usize
+    }
+
+    fn flexible<'a>(&self, flex_bodies: &'a FlexBodySet) -> impl Iterator<Item = &'a FlexBody> {
         let indices = self.island.flex_index.iter().flatten();
         indices
             .filter_map(|&index| flex_bodies.at_index(index))
-            .map(|(_, body)| body.energy_reserve())
-            .sum()
+            .map(|(_, body)| body)
     }
 }
 

@@ -1,11 +1,11 @@
-//! What a body's description asked for and is likely a mistake, told in the report of its first step.
+//! What the user asked for and is likely a mistake, told in the report of the first step after it.
 
 use super::participant::Participant;
 use crate::body::{FlexBodyHandle, FlexBodySet};
-use crate::coupling::{ClaimedPair, Claims, RapierSets, overlaps_of_newcomers};
+use crate::coupling::{ClaimedPair, Claims, PutTogether, RapierSets, overlaps_of_newcomers};
 use std::fmt;
 
-/// Something about a body that has just been inserted. Nothing is refused: the step was taken.
+/// Something about a body that has just been inserted, or put where it is. Nothing is refused: the step was taken.
 ///
 /// Its `Display` says what to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub enum InsertionNote {
         /// How many such calls.
         n_calls: usize,
     },
-    /// A body was put into another, from which it parts by and by.
+    /// A body was put into another, or a rigid body, inserted, moved or altered, into it; they part by and by, where they can.
     Overlap {
         /// The body.
         body: FlexBodyHandle,
@@ -39,28 +39,20 @@ impl fmt::Display for InsertionNote {
             ),
             Self::Overlap { body, with } => write!(
                 f,
-                "{body:?} was inserted where {with:?} is, and parts from it by and by: insert it apart, or keep the two apart by `collision_groups`"
+                "{body:?} and {with:?} were put into each other, and part by and by: put them apart, or let them not meet by `collision_groups`"
             ),
         }
     }
 }
 
-/// What is odd about bodies that take their first step.
+/// What is odd about bodies that take their first step where they are; overlaps are noted, to be measured until they are apart.
 pub(super) fn notes_of_newcomers(
     claims: &Claims,
     sets: &RapierSets<'_>,
     flex_bodies: &FlexBodySet,
+    put_together: &mut PutTogether,
 ) -> Vec<InsertionNote> {
     let mut notes = Vec::new();
-    let mut bodies = claims.flex.iter();
-    let is_new = |index| {
-        flex_bodies
-            .at_index(index)
-            .is_some_and(|(_, body)| body.is_new())
-    };
-    if !bodies.any(|flex| is_new(flex.index)) {
-        return notes;
-    }
     let handle = |flex: usize| {
         let index = claims.flex[flex].index;
         flex_bodies.at_index(index).map(|(handle, _)| handle)
@@ -76,7 +68,9 @@ pub(super) fn notes_of_newcomers(
             });
         }
     }
-    for pair in overlaps_of_newcomers(claims, sets, flex_bodies) {
+    let overlaps = overlaps_of_newcomers(claims, sets, flex_bodies);
+    put_together.note(&overlaps, &claims.flex, flex_bodies);
+    for pair in overlaps {
         let (body, with) = match pair {
             ClaimedPair::FlexRigid(flex, other) => (handle(flex), Some(Participant::Rigid(other))),
             ClaimedPair::FlexFlex(one, other) => {

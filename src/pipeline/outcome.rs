@@ -9,11 +9,22 @@ use crate::coupling::{
 use crate::rapier::prelude::ImpulseJointHandle;
 use crate::system::Block;
 
+/// The end of a flexible body.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FlexEnd {
+    /// Its slot in the set.
+    pub index: u32,
+    /// Energy that contact may return to it (J).
+    pub reserve: f64,
+    /// Whether the step of its island is not finished.
+    pub is_unfinished: bool,
+}
+
 /// The ends of the members of all islands of a step.
 #[derive(Debug, Default)]
 pub(super) struct Outcome {
-    /// Flexible bodies, by their slots in the set, with the energy that contact may return to them (J).
-    pub flexible: Vec<(u32, f64)>,
+    /// Where flexible bodies end.
+    pub flexible: Vec<FlexEnd>,
     /// Where claimed rigid bodies end.
     pub landings: Vec<Landing>,
     /// What links of multibodies were pushed by.
@@ -40,13 +51,18 @@ impl Outcome {
         let island = part.island;
         for &(block, handle) in part.seats.claimed() {
             if let Block::Rigid(block) = &island.blocks[block] {
-                self.landings.push(Landing::new(handle, block));
+                self.landings
+                    .push(Landing::new(handle, block, entry.is_unfinished));
             }
         }
         self.pushes.extend(part.seats.pushes(island));
         let n_flex = island.flex_index.iter().flatten().count().max(1);
         for &index in island.flex_index.iter().flatten() {
-            self.flexible.push((index, part.reserve / n_flex as f64));
+            self.flexible.push(FlexEnd {
+                index,
+                reserve: part.reserve / n_flex as f64,
+                is_unfinished: entry.is_unfinished,
+            });
         }
     }
 
@@ -78,18 +94,18 @@ impl Outcome {
         }
     }
 
-    /// Keeps what moves awake: the carriers of flexible bodies, and claimed rigid bodies.
+    /// Keeps what moves, or is not finished, awake: the carriers of flexible bodies, and claimed rigid bodies.
     pub fn keep_awake(
         &self,
         pool: &FlexPool,
         sets: &mut RapierSets<'_>,
         flex_bodies: &FlexBodySet,
     ) {
-        for &(index, _) in &self.flexible {
-            let block = pool.block(index);
-            if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(index)) {
-                let is_attached = flex_bodies.is_attached(handle);
-                keep_awake(body, block.velocities(), is_attached, sets);
+        for end in &self.flexible {
+            let block = pool.block(end.index);
+            if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(end.index)) {
+                let is_restless = end.is_unfinished || flex_bodies.is_attached(handle);
+                keep_awake(body, block.velocities(), is_restless, sets);
             }
         }
         for landing in &self.landings {
@@ -105,11 +121,11 @@ impl Outcome {
         sets: &mut RapierSets<'_>,
         flex_bodies: &FlexBodySet,
     ) {
-        for &(index, _) in &self.flexible {
-            let block = pool.block(index);
-            if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(index)) {
-                let is_attached = flex_bodies.is_attached(handle);
-                wake_moving(body, block.velocities(), is_attached, sets);
+        for end in &self.flexible {
+            let block = pool.block(end.index);
+            if let (Some(block), Some((handle, body))) = (block, flex_bodies.at_index(end.index)) {
+                let is_restless = end.is_unfinished || flex_bodies.is_attached(handle);
+                wake_moving(body, block.velocities(), is_restless, sets);
             }
         }
     }

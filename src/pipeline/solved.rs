@@ -103,6 +103,8 @@ pub(super) struct Entry {
     n_further: usize,
     /// Whether the report tells that one of the parts was not solved.
     pub is_told: bool,
+    /// Whether one of the parts ended before the laws held: its members have not come to rest, however still they are.
+    pub is_unfinished: bool,
     /// What it has been counted for in the report.
     counted: [bool; 2],
 }
@@ -117,6 +119,7 @@ impl Entry {
             n_parts: 0,
             n_further: 0,
             is_told: false,
+            is_unfinished: false,
             counted: [false; 2],
         }
     }

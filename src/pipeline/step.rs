@@ -65,7 +65,7 @@ impl FlexPipeline {
         check_colliders(sets, self.claims.marked_colliders())?;
         let is_quiet = step.dt > 0.0 && change == WorldChange::None;
         if is_quiet && self.claims.is_all_asleep(sets, flex_bodies) {
-            self.step_asleep(sets, flex_bodies.len());
+            self.step_asleep(sets, flex_bodies);
             return Ok(());
         }
         check_bodies(&self.parameters, step.dt, sets, flex_bodies)?;
@@ -102,8 +102,8 @@ impl FlexPipeline {
         }
     }
 
-    /// Rapier's own step, where everything sleeps: the contacts of `n` flexible bodies stay as they are.
-    fn step_asleep(&mut self, sets: &mut RapierSets<'_>, n: usize) {
+    /// Rapier's own step, where everything sleeps: the contacts of flexible bodies stay as they are.
+    fn step_asleep(&mut self, sets: &mut RapierSets<'_>, flex_bodies: &FlexBodySet) {
         let book = &self.memory.hooks;
         let gate = self.lent.gate(sets.hooks, book, &self.claims, true);
         sets.step_through(&gate, &self.events.gate(sets.events, Some(&self.claims)));
@@ -111,7 +111,8 @@ impl FlexPipeline {
             self.events.tell(sets);
         }
         self.report.note_quarantine(sets);
-        self.report.n_asleep = n;
+        self.report.n_asleep = flex_bodies.len();
+        self.tell_what_was_put_together(sets, flex_bodies);
         self.report.keep_all_contacts();
     }
 
@@ -168,7 +169,7 @@ impl FlexPipeline {
         }
         self.claims.walk(sets);
         self.solver.retain(sets, flex_bodies);
-        let notes = notes_of_newcomers(&self.claims, sets, flex_bodies);
+        let notes = notes_of_newcomers(&self.claims, sets, flex_bodies, &mut self.put_together);
         self.report.insertion_notes.extend(notes);
         clock.lap(&mut self.report.times.claim);
         Ok(())
@@ -230,12 +231,13 @@ impl FlexPipeline {
                 .keep_contacts(|one| flex.sleeps(sets, one.owner()));
         }
         self.memory.turn_over();
-        for &(index, reserve) in &self.outcome.flexible {
-            let Some(body) = flex_bodies.at_index_mut(index) else {
+        for end in &self.outcome.flexible {
+            let Some(body) = flex_bodies.at_index_mut(end.index) else {
                 continue;
             };
-            body.set_energy_reserve(reserve);
-            self.solver.commit(index, body);
+            body.set_energy_reserve(end.reserve);
+            body.count_step(end.is_unfinished);
+            self.solver.commit(end.index, body);
             let is_still = rests(body, sets);
             write_surface(
                 body,
@@ -247,12 +249,19 @@ impl FlexPipeline {
             stop_if_asleep(body, sets.bodies);
             body.greet();
         }
-        let solved = self.outcome.flexible.iter().map(|(index, _)| *index);
+        let solved = self.outcome.flexible.iter().map(|end| end.index);
         list_overbent(solved, flex_bodies, &mut self.report.overbent);
         let known = self.report.gap_violation;
         let claims = &mut self.claims;
         for one in self.trespassers.find(claims, sets, flex_bodies, known) {
             self.report.tell(one.into());
         }
+        self.tell_what_was_put_together(sets, flex_bodies);
+    }
+
+    /// Tells how deep what the user has put into each other still is.
+    fn tell_what_was_put_together(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
+        let depth = self.put_together.measure(sets, flex_bodies);
+        self.report.gap_violation = self.report.gap_violation.max(depth);
     }
 }

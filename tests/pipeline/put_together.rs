@@ -1,0 +1,109 @@
+//! Rigid bodies that the user puts into flexible ones that have been there before.
+
+use crate::common::{Scene, real, vec2};
+use foil2d::pipeline::{InsertionNote, Participant, Quality};
+use foil2d::prelude::*;
+use foil2d::rapier::prelude::*;
+
+/// A beam of 4 m by 0.2 m at `[0, y]`, held at both ends.
+fn beam(y: f64) -> FlexBodyBuilder {
+    FlexBodyBuilder::rectangle([4.0, 0.2], [20, 2])
+        .material(LinearElastic::plane_stress(1e7, 0.3).density(1000.0))
+        .translation([0.0, y])
+        .pin_where(|[x, _]| x.min(4.0 - x) < 1e-9, Pin::both())
+}
+
+/// A box of half a side `half` at `at`, which may sleep.
+fn put(
+    scene: &mut Scene,
+    half: f64,
+    at: [f64; 2],
+    groups: InteractionGroups,
+) -> (RigidBodyHandle, ColliderHandle) {
+    let body = RigidBodyBuilder::dynamic().translation(vec2(at[0], at[1]));
+    let shape = ColliderBuilder::cuboid(real(half), real(half));
+    scene.world.insert(body, shape.solver_groups(groups))
+}
+
+fn notes_overlap(scene: &Scene, body: FlexBodyHandle, with: ColliderHandle) -> bool {
+    let with = Participant::Rigid(with);
+    let notes = scene.report().insertion_notes();
+    notes.contains(&InsertionNote::Overlap { body, with })
+}
+
+/// A box inserted over a beam that has been there for a while, or moved into it, is told once, and its overlap as long as there is one, whatever
+/// the contact stage makes of it.
+#[test]
+fn a_body_put_into_an_older_one_is_told_until_it_is_out() {
+    for is_moved in [false, true] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        let beam = scene.flexible(beam(0.5));
+        scene.steps(20);
+        let inside = [2.0, 0.62];
+        let start = if is_moved { [2.0, 8.0] } else { inside };
+        let (body, collider) = put(&mut scene, 0.3, start, InteractionGroups::all());
+        if is_moved {
+            scene.step();
+            assert!(!notes_overlap(&scene, beam, collider));
+            scene.world.bodies[body].set_translation(vec2(inside[0], inside[1]), true);
+        }
+        for step in 0..60 {
+            scene.try_step().expect("a step");
+            assert_eq!(
+                notes_overlap(&scene, beam, collider),
+                step == 0,
+                "step {step}"
+            );
+            // The beam's axis is in the box: at least half of its thickness is.
+            let place = scene.world.bodies[body].position();
+            let nodes = scene.body(beam).positions().chunks_exact(2);
+            let depths = nodes.map(|node| {
+                let local = place.inverse_transform_point(vec2(node[0], node[1]));
+                0.3 - f64::from(local.x.abs().max(local.y.abs()))
+            });
+            let deepest = depths.fold(0.0, f64::max);
+            let told = scene.report().gap_violation();
+            assert!(
+                deepest < 0.01 || told > 0.3 * deepest,
+                "step {step}: {deepest} m, told {told}"
+            );
+        }
+    }
+}
+
+/// What cannot be parted, a box in the ground and in a beam that is held, stays told and awake, and costs one try in the end.
+#[test]
+fn what_is_stuck_for_good_is_told_in_every_step_and_costs_one_try() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.4);
+    scene.flexible(beam(0.5).small_strain());
+    scene.steps(20);
+    let (body, _) = put(&mut scene, 1.04, [2.14, 0.77], InteractionGroups::all());
+    for step in 0..120 {
+        let report = scene.try_step().expect("a step");
+        let (quality, overlap, n_parts) =
+            (report.quality(), report.gap_violation(), report.n_parts());
+        // The first steps part what can be parted.
+        if step >= 10 {
+            assert_eq!(quality, Quality::Unfinished, "step {step}");
+            assert!(overlap > 0.01, "step {step}: {overlap} m");
+            assert_eq!(n_parts, 1, "step {step}");
+        }
+        assert!(!scene.world.bodies[body].is_sleeping(), "step {step}");
+    }
+}
+
+/// Solver groups that let nothing push leave nothing to be told.
+#[test]
+fn what_no_solver_group_lets_push_is_no_trespasser() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let beam = scene.flexible(beam(0.5));
+    let (body, collider) = put(&mut scene, 0.3, [2.0, 1.5], InteractionGroups::none());
+    for _ in 0..60 {
+        scene.step();
+        assert_eq!(scene.report().quality(), Quality::Solved);
+        assert!(!notes_overlap(&scene, beam, collider));
+    }
+    let y = scene.world.bodies[body].translation().y;
+    assert!(y < -2.0, "it falls through the beam: {y} m");
+}
