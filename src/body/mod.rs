@@ -11,7 +11,6 @@ mod flex_body;
 mod frame;
 mod handle;
 mod kept_motion;
-mod marks;
 mod pick;
 mod pin;
 #[cfg(feature = "serde-serialize")]

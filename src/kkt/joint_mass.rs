@@ -9,12 +9,23 @@
 //! again, and nothing left to do for these. Nodes without mass follow what holds them as springs do, and need none of this.
 
 use super::island::{Island, KktError, SolveSettings};
+use super::joint_law::Finish;
 use super::joint_rows::ActiveJoint;
 use crate::constraint::joint::unit_wrench;
+use crate::linalg::complementarity::RowKind;
 use crate::math::Vec2;
 use crate::system::{Block, Point, Response};
 
 impl Island {
+    /// Solves the impact law and the joints' velocities where flexible blocks take part in joints only.
+    pub(super) fn finish_joints(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
+        if self.impact_rows(settings)? {
+            self.respond();
+            self.add_to_flexible(Response::Velocity, 1.0);
+        }
+        Ok(())
+    }
+
     /// Gives masses of flexible bodies the velocities of what they are joined to.
     ///
     /// # Errors
@@ -26,10 +37,60 @@ impl Island {
         if !self.has_joined_masses(settings) {
             return Ok(());
         }
+        self.take_jumps(settings)?;
         self.velocity_rows(settings, |contact| contact.is_hard);
         let takes_part = |tie: &ActiveJoint| tie.is_hard || tie.holds_masses();
         self.list_joint_velocities(settings, takes_part);
         self.push_joined_masses(Response::Velocity, settings.dt)
+    }
+
+    /// Part of `G'v'` of a row that is driven from outside (m/s or rad/s).
+    pub(super) fn driven_rate(&self, tie: &ActiveJoint) -> f64 {
+        self.along(tie, |block, _| match block {
+            Block::Rigid(block) if block.is_prescribed() => block.rates(),
+            _ => [0.0; 3],
+        })
+    }
+
+    /// Takes out of the velocities what a jump of the motion that drives a joint has left there.
+    ///
+    /// Displacements that are given, `Δx = d`, end with `v' = 2 d/dt - v`: where what drives a stiff body jumps from rest to `ḋ`, the body would end
+    /// with `2 ḋ`, and swing about `ḋ` from step to step. Velocities that had jumped as well, by what the body answers to that within a step,
+    /// `A⁻¹ Gᵀ W⁻¹ J`, would not.
+    fn take_jumps(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
+        self.rows.clear();
+        self.kinds.clear();
+        self.free.clear();
+        self.joint_rows.clear();
+        self.joint_gives.clear();
+        let mut jumps = false;
+        for (index, tie) in self.ties.iter().enumerate() {
+            let is_held =
+                matches!(tie.finish, Finish::Hold { .. }) && tie.is_movable && !tie.is_left;
+            if !is_held || !tie.holds_masses() {
+                continue;
+            }
+            let last = tie.row.remembered;
+            let jump = last.map_or(0.0, |last| tie.driven - last.driven);
+            jumps |= jump != 0.0;
+            self.joint_rows.push(index);
+            self.joint_gives.push(0.0);
+            self.free.push(jump);
+            self.kinds.push(RowKind::Bilateral);
+        }
+        if !jumps {
+            return Ok(());
+        }
+        self.acted.clear();
+        self.solve_impulses(Response::Velocity, settings.dt)?;
+        self.take_joint_impulses();
+        self.clear_impulses();
+        self.gather_rows(Response::Velocity);
+        self.add_to_rigid(Response::Velocity, 1.0);
+        self.respond();
+        self.add_to_flexible(Response::Velocity, 1.0);
+        self.clear_impulses();
+        Ok(())
     }
 
     /// Gives masses of flexible bodies the accelerations of what they are joined to.

@@ -9,7 +9,7 @@
 
 use super::island::{Island, SolveSettings};
 use super::joint_law::{Finish, resolve};
-use crate::constraint::joint::{JointGrip, JointRow, When, unit_wrench};
+use crate::constraint::joint::{JointGrip, JointRow, RememberedJoint, When, unit_wrench};
 use crate::linalg::complementarity::{RowKind, Status};
 use crate::math::{Vec2, perp};
 use crate::system::{Block, Point, Response};
@@ -48,6 +48,8 @@ pub struct ActiveJoint {
     /// Impulses along the rows of the beginning and of the end (N s or N m s).
     pub(super) kick: f64,
     pub(super) impulse: f64,
+    /// Rate at which it is driven from outside when the step ends (m/s or rad/s).
+    pub(super) driven: f64,
     /// Whether something can move the row at all.
     pub(super) is_movable: bool,
     /// Where the row is to be in the end (m or rad).
@@ -59,6 +61,14 @@ pub struct ActiveJoint {
 }
 
 impl ActiveJoint {
+    /// What the row leaves for the next step.
+    pub fn left_behind(&self) -> RememberedJoint {
+        RememberedJoint {
+            multiplier: self.multiplier,
+            driven: self.driven,
+        }
+    }
+
     /// Mean force or torque over the step, along `+∂q/∂x` (N or N m).
     pub fn force(&self, dt: f64) -> f64 {
         let impulse = (self.kick + self.impulse) / dt;
@@ -117,7 +127,7 @@ impl Island {
             let across = own_mobility(&self.blocks, (grips, perp(direction), view.2));
             let resolved = resolve(&row, is_hard, (start, mobility), settings);
             let status = match resolved.kind {
-                RowKind::Unilateral if row.remembered <= 0.0 => Status::Open,
+                RowKind::Unilateral if row.last_multiplier() <= 0.0 => Status::Open,
                 _ => Status::Stick,
             };
             self.ties.push(ActiveJoint {
@@ -135,10 +145,11 @@ impl Island {
                 direction,
                 applied: direction,
                 end: direction,
-                multiplier: row.remembered,
+                multiplier: row.last_multiplier(),
                 status,
                 kick: 0.0,
                 impulse: 0.0,
+                driven: 0.0,
                 is_movable: mobility > SINGULAR * across,
                 seen: f64::INFINITY,
                 n_same: 0,

@@ -16,7 +16,7 @@ const RESOLVED: f64 = 1.0;
 impl Island {
     /// Finds the stiffness that the last step's forces give against turning, and gives the blocks their share of it.
     pub(super) fn stiffen_turns(&mut self, settings: &SolveSettings) {
-        self.stiffen_by(settings, |tie| tie.row.remembered);
+        self.stiffen_by(settings, |tie| tie.row.last_multiplier());
     }
 
     /// The same from the forces of this iterate, where those of the last step were far off, as in an impact.

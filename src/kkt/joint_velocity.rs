@@ -29,7 +29,7 @@ impl Island {
                 continue;
             }
             let half = settings.b0 * tie.multiplier / settings.dt;
-            let stayed = tie.row.remembered > 0.0 && tie.start - tie.goal <= STAYED;
+            let stayed = tie.row.last_multiplier() > 0.0 && tie.start - tie.goal <= STAYED;
             tie.kick = if tie.finish == Finish::Limit && !stayed {
                 0.0
             } else {
@@ -54,9 +54,10 @@ impl Island {
             let tie = &mut self.ties[index];
             let grips = &mut self.end_grips[tie.row.grips.0..tie.row.grips.1];
             tie.end = tie.row.sign * tie.row.measure.aim(&self.blocks, grips, When::Now);
-            if !tie.is_hard && matches!(tie.finish, Finish::Hold { .. }) {
-                let share = self.unresolved_joint(&self.ties[index]);
-                self.ties[index].share = share;
+            if let (false, Finish::Hold { rate }) = (tie.is_hard, tie.finish) {
+                let tie = self.ties[index];
+                self.ties[index].share = self.unresolved_joint(&tie);
+                self.ties[index].driven = rate - self.driven_rate(&tie);
             }
         }
     }
@@ -117,7 +118,11 @@ impl Island {
     }
 
     /// `Σ w·f` over the grips of a row at the end; `f` of a flexible block has two components.
-    fn along(&self, tie: &ActiveJoint, value: impl Fn(&Block, &JointGrip) -> [f64; 3]) -> f64 {
+    pub(super) fn along(
+        &self,
+        tie: &ActiveJoint,
+        value: impl Fn(&Block, &JointGrip) -> [f64; 3],
+    ) -> f64 {
         let is_turn = tie.row.measure.is_turn();
         let mut sum = 0.0;
         for grip in self.end_grips_of(tie) {
@@ -218,15 +223,6 @@ impl Island {
                 }
             }
         }
-    }
-
-    /// Solves the impact law and the joints' velocities where flexible blocks take part in joints only.
-    pub(super) fn finish_joints(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
-        if self.impact_rows(settings)? {
-            self.respond();
-            self.add_to_flexible(Response::Velocity, 1.0);
-        }
-        Ok(())
     }
 
     /// Notes the impulses of a solved velocity problem.

@@ -65,6 +65,8 @@ pub struct FlexBlock {
     /// Increment of the centre's acceleration, world axes (m/s²).
     pub(super) shift: Vec2,
     pub(super) prescribed: Vec<f64>,
+    /// Work of the pins in the jumps of their motion (J).
+    pub(super) jump_work: f64,
     /// Reactions of the pins at the beginning of the step (N).
     pub(super) start_reaction: Vec<f64>,
     /// Gravity and other forces per mass; `None` if forces act on single nodes (m/s²).
@@ -162,6 +164,7 @@ impl FlexBlock {
             force_total: Vec2::zeros(),
             shift: Vec2::zeros(),
             prescribed: zeros(),
+            jump_work: 0.0,
             start_reaction: zeros(),
             uniform: None,
             displacement_q: zeros(),
@@ -251,6 +254,9 @@ impl FlexBlock {
             return self.predict_large(state);
         }
         self.factorize(step.weights)?;
+        if self.kind == Frame::Fixed {
+            self.take_up_jump();
+        }
         self.predict_operators(state);
         Ok(())
     }
@@ -283,7 +289,15 @@ impl FlexBlock {
     }
 
     fn predict_operators(&mut self, state: &FlexState) {
-        let start = [&state.displacement[..], &state.rate, &state.acceleration];
+        // In a fixed frame, rates are velocities.
+        let start = match self.kind {
+            Frame::Fixed => [
+                &state.displacement[..],
+                &self.start_velocity,
+                &self.start_acceleration,
+            ],
+            _ => [&state.displacement[..], &state.rate, &state.acceleration],
+        };
         Beta2::predict(
             self.step.dt,
             start,

@@ -297,7 +297,7 @@ impl FlexBlock {
         if let Some(large) = &self.large {
             return self.large_pin_work(large);
         }
-        let mut work = 0.0;
+        let mut work = self.jump_work;
         for &dof in &self.fixed_dofs {
             let moved = self.position[dof] - self.start_position[dof];
             if moved != 0.0 {

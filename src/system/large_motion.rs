@@ -3,6 +3,7 @@
 use super::flex_block::FlexBlock;
 use super::large_block::Large;
 use super::large_equation::total_decay;
+use super::pin_rates::RigidRates;
 use crate::body::{FlexState, Frame};
 use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec, sum_over};
 
@@ -28,7 +29,7 @@ impl FlexBlock {
 
     /// Writes the part of velocities that the step resolves, `A⁻¹ M v`: what a body of large strain tells a contact.
     ///
-    /// Rigid motion is all in it, of a vibration of frequency ω the share `1/(1 + ω² dt²/4)`. Vibrations that the step does not resolve change the
+    /// Rigid motion, which of a pinned body is that of its pins, is all in it, of a vibration of frequency ω the share `1/(1 + ω² dt²/4)`. Vibrations that the step does not resolve change the
     /// sign of their velocities in every step, and impulses that stopped those by what the whole body answers would throw it away. Impulses
     /// `P` that bring `G v` so measured to rest change the kinetic energy by at most `-½ v·GᵀW⁻¹G v`, `W = G A⁻¹ Gᵀ`, as `A⁻¹ M A⁻¹ <= A⁻¹`.
     pub(super) fn resolve(&mut self, position: &[f64], velocity: &[f64], resolved: &mut [f64]) {
@@ -41,10 +42,9 @@ impl FlexBlock {
         self.factor.solve_in_place(resolved);
         self.n_solves += 1;
         self.take_out_rigid(position, resolved);
-        if let Some((drift, spin, centre)) = rigid {
+        if let Some(rigid) = rigid {
             for node in 0..self.arms.node_mass.len() {
-                let arm = node_vec(position, node) - centre;
-                add_node_vec(resolved, node, drift + spin * perp(arm));
+                add_node_vec(resolved, node, rigid.at(node_vec(position, node)));
             }
         }
         for &dof in &self.fixed_dofs {
@@ -52,11 +52,21 @@ impl FlexBlock {
         }
     }
 
-    /// Takes the rigid motion that the masses see out of nodal velocities of a free body; returns velocity and spin about the centre.
-    fn take_out_rigid(&self, position: &[f64], velocity: &mut [f64]) -> Option<(Vec2, f64, Vec2)> {
-        if self.kind != Frame::Free {
-            return None;
+    /// Takes a rigid motion out of nodal velocities: of a free body the one that its masses see, of others the one that their pins give. Returns it, if
+    /// there is one.
+    fn take_out_rigid(&self, position: &[f64], velocity: &mut [f64]) -> Option<RigidRates> {
+        let rigid = match self.kind {
+            Frame::Free => self.mean_rates(position, velocity),
+            _ => RigidRates::of_pins(&self.fixed_dofs, position, |dof| velocity[dof])?,
+        };
+        for node in 0..self.arms.node_mass.len() {
+            add_node_vec(velocity, node, -rigid.at(node_vec(position, node)));
         }
+        Some(rigid)
+    }
+
+    /// The rigid motion that the masses of a free body see.
+    fn mean_rates(&self, position: &[f64], velocity: &[f64]) -> RigidRates {
         let near = self.start_frame;
         let centre = self.arms.centre(self.kind, position, near.centre);
         let drift = self.arms.centre(self.kind, velocity, Vec2::zeros());
@@ -66,12 +76,11 @@ impl FlexBlock {
             moment += mass * cross(arm, node_vec(velocity, node) - drift);
             inertia += mass * arm.norm_squared();
         }
-        let spin = moment / inertia;
-        for node in 0..self.arms.node_mass.len() {
-            let arm = node_vec(position, node) - centre;
-            add_node_vec(velocity, node, -drift - spin * perp(arm));
+        RigidRates {
+            about: centre,
+            velocity: drift,
+            spin: moment / inertia,
         }
-        Some((drift, spin, centre))
     }
 
     /// Centre, its velocity and the inertia about it, of the positions and velocities at hand.
@@ -95,6 +104,7 @@ impl FlexBlock {
         let Some(mut large) = self.large.take() else {
             return;
         };
+        self.jump_work = self.take_out_jump();
         self.resolve_end(&mut large.resolved);
         if self.is_magnified(&large.resolved) {
             self.answer_as_at_the_end(&mut large);
@@ -106,6 +116,34 @@ impl FlexBlock {
             *acceleration = (now - before) / self.step.dt;
         }
         self.large = Some(large);
+    }
+
+    /// Takes out of the velocities what a jump of the pins has left there; returns the work of the pins in it (J).
+    ///
+    /// Displacements that are given, `Δx = d`, end with `v' = 2 d/dt - v`: where the pins of a stiff body jump from rest to `ḋ`, it would end
+    /// with `2 ḋ`, and swing about `ḋ` from step to step. Velocities that had jumped as well, by what the body answers to that within a step,
+    /// would not.
+    fn take_out_jump(&mut self) -> f64 {
+        if self.kind == Frame::Free {
+            return 0.0;
+        }
+        let jump = |dof: usize| self.velocity[dof] - self.start_velocity[dof];
+        let Some(jump) = RigidRates::of_pins(&self.fixed_dofs, &self.position, jump) else {
+            return 0.0;
+        };
+        let before = self.kinetic_energy();
+        let position = std::mem::take(&mut self.position);
+        let kept = 1.0 + self.model.rayleigh().mass * self.step.weights.b0 / self.step.dt;
+        self.answer_jump(&jump, &position, kept);
+        self.position = position;
+        for dof in 0..self.velocity.len() {
+            self.velocity[dof] -= if self.is_fixed[dof] {
+                0.0
+            } else {
+                self.local[dof]
+            };
+        }
+        self.kinetic_energy() - before
     }
 
     /// The resolved part of the velocities at hand.
@@ -120,9 +158,22 @@ impl FlexBlock {
     /// would take energy.
     fn is_magnified(&self, resolved: &[f64]) -> bool {
         let mass = |dof: usize| self.arms.node_mass[dof / 2];
+        // Relative to the motion of the pins, in which nothing is at work.
+        let velocity = |dof: usize| self.velocity[dof];
+        let given = match self.kind {
+            Frame::Free => None,
+            _ => RigidRates::of_pins(&self.fixed_dofs, &self.position, velocity),
+        };
+        let given = |dof: usize| {
+            given.map_or(0.0, |rigid| {
+                rigid.at(node_vec(&self.position, dof / 2))[dof % 2]
+            })
+        };
         let own = |other: &[f64]| {
-            let pairs = self.velocity.iter().zip(other).enumerate();
-            let products = pairs.map(|(dof, (v, other))| mass(dof) * v * other);
+            let products = other.iter().enumerate().map(|(dof, other)| {
+                let given = given(dof);
+                mass(dof) * (velocity(dof) - given) * (other - given)
+            });
             products.sum::<f64>()
         };
         own(resolved) > own(&self.velocity) * (1.0 + ROUNDING)
@@ -165,6 +216,7 @@ impl FlexBlock {
             large.resolved.copy_from_slice(&large.start_resolved);
             large.led.is_led = false;
         }
+        self.jump_work = 0.0;
         self.clear_contact_force();
         self.follow_centre();
     }
@@ -196,7 +248,7 @@ impl FlexBlock {
             let jump = self.velocity[dof] - self.start_velocity[dof];
             0.5 * self.arms.node_mass[dof / 2] * jump * jump
         });
-        work - jumps.sum::<f64>()
+        work - jumps.sum::<f64>() + self.jump_work
     }
 
     /// Writes the end of the step over the committed state.

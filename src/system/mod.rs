@@ -25,6 +25,7 @@ mod large_motion;
 mod link_response;
 mod massless_surface;
 mod moments;
+mod pin_rates;
 mod rigid_block;
 mod rigid_energy;
 mod rigid_motion;

@@ -1,4 +1,4 @@
-//! What a joint row remembers from one step to the next: its multiplier, for the warm start.
+//! What a joint row remembers from one step to the next: its multiplier, for the warm start, and how fast it was driven.
 
 use std::collections::HashMap;
 
@@ -28,7 +28,20 @@ pub struct JointKey {
     pub row: u32,
 }
 
-/// The multipliers of the last step.
+/// What a joint row has left behind.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub struct RememberedJoint {
+    /// Its multiplier (N or N m).
+    pub multiplier: f64,
+    /// Rate at which it was driven from outside when the step ended (m/s or rad/s).
+    pub driven: f64,
+}
+
+/// What the rows of the last step have left behind.
 ///
 /// Looked up by key only, never iterated, so that results do not depend on hashing.
 #[derive(Clone, Debug, Default)]
@@ -38,23 +51,23 @@ pub struct JointKey {
 )]
 pub struct JointMemory {
     #[cfg_attr(feature = "serde-serialize", serde(with = "crate::math::ordered"))]
-    last: HashMap<JointKey, f64>,
+    last: HashMap<JointKey, RememberedJoint>,
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
-    next: HashMap<JointKey, f64>,
+    next: HashMap<JointKey, RememberedJoint>,
 }
 
 impl JointMemory {
-    /// The position multiplier of a row in the last step (N or N m).
-    pub fn recall(&self, key: &JointKey) -> f64 {
-        self.last.get(key).copied().unwrap_or_default()
+    /// What a row has left behind in the last step, if it was there.
+    pub fn recall(&self, key: &JointKey) -> Option<RememberedJoint> {
+        self.last.get(key).copied()
     }
 
-    /// Notes a multiplier for the next step.
-    pub fn remember(&mut self, key: JointKey, multiplier: f64) {
-        self.next.insert(key, multiplier);
+    /// Notes what a row leaves for the next step.
+    pub fn remember(&mut self, key: JointKey, left: RememberedJoint) {
+        self.next.insert(key, left);
     }
 
-    /// Makes the noted multipliers those of the last step.
+    /// Makes what was noted that of the last step.
     pub fn turn_over(&mut self) {
         std::mem::swap(&mut self.last, &mut self.next);
         self.next.clear();

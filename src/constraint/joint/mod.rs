@@ -10,7 +10,7 @@ mod memory;
 pub(crate) use kinematics::unit_wrench;
 pub use kinematics::{JointGrip, Measure, When};
 pub use law::{JointLaw, Spring};
-pub use memory::{JointKey, JointMemory, JointOwner};
+pub use memory::{JointKey, JointMemory, JointOwner, RememberedJoint};
 
 /// One row of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +25,13 @@ pub struct JointRow {
     pub grips: (usize, usize),
     /// How it is held.
     pub law: JointLaw,
+    /// What it has left behind in the last step, if it was there.
+    pub remembered: Option<RememberedJoint>,
+}
+
+impl JointRow {
     /// Its multiplier in the last step, for the warm start (N or N m).
-    pub remembered: f64,
+    pub fn last_multiplier(&self) -> f64 {
+        self.remembered.map_or(0.0, |last| last.multiplier)
+    }
 }
