@@ -115,6 +115,47 @@ fn a_stiff_body_goes_with_what_drives_it_at_once() {
     }
 }
 
+/// A stiff block that is drawn by its lower edge, a pin to the mean of its nodes or to the middle one, is thrown as a rigid one: its centre begins with
+/// `I / (I + m d²)` of the pin's velocity.
+#[test]
+fn a_stiff_body_that_is_drawn_by_a_pin_swings_as_a_rigid_one() {
+    for is_large in [true, false] {
+        for (young, is_mean) in [(1e9, true), (1e11, true), (1e9, false), (1e11, false)] {
+            let mut scene = Scene::in_free_space(DT);
+            let block = FlexBodyBuilder::rectangle([1.0, 0.5], [8, 4])
+                .material(LinearElastic::plane_stress(young, 0.3).density(1000.0));
+            let block = scene.flexible(match is_large {
+                true => block.large_strain(),
+                false => block.small_strain(),
+            });
+            let pin = AttachmentBuilder::pin(block);
+            let pin = match is_mean {
+                true => pin.where_(|[_, y]| y < 1e-9),
+                false => pin.node(4),
+            };
+            let pin = scene
+                .bodies
+                .attach(pin.to_world(), &scene.world.bodies)
+                .expect("a pin");
+            let inertia = (1.0 + 0.25) / 12.0;
+            let expected = 2.0 * inertia / (inertia + 0.0625);
+            for step in 0..12 {
+                if step >= 4 {
+                    let moved = 2.0 * DT * f64::from(step - 3);
+                    let pin = scene.bodies.attachment_mut(pin).expect("the pin");
+                    pin.set_target([moved, 0.0], 0.0).expect("a number");
+                }
+                scene.step();
+                // It turns by a tenth of a radian.
+                let found = scene.body(block).linvel()[0];
+                let expected = if step < 4 { 0.0 } else { expected };
+                let name = format!("large {is_large}, E {young:e}, mean {is_mean}, step {step}");
+                assert!((found - expected).abs() < 0.15, "{name}: {found} m/s");
+            }
+        }
+    }
+}
+
 /// A box on a platform that speeds up to 1 m/s, sideways or upwards, has its velocity in every step.
 #[test]
 fn a_box_rides_a_driven_platform() {

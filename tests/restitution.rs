@@ -166,3 +166,66 @@ fn a_stiff_block_and_a_rigid_box_part_by_their_restitution() {
         }
     }
 }
+
+/// A rigid head of 80 kg with a steel strip of 60 kg welded to it falls on a rigid anvil at 5 m/s: energy that is left, of what it came with.
+fn of_a_hammer(e: f64, rate: f64, is_large: bool) -> f64 {
+    let mut scene = Scene::in_free_space(1.0 / rate);
+    let handle = FlexBodyBuilder::rectangle([1.0, 0.06], [20, 2])
+        .material(LinearElastic::plane_stress(2e11, 0.3).density(1000.0))
+        .translation([0.1, -0.03])
+        .linvel([0.0, -5.0]);
+    let handle = scene.flexible(match is_large {
+        true => handle.large_strain(),
+        false => handle.small_strain(),
+    });
+    let elastic = ColliderBuilder::cuboid(real(0.1), real(0.1)).restitution(real(e));
+    let (head, _) = scene.rigid(
+        RigidBodyBuilder::dynamic().linvel(vec2(0.0, -5.0)),
+        elastic.density(real(2000.0)),
+    );
+    let weld = AttachmentBuilder::weld(handle).where_(|[x, _]| x < 1e-9);
+    scene
+        .bodies
+        .attach(weld.to_rigid_body(head), &scene.world.bodies)
+        .expect("a weld of the handle's end");
+    let anvil = ColliderBuilder::cuboid(real(0.3), real(0.1)).translation(vec2(-0.2, -0.6));
+    scene.fixed(anvil.restitution(real(e)));
+    let energy = |scene: &Scene| {
+        let of_handle = scene.body(handle).energy();
+        of_handle.kinetic + of_handle.elastic + kinetic_of(&scene.world.bodies[head])
+    };
+    let before = energy(&scene);
+    for _ in 0..(0.5 * rate) as usize {
+        scene.step();
+        let now = energy(&scene) / before;
+        assert!(now < 1.01, "e {e}, {rate} Hz, large {is_large}: {now}");
+    }
+    energy(&scene) / before
+}
+
+/// What is welded to a rigid body and stiffer than the step resolves is struck with it: the hammer rebounds as one piece, and loses as much as a rigid one.
+#[test]
+fn a_hammer_rebounds_as_one_piece() {
+    // Momentum and angular momentum of the rigid hammer about its centre, with the blow at a corner of the head.
+    let (head, handle): (f64, f64) = (80.0, 60.0);
+    let mass = head + handle;
+    let centre = 0.6 * handle / mass;
+    let inertia = head * 0.04 / 6.0
+        + handle * (1.0 + 0.0036) / 12.0
+        + head * centre.powi(2)
+        + handle * (0.6 - centre).powi(2);
+    let arm = 0.1 - centre;
+    let left = 1.0 - 1.0 / (1.0 + mass * arm * arm / inertia);
+    for (rate, is_large) in [(30.0, true), (60.0, true), (60.0, false)] {
+        let [plastic, elastic] = [0.0, 1.0].map(|e| of_a_hammer(e, rate, is_large));
+        println!("{rate} Hz, large {is_large}: {plastic}, {elastic}; rigid {left}");
+        assert!(
+            (elastic - 1.0).abs() < 0.03,
+            "{rate} Hz, large {is_large}: {elastic}"
+        );
+        assert!(
+            (plastic - left).abs() < 0.02,
+            "{rate} Hz, large {is_large}: {plastic} of {left}"
+        );
+    }
+}

@@ -38,6 +38,9 @@ impl Island {
             return Ok(());
         }
         self.take_jumps(settings)?;
+        if settings.is_within && self.is_struck() {
+            return Ok(());
+        }
         self.velocity_rows(settings, |contact| contact.is_hard);
         let takes_part = |tie: &ActiveJoint| tie.is_hard || tie.holds_masses();
         self.list_joint_velocities(settings, takes_part);
@@ -111,6 +114,13 @@ impl Island {
         let takes_part = |tie: &ActiveJoint| tie.is_hard || tie.holds_masses();
         self.list_joint_accelerations(takes_part);
         self.push_joined_masses(Response::Acceleration, settings.dt)
+    }
+
+    /// Whether rigid bodies have met in this step that did not press in the last.
+    fn is_struck(&self) -> bool {
+        self.contacts.iter().any(|contact| {
+            contact.is_hard && contact.is_closed() && contact.remembered.normal == 0.0
+        })
     }
 
     fn has_joined_masses(&self, settings: &SolveSettings) -> bool {

@@ -71,7 +71,7 @@ impl Island {
         let (grips, along) = (self.end_grips_of(tie), tie.end);
         let (mut rigid, mut actual) = (0.0, 0.0);
         for at in grips {
-            rigid += at.weight * at.weight * self.blocks[at.block].rigid_mobility(at.grip(), along);
+            rigid += at.weight.abs() * self.blocks[at.block].rigid_mobility(at.grip(), along);
             for from in grips.iter().filter(|from| from.block == at.block) {
                 let compliance =
                     self.blocks[at.block].compliance(at.grip(), from.grip(), Response::Velocity);
