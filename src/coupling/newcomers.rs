@@ -76,8 +76,13 @@ impl PutTogether {
         }
     }
 
-    /// The largest overlap that is left where a step ends (m); what is apart is forgotten.
-    pub fn measure(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> f64 {
+    /// The largest overlap that is left where a step ends (m); what is apart, or is let pass by now, is forgotten.
+    pub fn measure(
+        &mut self,
+        claims: &mut Claims,
+        sets: &RapierSets<'_>,
+        flex_bodies: &FlexBodySet,
+    ) -> f64 {
         let mut largest = 0.0_f64;
         self.pairs.retain(|&(one, other)| {
             let in_world = |handle| {
@@ -87,25 +92,38 @@ impl PutTogether {
             let Some(body) = in_world(one) else {
                 return false;
             };
+            let surface = body.collider_handle();
             let edge = |body: &FlexBody| body.mesh().boundary().mean_segment_length();
-            let (depth, edge) = match other {
-                Other::Rigid(collider) => (depth_in(body, collider, sets), edge(body)),
-                Other::Flex(other) => match in_world(other) {
-                    Some(met) => {
-                        let surfaces = [body, met].map(FlexBody::collider_handle);
-                        (
-                            crossing(surfaces[0], surfaces[1], sets),
-                            edge(body).min(edge(met)),
-                        )
-                    }
-                    None => return false,
-                },
+            let (met, depth, edge, pushes) = match other {
+                Other::Rigid(met) => {
+                    let depth = depth_in(body, met, sets);
+                    (met, depth, edge(body), pushes(body, met, sets))
+                }
+                Other::Flex(other) => {
+                    let Some(other) = in_world(other) else {
+                        return false;
+                    };
+                    let met = other.collider_handle();
+                    let depth = crossing(surface, met, sets);
+                    let groups = [body, other].map(|one| one.contact_settings().solver_groups);
+                    let pushes = groups[0].test(groups[1]);
+                    (met, depth, edge(body).min(edge(other)), pushes)
+                }
             };
-            largest = largest.max(depth);
-            depth > DEEP * edge
+            let meets = pushes && depth > DEEP * edge && claims.may_touch(sets, surface, met);
+            if meets {
+                largest = largest.max(depth);
+            }
+            meets
         });
         largest
     }
+}
+
+/// Whether what a body meets at a rigid collider is to be solved for.
+pub(super) fn pushes(body: &FlexBody, collider: ColliderHandle, sets: &RapierSets<'_>) -> bool {
+    let groups = sets.colliders.get(collider).map(Collider::solver_groups);
+    groups.is_some_and(|groups| body.contact_settings().solver_groups.test(groups))
 }
 
 /// Depth from which a body overlaps (m).

@@ -4,7 +4,7 @@
 //! motor or a joint flings, is met in the next step only: until then it lies where nothing was solved, and that is told.
 
 use super::claim::Claims;
-use super::newcomers::{DEEP, depth_in};
+use super::newcomers::{DEEP, depth_in, pushes};
 use super::sets::RapierSets;
 use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
 use crate::math::is_held;
@@ -86,12 +86,6 @@ impl Trespassers {
         }
         &self.found
     }
-}
-
-/// Whether what a body meets at a collider is to be solved for.
-fn pushes(body: &FlexBody, collider: ColliderHandle, sets: &RapierSets<'_>) -> bool {
-    let groups = sets.colliders.get(collider).map(Collider::solver_groups);
-    groups.is_some_and(|groups| body.contact_settings().solver_groups.test(groups))
 }
 
 fn flexible_in_world(bodies: &FlexBodySet) -> impl Iterator<Item = (FlexBodyHandle, &FlexBody)> {

@@ -261,7 +261,9 @@ impl FlexPipeline {
 
     /// Tells how deep what the user has put into each other still is.
     fn tell_what_was_put_together(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
-        let depth = self.put_together.measure(sets, flex_bodies);
+        let depth = self
+            .put_together
+            .measure(&mut self.claims, sets, flex_bodies);
         self.report.gap_violation = self.report.gap_violation.max(depth);
     }
 }

@@ -107,3 +107,17 @@ fn what_no_solver_group_lets_push_is_no_trespasser() {
     let y = scene.world.bodies[body].translation().y;
     assert!(y < -2.0, "it falls through the beam: {y} m");
 }
+
+/// What the user lets pass afterwards is told no more.
+#[test]
+fn what_is_let_pass_is_told_no_more() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.flexible(beam(0.5));
+    scene.steps(5);
+    let (_, collider) = put(&mut scene, 0.3, [2.0, 0.62], InteractionGroups::all());
+    scene.step();
+    assert!(scene.report().gap_violation() > 0.1);
+    scene.world.colliders[collider].set_solver_groups(InteractionGroups::none());
+    scene.step();
+    assert_eq!(scene.report().gap_violation(), 0.0);
+}
