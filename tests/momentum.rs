@@ -176,3 +176,38 @@ fn the_error_of_angular_momentum_falls_at_least_as_the_square_of_the_step() {
     }
     findings.report();
 }
+
+/// Forces between a ball and a body of small strain act on in the step after the one that finds them, but for islands with a body of large strain. One that
+/// comes near in between, whether it touches or not, brings no momentum: what the ball does not feel any more, the body does not either.
+#[test]
+fn a_body_of_large_strain_that_comes_near_after_a_blow_brings_no_momentum() {
+    for gap in (1..=20).map(|tenths| 0.05 * f64::from(tenths)) {
+        let mut scene = Scene::in_free_space(1.0 / 120.0);
+        let material = || LinearElastic::plane_strain(1e6, 0.3).density(1000.0);
+        scene.flexible(
+            FlexBodyBuilder::rectangle([0.8, 0.6], [4, 4])
+                .material(material())
+                .small_strain()
+                .translation([-0.8, -0.3]),
+        );
+        scene.flexible(
+            FlexBodyBuilder::rectangle([0.4, 0.4], [3, 3])
+                .material(material())
+                .large_strain()
+                .translation([-1.21 - gap, -0.2]),
+        );
+        scene.rigid(
+            RigidBodyBuilder::dynamic()
+                .translation(vec2(0.55, 0.0))
+                .linvel(vec2(-20.0, 0.0)),
+            ColliderBuilder::ball(0.3).density(1000.0),
+        );
+        let start = momentum_of(&scene);
+        for step in 0..6 {
+            scene.step();
+            let now = momentum_of(&scene);
+            let off = (now[0] - start[0]).hypot(now[1] - start[1]) / start[0].abs();
+            assert!(off < 1e-6, "gap {gap} m, step {step}: {off:e}");
+        }
+    }
+}

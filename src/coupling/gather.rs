@@ -174,14 +174,14 @@ fn claimed_block(
         return Ok(None);
     };
     let load = load_of(body, from_rapier(sets.gravity));
+    let step = &sources.settings.step;
     let (mut motion, acceleration) = match sources.under_way.rigid(handle) {
         Some(known) => known,
-        None => masters.motion(handle, body, load.drive()),
+        None => masters.motion(handle, body, load.drive(), step.is_within()),
     };
     cap_speed(&mut motion, body, sets.integration_parameters);
     if !is_representable_motion(&motion) || !is_representable_load(&load) {
         return Err(GatherError::RigidBody(handle));
     }
-    let step = &sources.settings.step;
     Ok(Some(RigidBlock::free(motion, acceleration, &load, step)))
 }

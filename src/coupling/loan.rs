@@ -161,7 +161,7 @@ mod tests {
             damping: [0.0; 3],
         };
         let block = RigidBlock::free(RigidMotion::default(), None, &load, &step);
-        let landings = [Landing::new(handle, &block, false)];
+        let landings = [Landing::new(handle, &block, &step, false)];
         let (claims, memory, mut lent) =
             (Claims::default(), LinkMemory::default(), Lent::default());
         let mut sets = RapierSets::of_world(&mut world, &(), &());

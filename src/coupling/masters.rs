@@ -18,6 +18,7 @@ pub(super) struct Master {
     motion: RigidMotion,
     acceleration: [f64; 3],
     drive: [f64; 3],
+    has_late_forces: bool,
     pose: Pose,
     linvel: Vector,
     angvel: Real,
@@ -36,19 +37,24 @@ impl Masters {
     ///
     /// A force that was changed since then acts from the beginning of the step: otherwise it would start or end by a part of the step
     /// too late.
+    ///
+    /// - `is_within`: whether forces act wholly within the step now. Those that the step before has left to act on then do on nothing: what they press
+    ///   against does not feel them either.
     pub fn motion(
         &self,
         handle: RigidBodyHandle,
         body: &RigidBody,
         drive: [f64; 3],
+        is_within: bool,
     ) -> (RigidMotion, Option<[f64; 3]>) {
         if let Some(master) = self.last.get(&handle) {
             let acceleration =
                 std::array::from_fn(|i| master.acceleration[i] + (drive[i] - master.drive[i]));
+            let acceleration = (!(is_within && master.has_late_forces)).then_some(acceleration);
             let same_pose = master.pose == *body.position();
             let same_velocity = master.linvel == body.linvel() && master.angvel == body.angvel();
             if same_pose && same_velocity {
-                return (master.motion, Some(acceleration));
+                return (master.motion, acceleration);
             }
             if same_pose {
                 let read = read_motion(body);
@@ -57,7 +63,7 @@ impl Masters {
                     spin: read.spin,
                     ..master.motion
                 };
-                return (motion, Some(acceleration));
+                return (motion, acceleration);
             }
         }
         (read_motion(body), None)
@@ -69,6 +75,7 @@ impl Masters {
             motion,
             acceleration: landing.acceleration,
             drive: landing.drive,
+            has_late_forces: landing.has_late_forces,
             pose: *body.position(),
             linvel: body.linvel(),
             angvel: body.angvel(),

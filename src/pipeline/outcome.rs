@@ -52,7 +52,7 @@ impl Outcome {
         for &(block, handle) in part.seats.claimed() {
             if let Block::Rigid(block) = &island.blocks[block] {
                 self.landings
-                    .push(Landing::new(handle, block, entry.is_unfinished));
+                    .push(Landing::new(handle, block, &part.step, entry.is_unfinished));
             }
         }
         self.pushes.extend(part.seats.pushes(island));
