@@ -41,3 +41,6 @@ mod contradiction;
 mod pinned_twice;
 #[path = "joints/welded_twice.rs"]
 mod welded_twice;
+
+#[path = "joints/touching.rs"]
+mod touching;

@@ -254,6 +254,8 @@ pub struct Island {
     /// What the multipliers move every row by, and its own share of that per unit.
     pub(super) responses: Vec<f64>,
     pub(super) diagonals: Vec<f64>,
+    /// Pairs of blocks that joints hold, in order.
+    pub(super) joined: Vec<[usize; 2]>,
     /// How far every joint row of the problem gives way by itself.
     pub(super) joint_gives: Vec<f64>,
     pub(super) sparse: Sparse,

@@ -110,6 +110,7 @@ impl Island {
             self.relax_turns();
         }
         self.ties.clear();
+        self.joined.clear();
         if self.joints.is_empty() {
             return;
         }
@@ -159,6 +160,7 @@ impl Island {
         self.applied_grips.clear();
         self.applied_grips.extend_from_slice(&self.joint_grips);
         self.list_holders();
+        self.list_joined();
         self.stiffen_turns(settings);
     }
 

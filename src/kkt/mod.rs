@@ -15,6 +15,7 @@ mod forward;
 mod gentle;
 mod impact;
 mod island;
+mod joined;
 mod joint_held;
 mod joint_law;
 mod joint_mass;

@@ -11,6 +11,7 @@ use self::layout::Shape;
 use super::delassus::compliance;
 use super::follow::LARGE_TOLERANCE;
 use super::island::{Island, KktError};
+use super::joined::JOINED;
 use super::joint_system::Rows;
 use crate::constraint::joint::unit_wrench;
 use crate::linalg::block_matrix::BlockMatrix;
@@ -86,9 +87,11 @@ impl Island {
         self.sparse.forget_unused();
     }
 
-    /// Whether the scalar rows at hand are better solved as a sparse problem.
+    /// Whether the scalar rows at hand are better solved as a sparse problem: where they are many, and where contacts and joints may hold the same
+    /// motion, which the dense one takes for forces of any size.
     pub(super) fn is_sparse(&self, n_rows: usize) -> bool {
-        if self.path.is_empty() || n_rows <= ALWAYS_DENSE {
+        let presses_joined = self.contacts.iter().any(|contact| self.is_joined(contact));
+        if self.path.is_empty() || n_rows <= ALWAYS_DENSE && !presses_joined {
             return false;
         }
         let mut operations = 0.0;
@@ -102,7 +105,7 @@ impl Island {
             }
         }
         let n = n_rows as f64;
-        n * n * n / 3.0 > WORTH * operations
+        presses_joined || n * n * n / 3.0 > WORTH * operations
     }
 
     /// Solves the rows, kinds and free motions at hand from the multipliers given; writes multipliers, statuses, responses and diagonals.
@@ -218,6 +221,9 @@ impl Island {
                         [0, 1].map(|k| give[k] + yielding[k]),
                         [0, 1].map(|k| (give[k] + kept[k]) * contact.multiplier[k]),
                     )
+                }
+                _ if self.is_joined(contact) => {
+                    ([0, 1].map(|k| give[k] + JOINED * scale[k]), [0.0; 2])
                 }
                 _ => (give, [0.0; 2]),
             };

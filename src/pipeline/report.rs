@@ -63,7 +63,7 @@ pub struct JointReport {
     pub torque: f64,
 }
 
-/// Energy of all flexible and claimed rigid bodies (J).
+/// Energy of all flexible and claimed rigid bodies (J). What springs of joints and attachments store is not in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde-serialize",
