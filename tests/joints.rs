@@ -26,6 +26,9 @@ mod forces;
 #[path = "joints/multibody.rs"]
 mod multibody;
 
+#[path = "joints/multibody_soft.rs"]
+mod multibody_soft;
+
 #[path = "joints/multibody_rest.rs"]
 mod multibody_rest;
 
@@ -37,6 +40,9 @@ mod caught;
 
 #[path = "joints/contradiction.rs"]
 mod contradiction;
+#[path = "joints/put_apart.rs"]
+mod put_apart;
+
 #[path = "joints/pinned_twice.rs"]
 mod pinned_twice;
 #[path = "joints/welded_twice.rs"]

@@ -211,3 +211,150 @@ fn a_body_of_large_strain_that_comes_near_after_a_blow_brings_no_momentum() {
         }
     }
 }
+
+/// What happens to a contact or a joint in the middle of a blow.
+#[derive(Clone, Copy, Debug)]
+enum Event {
+    Sensor,
+    NoGroups,
+    NoSolverGroups,
+    Heavier,
+    Lighter,
+}
+
+/// A block of small strain does on in the next step what it has done in the last: so does what it presses, whatever has become of the
+/// pair or of the mass.
+#[test]
+fn a_contact_that_ends_in_the_middle_of_a_blow_leaves_the_momentum_that_there_is() {
+    use Event::*;
+    for event in [Sensor, NoGroups, NoSolverGroups, Heavier, Lighter] {
+        for (young, wait) in [(1e6, 0), (1e6, 1), (1e8, 0)] {
+            let mut scene = Scene::in_free_space(1.0 / 60.0);
+            scene.flexible(
+                FlexBodyBuilder::rectangle([1.0, 0.3], [10, 3])
+                    .material(
+                        LinearElastic::plane_stress(young, 0.4)
+                            .density(1000.0)
+                            .rayleigh(1e-3),
+                    )
+                    .small_strain()
+                    .translation([-0.5, 0.0]),
+            );
+            let body = RigidBodyBuilder::dynamic()
+                .translation(vec2(0.0, 0.52))
+                .linvel(vec2(0.0, -5.0));
+            let (_, own) = scene.rigid(body, ColliderBuilder::cuboid(0.2, 0.2).mass(100.0));
+            scene.steps(1 + wait);
+            let collider = &mut scene.world.colliders[own];
+            let none = InteractionGroups::none();
+            match event {
+                Sensor => collider.set_sensor(true),
+                NoGroups => collider.set_collision_groups(none),
+                NoSolverGroups => collider.set_solver_groups(none),
+                Heavier => collider.set_mass(10_000.0),
+                Lighter => collider.set_mass(1.0),
+            }
+            let body = scene.world.colliders[own].parent().expect("it has a body");
+            let velocity = f64::from(scene.world.bodies[body].linvel().y);
+            let flexible: f64 = scene.bodies.iter().map(|(_, one)| one.momentum()[1]).sum();
+            let mass = f64::from(scene.world.colliders[own].mass());
+            let start = flexible + mass * velocity;
+            for step in 0..4 {
+                scene.step();
+                let off = (momentum_of(&scene)[1] - start) / 500.0;
+                let name = format!("{event:?}, E {young:e}, waited {wait}, step {step}");
+                assert!(off.abs() < 1e-5, "{name}: {off:e}");
+            }
+        }
+    }
+}
+
+/// A block and a box apart from each other that a pin or a spring holds together against forces that pull them apart.
+fn pulled_pair(scene: &mut Scene, is_pinned: bool) -> (FlexBodyHandle, AttachmentHandle) {
+    let block = scene.flexible(
+        FlexBodyBuilder::rectangle([0.9, 0.3], [6, 2])
+            .material(
+                LinearElastic::plane_stress(1e7, 0.4)
+                    .density(1000.0)
+                    .rayleigh(1e-3),
+            )
+            .small_strain()
+            .translation([-0.45, -0.15]),
+    );
+    let body = RigidBodyBuilder::dynamic().translation(vec2(0.0, -1.5));
+    let (body, _) = scene.rigid(body, ColliderBuilder::ball(real(0.1)).mass(100.0));
+    let is_middle = |[x, y]: [f64; 2]| (x - 0.45).abs() < 1e-9 && y < 1e-9;
+    let attachment = match is_pinned {
+        true => AttachmentBuilder::pin(block),
+        false => AttachmentBuilder::spring_damper(block, 2e4, 0.0).rest_length(1.35),
+    };
+    let attachment = attachment.where_(is_middle).to_rigid_body(body);
+    let point = if is_pinned { [0.0, 1.35] } else { [0.0; 2] };
+    let attachment = attachment.at_point(point);
+    let attachment = scene
+        .bodies
+        .attach(attachment, &scene.world.bodies)
+        .expect("a body and a point of it");
+    let held = (0..scene.body(block).n_nodes())
+        .find(|&node| {
+            let [x, y] = scene.body(block).position(node);
+            x.abs() < 1e-9 && (y + 0.15).abs() < 1e-9
+        })
+        .expect("a node in the middle of the lower edge");
+    scene.bodies[block]
+        .set_nodal_force(held, [0.0, 5000.0])
+        .expect("a finite force");
+    scene.world.bodies[body].add_force(vec2(0.0, -5000.0), true);
+    (block, attachment)
+}
+
+#[test]
+fn a_body_of_large_strain_that_passes_by_leaves_the_momentum_of_what_is_attached_to_each_other() {
+    for is_pinned in [true, false] {
+        for rate in [60.0, 240.0] {
+            for gap in [0.005, 0.1] {
+                let mut scene = Scene::in_free_space(1.0 / rate);
+                pulled_pair(&mut scene, is_pinned);
+                let disc = FlexBodyBuilder::disc(0.2, 0.1)
+                    .material(LinearElastic::plane_stress(1e6, 0.4).density(1000.0))
+                    .large_strain()
+                    .translation([-1.5, 0.35 + gap])
+                    .linvel([6.0, 0.0]);
+                scene.flexible(disc);
+                let start = momentum_of(&scene);
+                let mut n_islands = Vec::new();
+                for _ in 0..(0.6 * rate) as usize {
+                    scene.step();
+                    n_islands.push(scene.report().n_islands());
+                    let now = momentum_of(&scene);
+                    let off = [0, 1].map(|axis| now[axis] - start[axis]);
+                    let name = format!("pinned {is_pinned}, {rate} Hz, {gap} m");
+                    assert!(off[0].hypot(off[1]) < 1e-3, "{name}: {off:?} N s");
+                }
+                n_islands.dedup();
+                let parts = n_islands.windows(2).any(|pair| pair == [1, 2]);
+                assert!(parts, "the disc never left: {n_islands:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_detached_under_load_keeps_the_momentum_that_there_is() {
+    for is_pinned in [true, false] {
+        let mut scene = Scene::in_free_space(1.0 / 60.0);
+        let (_, attachment) = pulled_pair(&mut scene, is_pinned);
+        scene.steps(5);
+        let start = momentum_of(&scene);
+        scene.bodies.detach(attachment).expect("it is attached");
+        for _ in 0..5 {
+            scene.step();
+            let now = momentum_of(&scene);
+            let off = [0, 1].map(|axis| now[axis] - start[axis]);
+            assert!(
+                off[0].hypot(off[1]) < 1e-3,
+                "pinned {is_pinned}: {off:?} N s"
+            );
+        }
+    }
+}

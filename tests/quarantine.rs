@@ -244,7 +244,12 @@ fn bodies_that_go_before_the_first_full_step_leave_a_world_that_goes_on() {
             scene.world.remove_body(lower);
         }),
     ];
-    for ((name, spoil), has_joint) in spoils.into_iter().flat_map(|it| [(it, false), (it, true)]) {
+    // Which body of a joint comes first decides which of rapier's islands remains.
+    let joints = [None, Some(false), Some(true)];
+    for ((name, spoil), joint) in spoils
+        .into_iter()
+        .flat_map(|it| joints.map(|joint| (it, joint)))
+    {
         let mut scene = Scene::new(1.0 / 60.0);
         scene.ground(0.5);
         let sick = scene.flexible(block(0.0, 0.001));
@@ -255,10 +260,15 @@ fn bodies_that_go_before_the_first_full_step_leave_a_world_that_goes_on() {
                 .0
         };
         let (lower, upper) = (ball(1.252), ball(30.0));
-        if has_joint {
+        if let Some(is_turned) = joint {
             let other = ball(31.0);
             let rod = RopeJointBuilder::new(2.0).build();
-            scene.world.insert_impulse_joint(upper, other, rod);
+            let [one, two] = if is_turned {
+                [other, upper]
+            } else {
+                [upper, other]
+            };
+            scene.world.insert_impulse_joint(one, two, rod);
         }
         spoil(&mut scene, sick, lower);
         for _ in 0..60 {

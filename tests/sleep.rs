@@ -345,3 +345,28 @@ fn what_is_attached_to_a_flexible_body_does_not_sleep_while_it_drifts() {
         "{after} of {before} N s"
     );
 }
+
+/// The noise of single precision grows with the distance from the origin: what moves by less than some eight digits of its size sleeps all the same.
+#[test]
+fn what_rests_far_from_the_origin_sleeps() {
+    for (away, is_large) in [(100.0, false), (400.0, false), (100.0, true), (400.0, true)] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        let ground = floor(0.5).translation(vec2(away, -0.5));
+        scene.fixed(ground);
+        let block = FlexBodyBuilder::rectangle([0.5, 0.5], [4, 4])
+            .material(
+                LinearElastic::plane_stress(1e6, 0.3)
+                    .density(1000.0)
+                    .rayleigh(1e-3),
+            )
+            .translation([away, 0.02]);
+        let block = scene.flexible(match is_large {
+            true => block.large_strain(),
+            false => block.small_strain(),
+        });
+        scene.steps(900);
+        let carrier = scene.body(block).rigid_body_handle();
+        let sleeps = scene.world.bodies[carrier].is_sleeping();
+        assert!(sleeps, "{away} m, large {is_large}");
+    }
+}

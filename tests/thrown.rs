@@ -222,3 +222,80 @@ fn steps_that_are_cut_are_seldom_solved_again() {
     assert!(n_cut > 100, "{n_cut} steps cut");
     assert!(20 * n_again <= n_cut, "{n_again} of {n_cut} solved again");
 }
+
+/// A bar that begins to turn beside a block, with nothing else that moves: it is met in the step in which it comes.
+#[test]
+fn what_turns_in_its_place_is_met_however_fast() {
+    use Bar::*;
+    for bar in [Velocity, Position, Free] {
+        for turn in [0.1, 0.2, 0.5, 0.8] {
+            for is_large in [true, false] {
+                let mut scene = Scene::in_free_space(1.0 / 60.0);
+                let kind = match bar {
+                    Velocity => RigidBodyBuilder::kinematic_velocity_based(),
+                    Position => RigidBodyBuilder::kinematic_position_based(),
+                    Free => RigidBodyBuilder::dynamic(),
+                };
+                let shape = ColliderBuilder::cuboid(real(0.85), real(0.03)).mass(100.0);
+                let (turning, _) = scene.rigid(kind, shape);
+                let block = FlexBodyBuilder::rectangle([0.3, 0.3], [4, 4])
+                    .material(
+                        LinearElastic::plane_stress(1e6, 0.4)
+                            .density(1000.0)
+                            .rayleigh(1e-3),
+                    )
+                    .translation([0.4, 0.15]);
+                scene.flexible(match is_large {
+                    true => block.large_strain(),
+                    false => block.small_strain(),
+                });
+                scene.steps(5);
+                for step in 1..=10 {
+                    let body = &mut scene.world.bodies[turning];
+                    match bar {
+                        Velocity => body.set_angvel(real(60.0 * turn), true),
+                        Position => {
+                            let angle = f64::from(step) * turn;
+                            body.set_next_kinematic_rotation(Rotation::from_angle(real(angle)));
+                        }
+                        Free if step == 1 => body.set_angvel(real(60.0 * turn), true),
+                        Free => {}
+                    }
+                    let told = scene
+                        .try_step()
+                        .expect("the step can be taken")
+                        .gap_violation();
+                    let deep = deepest_in_bar(&scene, turning);
+                    let name = format!("{bar:?}, {turn} rad, large {is_large}, step {step}");
+                    assert!(deep <= told.max(1e-4), "{name}: {deep} m, {told} m told");
+                }
+                let moved = scene.bodies.iter().any(|(_, body)| body.linvel()[1] > 0.1);
+                assert!(moved, "{bar:?}, {turn} rad: never met");
+            }
+        }
+    }
+}
+
+/// What turns a bar.
+#[derive(Clone, Copy, Debug)]
+enum Bar {
+    Velocity,
+    Position,
+    Free,
+}
+
+/// How deep nodes of flexible bodies are in a bar of .85 m by .03 m in half (m).
+fn deepest_in_bar(scene: &Scene, bar: RigidBodyHandle) -> f64 {
+    let pose = *scene.world.bodies[bar].position();
+    let nodes = scene.bodies.iter().flat_map(|(_, body)| {
+        let nodes = 0..body.n_nodes();
+        nodes.map(|node| body.position(node))
+    });
+    nodes
+        .map(|[x, y]| {
+            let local = pose.inverse_transform_point(vec2(x, y));
+            let within = 0.85 - f64::from(local.x).abs();
+            within.min(0.03 - f64::from(local.y).abs())
+        })
+        .fold(0.0, f64::max)
+}

@@ -120,6 +120,8 @@ fn multiplier_errors(
         .small_strain()
         .material(LinearElastic::plane_stress(1e3, 0.0).density(1.0))
         .contact_inertia(ContactInertia::Kept)
+        // It would sleep at 1e-7 m/s.
+        .can_sleep(false)
         .pin_where(|[_, y]| y == 1.0, Pin::both())
         .pin_where(|[_, y]| y == 0.0, Pin::x());
     let body = scene.add(builder)?;

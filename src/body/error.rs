@@ -140,7 +140,7 @@ pub enum FlexBodyError {
     Negative(f64),
     /// The world does not hold the body's carrier.
     #[error(
-        "the world given does not hold the carrier of {0:?} as it was left: use the world it was inserted into, leave the pose and shape of its carrier alone, and remove the body from its set first"
+        "the world given does not hold the carrier of {0:?} as it was left: use the world it was inserted into, leave the pose and shape of its carrier alone (put back at the identity, steps go on), and remove the body from its set first"
     )]
     NoCarrier(FlexBodyHandle),
 }

@@ -3,6 +3,7 @@
 use super::contact_settings::ContactSettings;
 use super::frame::{Arms, Frame};
 use super::state::{BodyEnergy, FlexState};
+use super::stillness::Stillness;
 use crate::fe::finite_strain::FiniteStrainModel;
 use crate::fe::mesh::Mesh;
 use crate::fe::model::{Model, ModelError};
@@ -34,6 +35,7 @@ pub struct FlexBody {
     pub(super) energy_reserve: f64,
     /// Steps on end that were not finished.
     pub(super) n_unfinished: u32,
+    pub(super) stillness: Stillness,
     pub(super) frequency: OnceLock<f64>,
     pub(super) carrier: RigidBodyHandle,
     pub(super) collider: ColliderHandle,
@@ -72,6 +74,7 @@ impl FlexBody {
             reaction: zeros,
             energy_reserve: 0.0,
             n_unfinished: 0,
+            stillness: Stillness::default(),
             frequency: OnceLock::new(),
             carrier: RigidBodyHandle::invalid(),
             collider: ColliderHandle::invalid(),

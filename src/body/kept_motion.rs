@@ -84,6 +84,18 @@ impl FlexBody {
         self.n_unfinished
     }
 
+    /// How long it has stayed where it is (s).
+    pub(crate) fn time_still(&self) -> f64 {
+        self.stillness.time()
+    }
+
+    /// Looks whether it has stayed where it is in a step, to some tolerance (s, m).
+    pub(crate) fn look_whether_still(&mut self, dt: f64, tolerance: f64) {
+        let state = &self.state;
+        self.stillness
+            .look([&state.position, &state.velocity], dt, tolerance);
+    }
+
     /// Counts a step, as finished or not.
     pub(crate) fn count_step(&mut self, is_unfinished: bool) {
         self.n_unfinished = match is_unfinished {

@@ -19,6 +19,7 @@ mod set;
 mod small_strain;
 mod state;
 mod steering;
+mod stillness;
 
 pub(crate) use attachment::{Anchor, Choice, Plan, Shift};
 pub use attachment::{

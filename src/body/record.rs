@@ -7,6 +7,7 @@ use super::frame::{Arms, Frame, frame_of};
 use super::handle::FlexBodyHandle;
 use super::set::{FlexBodySet, Slot};
 use super::state::FlexState;
+use super::stillness::Stillness;
 use super::{Anchor, Attachment, AttachmentKind, AttachmentTarget};
 use crate::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
 use crate::fe::model_record::{ModelRecord, ModelRecordError};
@@ -34,6 +35,7 @@ struct BodyRecord {
     reaction: Vec<f64>,
     energy_reserve: f64,
     n_unfinished: u32,
+    stillness: Stillness,
     carrier: RigidBodyHandle,
     collider: ColliderHandle,
     is_disturbed: bool,
@@ -61,6 +63,7 @@ impl BodyRecord {
             reaction: body.reaction.clone(),
             energy_reserve: body.energy_reserve,
             n_unfinished: body.n_unfinished,
+            stillness: body.stillness.clone(),
             carrier: body.carrier,
             collider: body.collider,
             is_disturbed: body.is_disturbed,
@@ -119,6 +122,7 @@ impl BodyRecord {
             reaction: self.reaction,
             energy_reserve: self.energy_reserve,
             n_unfinished: self.n_unfinished,
+            stillness: self.stillness,
             frequency: OnceLock::new(),
             carrier: self.carrier,
             collider: self.collider,

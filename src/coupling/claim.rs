@@ -7,6 +7,7 @@
 use super::changes::{Changes, WorldChange};
 use super::claim_attachments::{Attached, ClaimedAttachment};
 use super::pair_name::PairName;
+use super::quarantine::is_out;
 use super::roster::Roster;
 use super::sets::RapierSets;
 use super::sleep::is_asleep;
@@ -28,6 +29,8 @@ pub(crate) struct Claims {
     pub(super) changes: Changes,
     pub(super) walk: Walk,
     pub(super) attached: Attached,
+    /// Rigid bodies that stay for a step with flexible ones, by their index.
+    bonds: Vec<(RigidBodyHandle, u32)>,
     sweep: Sweep,
     pub(super) strikes: Strikes,
 }
@@ -47,7 +50,7 @@ impl Claims {
     /// Whether all that could move sleeps, so that there is nothing to do.
     pub fn is_all_asleep(&self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
         let is_quiet = |body: &FlexBody| {
-            body.is_quarantined() || !body.is_disturbed() && is_asleep(body, sets.bodies)
+            is_out(body, sets.bodies) || !body.is_disturbed() && is_asleep(body, sets.bodies)
         };
         self.changes.leave_at_rest(sets, &self.flex)
             && flex_bodies.iter().all(|(_, body)| is_quiet(body))
@@ -66,6 +69,23 @@ impl Claims {
     /// Gathers anew what is marked, after a detection step, which has taken all changes over.
     pub fn note_changes_taken_over(&mut self, sets: &RapierSets<'_>) {
         self.changes.gather(sets);
+    }
+
+    /// Notes which rigid bodies that are awake stay with flexible ones in this step, by their index.
+    pub fn bind(
+        &mut self,
+        bonds: impl Iterator<Item = (RigidBodyHandle, u32)>,
+        bodies: &RigidBodySet,
+    ) {
+        let is_awake = |handle| {
+            let body: Option<&RigidBody> = bodies.get(handle);
+            body.is_some_and(|body| !body.is_sleeping())
+        };
+        self.bonds.clear();
+        self.bonds
+            .extend(bonds.filter(|(handle, _)| is_awake(*handle)));
+        self.bonds
+            .sort_unstable_by_key(|(handle, _)| handle.into_raw_parts());
     }
 
     /// Looks ahead along the velocities of the flexible bodies, before the detection step.
@@ -87,6 +107,7 @@ impl Claims {
         self.sweep
             .needs_detection(sets, &self.flex, &self.changes, &mut self.strikes)
             || self.attached.has_rigid_bodies(sets)
+            || !self.bonds.is_empty()
     }
 
     /// Finds what the boxes meet, with rapier's tree, after the detection step has taken over the user's changes.
@@ -101,6 +122,7 @@ impl Claims {
             flex: &self.flex,
             sweep: &self.sweep,
             attached: &self.attached,
+            bonds: &self.bonds,
             excess: self.excess,
         };
         self.walk.begin(&map, sets);

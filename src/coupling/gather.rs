@@ -177,7 +177,10 @@ fn claimed_block(
     let step = &sources.settings.step;
     let (mut motion, acceleration) = match sources.under_way.rigid(handle) {
         Some(known) => known,
-        None => masters.motion(handle, body, load.drive(), step.is_within()),
+        None => {
+            let own = (load.drive(), load.inverse_mass);
+            masters.motion(handle, body, own, step.is_within())
+        }
     };
     cap_speed(&mut motion, body, sets.integration_parameters);
     if !is_representable_motion(&motion) || !is_representable_load(&load) {

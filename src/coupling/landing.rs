@@ -1,7 +1,8 @@
 //! Where and how fast claimed rigid bodies end the step.
 
+use crate::kkt::LateForce;
 use crate::rapier::prelude::RigidBodyHandle;
-use crate::system::{RigidBlock, RigidMotion, Step};
+use crate::system::{RigidBlock, RigidMotion};
 
 /// A claimed body on its way through rapier's step.
 #[derive(Clone, Copy, Debug)]
@@ -14,10 +15,12 @@ pub(crate) struct Landing {
     pub acceleration: [f64; 3],
     /// What of it the user's forces and gravity give to the body alone.
     pub drive: [f64; 3],
+    /// Its mass in x, y and inertia (kg, kg, kg m²).
+    pub mass: [f64; 3],
     /// Whether the step of its island is not finished: it has not come to rest, however still it is.
     pub is_unfinished: bool,
-    /// Whether forces of contact act on from its acceleration in the next step.
-    pub has_late_forces: bool,
+    /// The forces of flexible bodies that these keep for the next step.
+    pub late: LateForce,
 }
 
 impl Landing {
@@ -25,7 +28,7 @@ impl Landing {
     pub fn new(
         handle: RigidBodyHandle,
         block: &RigidBlock,
-        step: &Step,
+        late: LateForce,
         is_unfinished: bool,
     ) -> Self {
         Self {
@@ -33,8 +36,9 @@ impl Landing {
             motion: *block.current(),
             acceleration: block.smooth_end,
             drive: block.drive(),
+            mass: block.mass(),
             is_unfinished,
-            has_late_forces: !step.is_within(),
+            late,
         }
     }
 }

@@ -11,6 +11,7 @@
 use super::filter::is_free_body;
 use super::gather_settings::GatherSettings;
 use super::multibody::{Pace, Tree};
+use super::multibody_rows::Foreseen;
 use super::reading::{GatherError, is_representable_motion, prescribed_block};
 use super::sets::RapierSets;
 use super::under_way::Span;
@@ -18,7 +19,7 @@ use crate::kkt::Island;
 use crate::math::Vec2;
 use crate::rapier::prelude::*;
 use crate::system::{Block, LinkResponse, RigidBlock, RigidMotion, Step};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use std::collections::HashMap;
 
 /// Whether a body is a link that forces move.
@@ -46,6 +47,19 @@ pub(crate) struct Push {
     pub lasting: [f64; 3],
 }
 
+/// What is known of the forces on a link when a step begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub(super) struct KnownForces {
+    /// Those of the last step's end, which act for a part of this (N, N, N m).
+    pub lasting: [f64; 3],
+    /// The mean of the last step, as which forces are expected to go on (N, N, N m).
+    pub mean: [f64; 3],
+}
+
 /// The links of a solved island as they were pushed.
 pub(super) fn pushes_of<'a>(
     links: &'a [LinkBlock],
@@ -66,7 +80,7 @@ pub(super) fn pushes_of<'a>(
 /// Forces on links at the end of the last step, which have a part of themselves left to do in this one.
 #[derive(Debug, Default)]
 pub(crate) struct LinkMemory {
-    pub(super) last: HashMap<RigidBodyHandle, [f64; 3]>,
+    pub(super) last: HashMap<RigidBodyHandle, KnownForces>,
 }
 
 impl LinkMemory {
@@ -77,6 +91,10 @@ impl LinkMemory {
 
     /// The force that acts on a link in the first part of the step (N, N, N m).
     pub fn lasting(&self, handle: RigidBodyHandle) -> [f64; 3] {
+        self.known(handle).lasting
+    }
+
+    fn known(&self, handle: RigidBodyHandle) -> KnownForces {
         self.last.get(&handle).copied().unwrap_or_default()
     }
 
@@ -104,14 +122,20 @@ impl LinkMemory {
     }
 
     /// Keeps what a step that has been taken leaves to the next.
-    pub fn keep(&mut self, pushes: &[Push], sets: &RapierSets<'_>) {
+    pub fn keep(&mut self, pushes: &[Push], step: Step, sets: &RapierSets<'_>) {
         // What sleeps is not stepped, and waits.
         let sleeps = |handle| sets.bodies.get(handle).is_some_and(RigidBody::is_sleeping);
-        self.last.retain(|handle, _| sleeps(*handle));
+        let is_pushed = |handle| pushes.iter().any(|push| push.handle == handle);
+        self.last
+            .retain(|handle, _| sleeps(*handle) || is_pushed(*handle));
         for push in pushes {
-            self.last.remove(&push.handle);
-            if push.lasting != [0.0; 3] {
-                self.last.insert(push.handle, push.lasting);
+            let before = self.last.remove(&push.handle).unwrap_or_default().lasting;
+            let known = KnownForces {
+                lasting: push.lasting,
+                mean: [0, 1, 2].map(|i| (push.impulse[i] + step.late * before[i]) / step.dt),
+            };
+            if known != KnownForces::default() {
+                self.last.insert(push.handle, known);
             }
         }
     }
@@ -225,72 +249,49 @@ fn foresee(
         additional.max().unwrap_or(0),
     );
     let place = |handle| tree.links.iter().position(|link| link.handle == handle);
-    let mut reactions = tree.pull_back(0, [0.0; 3]);
+    let mut expected = Vec::with_capacity(members.len());
     for member in members {
-        let pulled = tree.pull_back(place(member.handle)?, memory.lasting(member.handle));
-        reactions
-            .iter_mut()
-            .zip(pulled)
-            .for_each(|(sum, part)| *sum += part);
+        expected.push((place(member.handle)?, memory.known(member.handle).mean));
     }
-    let solved = tree.solve(multibody, sets, pace, &reactions)?;
+    let Foreseen { motion, answers } = tree.solve(multibody, sets, pace, &expected)?;
     for member in members {
         let link = place(member.handle)?;
-        let stem = tree.stem(link);
-        let others = members.iter().filter_map(|other| place(other.handle));
-        let split = others.filter(|&other| tree.stem(other) == stem).count() as f64;
-        let mobility = split * solved.mobility(&tree, link);
-        let own = mobility * Vector3::from(memory.lasting(member.handle));
-        let acceleration = Vector3::from(solved.acceleration(&tree, link)) - own;
+        // Without what is expected of the links, whose forces are to be found.
+        let mut acceleration = Vector3::from(motion.acceleration(&tree, link));
+        let mut late = Vector3::zeros();
+        let mut responses = Vec::with_capacity(members.len());
+        for other in members {
+            let answer = answers.answer(&tree, link, place(other.handle)?);
+            let known = memory.known(other.handle);
+            acceleration -= answer.velocity * Vector3::from(known.mean);
+            late += answer.velocity * Vector3::from(known.lasting);
+            responses.push((other.block, answer));
+        }
+        let (velocity, spin) = tree.velocity(link);
+        let start = Vector3::new(velocity.x, velocity.y, spin);
+        let gained = step.dt * acceleration + step.late * late;
+        let moved = step.dt * (start + pace.share * gained);
         let Block::Rigid(block) = &mut island.blocks[member.block] else {
             continue;
         };
-        let (velocity, spin) = tree.velocity(link);
-        let start = Vector3::new(velocity.x, velocity.y, spin);
-        let foreseen = Foreseen {
-            start,
-            acceleration,
-            own,
-            mobility,
-        };
-        foreseen.write(block, step, pace);
-    }
-    Some(())
-}
-
-/// A link's motion to come.
-struct Foreseen {
-    /// Velocity and spin when the step begins.
-    start: Vector3<f64>,
-    /// Acceleration without what presses the link itself.
-    acceleration: Vector3<f64>,
-    /// Acceleration by what pressed it at the end of the last step.
-    own: Vector3<f64>,
-    mobility: Matrix3<f64>,
-}
-
-impl Foreseen {
-    fn write(&self, block: &mut RigidBlock, step: Step, pace: Pace) {
-        let Step {
-            dt, weights, late, ..
-        } = step;
-        let gained = dt * self.acceleration + late * self.own;
-        let moved = dt * (self.start + pace.share * gained);
-        let end = self.start + gained;
         let start = block.start();
         let free = RigidMotion {
             centre: start.centre + Vec2::new(moved.x, moved.y),
             angle: start.angle + moved.z,
-            velocity: Vec2::new(end.x, end.y),
-            spin: end.z,
+            velocity: velocity + Vec2::new(gained.x, gained.y),
+            spin: spin + gained.z,
         };
-        let reach = if step.is_explicit() {
-            pace.share
-        } else {
-            pace.share * dt * weights.b1 / weights.b0
-        };
-        let response = LinkResponse::new(self.mobility, reach);
-        block.set_link_response(free, self.acceleration.into(), response);
+        let response = LinkResponse::new(member.block, &responses, position_scale(step));
+        block.set_link_response(free, acceleration.into(), response);
+    }
+    Some(())
+}
+
+/// What positions answer to a multiplier, over `b0` and their answer to a steady force (-).
+fn position_scale(step: Step) -> f64 {
+    match step.is_explicit() {
+        true => 1.0,
+        false => step.dt * step.weights.b1 / step.weights.b0,
     }
 }
 

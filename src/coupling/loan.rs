@@ -146,6 +146,7 @@ impl Drop for Loan<'_, '_> {
 mod tests {
     use super::*;
     use crate::integrator::Beta2;
+    use crate::kkt::LateForce;
     use crate::system::{RigidBlock, RigidLoad, RigidMotion};
 
     /// Where a step ends early, as by a panic in a handler, the axes of claimed bodies come back with the sets, whatever was lent.
@@ -161,7 +162,7 @@ mod tests {
             damping: [0.0; 3],
         };
         let block = RigidBlock::free(RigidMotion::default(), None, &load, &step);
-        let landings = [Landing::new(handle, &block, &step, false)];
+        let landings = [Landing::new(handle, &block, LateForce::default(), false)];
         let (claims, memory, mut lent) =
             (Claims::default(), LinkMemory::default(), Lent::default());
         let mut sets = RapierSets::of_world(&mut world, &(), &());

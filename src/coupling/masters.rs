@@ -2,6 +2,7 @@
 
 use super::landing::Landing;
 use super::shapes::pose_of;
+use crate::kkt::LateForce;
 use crate::math::{Vec2, atan2, from_rapier};
 use crate::rapier::math::{Pose, Real, Vector};
 use crate::rapier::prelude::*;
@@ -18,10 +19,33 @@ pub(super) struct Master {
     motion: RigidMotion,
     acceleration: [f64; 3],
     drive: [f64; 3],
-    has_late_forces: bool,
+    mass: [f64; 3],
+    late: LateForce,
     pose: Pose,
     linvel: Vector,
     angvel: Real,
+}
+
+impl Master {
+    /// The acceleration that the step begins with; `None` if that of the applied forces does.
+    fn acceleration_now(
+        &self,
+        drive: [f64; 3],
+        inverse_mass: [f64; 3],
+        is_within: bool,
+    ) -> Option<[f64; 3]> {
+        if is_within && self.late.is_stored {
+            return None;
+        }
+        let withheld = |i: usize| match is_within || self.late.is_stored {
+            true => 0.0,
+            false => self.late.wrench[i],
+        };
+        Some(std::array::from_fn(|i| {
+            let force = self.mass[i] * (self.acceleration[i] - self.drive[i]) + withheld(i);
+            drive[i] + inverse_mass[i] * force
+        }))
+    }
 }
 
 /// Motions of all bodies claimed in the last step.
@@ -33,24 +57,22 @@ pub(crate) struct Masters {
 
 impl Masters {
     /// The motion of a body, and its smooth acceleration if it was claimed in the last step and not moved since: `drive` is what the
-    /// applied forces give to it alone, now.
+    /// applied forces give to it alone, now, and its masses are what they are now too.
     ///
     /// A force that was changed since then acts from the beginning of the step: otherwise it would start or end by a part of the step
     /// too late.
     ///
     /// - `is_within`: whether forces act wholly within the step now. Those that the step before has left to act on then do on nothing: what they press
-    ///   against does not feel them either.
+    ///   against does not feel them either. Where it is no longer so, bodies of small strain have kept what acted, and what they press feels it too.
     pub fn motion(
         &self,
         handle: RigidBodyHandle,
         body: &RigidBody,
-        drive: [f64; 3],
+        (drive, inverse_mass): ([f64; 3], [f64; 3]),
         is_within: bool,
     ) -> (RigidMotion, Option<[f64; 3]>) {
         if let Some(master) = self.last.get(&handle) {
-            let acceleration =
-                std::array::from_fn(|i| master.acceleration[i] + (drive[i] - master.drive[i]));
-            let acceleration = (!(is_within && master.has_late_forces)).then_some(acceleration);
+            let acceleration = master.acceleration_now(drive, inverse_mass, is_within);
             let same_pose = master.pose == *body.position();
             let same_velocity = master.linvel == body.linvel() && master.angvel == body.angvel();
             if same_pose && same_velocity {
@@ -69,13 +91,23 @@ impl Masters {
         (read_motion(body), None)
     }
 
+    /// Bodies that forces of flexible ones are to act on in the next step, and one of these each, by its index.
+    ///
+    /// They stay with it that long, whatever has become of contact or joint: what they press feels the rest of the force in the parts that its step is
+    /// solved in, and so must they.
+    pub fn bonds(&self) -> impl Iterator<Item = (RigidBodyHandle, u32)> {
+        let all = self.last.iter();
+        all.filter_map(|(&handle, master)| Some((handle, master.late.partner?)))
+    }
+
     /// Keeps a body's motion after the hand-back.
     pub fn keep(&mut self, landing: &Landing, motion: RigidMotion, body: &RigidBody) {
         let master = Master {
             motion,
             acceleration: landing.acceleration,
             drive: landing.drive,
-            has_late_forces: landing.has_late_forces,
+            mass: landing.mass,
+            late: landing.late,
             pose: *body.position(),
             linvel: body.linvel(),
             angvel: body.angvel(),

@@ -76,7 +76,7 @@ pub(crate) use memory::Memory;
 pub(crate) use newcomers::{PutTogether, overlaps_of_newcomers};
 pub(crate) use pool::FlexPool;
 pub(crate) use pressed_point::PressedPoint;
-pub(crate) use quarantine::{quarantine, quarantine_carriers};
+pub(crate) use quarantine::{is_out, quarantine, quarantine_carriers};
 pub(crate) use reading::{GatherError, is_representable_motion};
 #[cfg(feature = "serde-serialize")]
 pub(crate) use record::CouplingRecord;
@@ -84,7 +84,8 @@ pub(crate) use seats::Seats;
 pub use sets::RapierSets;
 pub(crate) use shapes::{ShapeFault, rounding};
 pub(crate) use sleep::{
-    is_asleep, keep_awake, keep_landing_awake, rests, stop_if_asleep, wake_disturbed, wake_moving,
+    is_asleep, keep_awake, keep_landing_awake, look_whether_still, rests, stop_if_asleep,
+    wake_disturbed, wake_moving,
 };
 pub(crate) use trespassers::{Trespasser, Trespassers};
 pub(crate) use under_way::{Span, UnderWay};

@@ -11,6 +11,7 @@ use super::shapes::pose_of;
 use crate::linalg::complementarity::{factorize_cholesky, solve_cholesky_in_place};
 use crate::math::{Vec2, cross, from_rapier, perp};
 use crate::rapier::prelude::*;
+use crate::system::LinkAnswer;
 use nalgebra::Matrix3;
 
 /// A link and what acts on it.
@@ -230,7 +231,7 @@ impl Tree {
         self.free_dofs().map(part).collect()
     }
 
-    fn free_dofs(&self) -> impl Iterator<Item = &Dof> {
+    pub fn free_dofs(&self) -> impl Iterator<Item = &Dof> {
         self.dofs.iter().filter(|dof| !dof.is_driven)
     }
 
@@ -299,19 +300,6 @@ impl Tree {
             }
         }
         sum
-    }
-
-    /// The link nearest to the root that moves freely and carries this one, or is it: links with different stems do not feel each
-    /// other.
-    pub fn stem(&self, link: usize) -> Option<usize> {
-        let (mut at, mut stem) = (Some(link), None);
-        while let Some(link) = at {
-            if self.free_dofs().any(|dof| dof.link == link) {
-                stem = Some(link);
-            }
-            at = self.links[link].parent;
-        }
-        stem
     }
 
     /// Velocity of a link's centre and its spin (m/s, rad/s).
@@ -383,6 +371,7 @@ impl Equations {
             Solved {
                 factor,
                 acceleration,
+                share: self.pace.share,
             }
         })
     }
@@ -393,6 +382,8 @@ impl Equations {
 pub(super) struct Solved {
     factor: Vec<f64>,
     acceleration: Vec<f64>,
+    /// See [`Pace::share`].
+    share: f64,
 }
 
 impl Solved {
@@ -419,21 +410,24 @@ impl Solved {
         tree.acceleration(link, &self.acceleration)
     }
 
-    /// `J M̃⁻¹ Jᵀ` of a link about its centre.
-    pub fn mobility(&self, tree: &Tree, link: usize) -> Matrix3<f64> {
-        let rows: [Vec<f64>; 3] = std::array::from_fn(|axis| {
-            let mut wrench = [0.0; 3];
-            wrench[axis] = 1.0;
-            tree.pull_back(link, wrench)
-        });
-        let answers = [0, 1, 2].map(|axis: usize| self.response(&rows[axis]));
-        let product = |a: usize, b: usize| -> f64 {
-            rows[a]
-                .iter()
-                .zip(&answers[b])
-                .map(|(row, answer)| row * answer)
-                .sum()
+    /// How a link answers wrenches on another one, or itself: `J M̃⁻¹ Jᵀ`, and the way that goes with it.
+    pub fn answer(&self, tree: &Tree, link: usize, other: usize) -> LinkAnswer {
+        let rows_of = |link: usize| -> [Vec<f64>; 3] {
+            std::array::from_fn(|axis| {
+                let mut wrench = [0.0; 3];
+                wrench[axis] = 1.0;
+                tree.pull_back(link, wrench)
+            })
         };
-        Matrix3::from_fn(|a, b| 0.5 * (product(a, b) + product(b, a)))
+        let (rows, sources) = (rows_of(link), rows_of(other));
+        let answers = [0, 1, 2].map(|axis: usize| self.response(&sources[axis]));
+        let velocity = Matrix3::from_fn(|a, b| {
+            let terms = rows[a].iter().zip(&answers[b]);
+            terms.map(|(row, answer)| row * answer).sum()
+        });
+        LinkAnswer {
+            velocity,
+            position: self.share * velocity,
+        }
     }
 }

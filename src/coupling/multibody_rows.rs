@@ -11,16 +11,70 @@ const HELD: f64 = 1e6;
 /// Share of the friction there may be below which a contact sticks.
 const STICKS: f64 = 0.99;
 
+/// How a multibody will move, and what it answers to more forces.
+#[derive(Clone, Debug)]
+pub(super) struct Foreseen {
+    pub motion: Solved,
+    pub answers: Solved,
+}
+
+/// What is known when limits and contacts are looked at.
+struct Holding<'a> {
+    /// What resists but for the motors, and with them.
+    bare: Solved,
+    driven: Solved,
+    /// How forces that go on acting move the coordinates.
+    pressed: Vec<f64>,
+    forces: &'a [(usize, [f64; 3])],
+    moving: Equations,
+    answering: Equations,
+}
+
+impl Holding<'_> {
+    /// Holds a limit of a row that has it in the sense of `sign`.
+    fn hold_limit(&mut self, row: &[f64], sign: f64, add: impl Fn(&mut Equations)) {
+        let along: f64 = row.iter().zip(&self.pressed).map(|(g, x)| g * x).sum();
+        self.hold(sign * along > 0.0, add);
+    }
+
+    /// Holds a row of a contact of a link, whose normal points to what it presses.
+    fn hold_contact(&mut self, link: usize, normal: Vec2, add: impl Fn(&mut Equations)) {
+        let own = self.forces.iter().filter(|(pushed, _)| *pushed == link);
+        let along: f64 = own
+            .map(|(_, [x, y, _])| normal.dot(&Vec2::new(*x, *y)))
+            .sum();
+        self.hold(along > 0.0, add);
+    }
+
+    fn hold(&mut self, is_pressed: bool, add: impl Fn(&mut Equations)) {
+        add(&mut self.moving);
+        if is_pressed {
+            add(&mut self.answering);
+        }
+    }
+}
+
 impl Tree {
-    /// The equations of motion, solved with everything that resists. `reactions` are forces that go on acting, in joint coordinates.
+    /// The equations of motion, solved with everything that resists: for the motion under forces on links (N, N, N m) that go on acting, and for
+    /// what other forces do.
+    ///
+    /// A limit or a contact holds against what pushes into it and gives way to what lifts from it. Forces are taken to go on as those given do: where
+    /// these press, on the link itself, it holds, and elsewhere it does not. Too small a force is corrected in the next step, one that has to lift a
+    /// wheel off what is taken to hold it throws the truck.
     pub fn solve(
         &self,
         multibody: &Multibody,
         sets: &RapierSets<'_>,
         pace: Pace,
-        reactions: &[f64],
-    ) -> Option<Solved> {
+        forces: &[(usize, [f64; 3])],
+    ) -> Option<Foreseen> {
         let mut equations = self.equations(pace);
+        let mut reactions = vec![0.0; self.free_dofs().count()];
+        for &(link, force) in forces {
+            let pulled = self.pull_back(link, force);
+            let parts = reactions.iter_mut().zip(pulled);
+            parts.for_each(|(sum, part)| *sum += part);
+        }
         for (index, force) in reactions.iter().enumerate() {
             let mut row = vec![0.0; reactions.len()];
             row[index] = 1.0;
@@ -30,9 +84,20 @@ impl Tree {
         let bare = equations.solve()?;
         self.add_motors(multibody, &bare, &mut equations);
         let driven = equations.solve()?;
-        self.add_limits(multibody, pace, (&bare, &driven), &mut equations);
-        self.add_contacts(sets, pace, (&bare, &driven), &mut equations);
-        equations.solve()
+        let mut holding = Holding {
+            pressed: driven.response(&reactions),
+            forces,
+            bare,
+            driven,
+            answering: equations.clone(),
+            moving: equations,
+        };
+        self.add_limits(multibody, pace, &mut holding);
+        self.add_contacts(sets, pace, &mut holding);
+        Some(Foreseen {
+            motion: holding.moving.solve()?,
+            answers: holding.answering.solve()?,
+        })
     }
 
     fn add_springs(&self, multibody: &Multibody, equations: &mut Equations) {
@@ -82,13 +147,7 @@ impl Tree {
     }
 
     /// Limits that the motion foreseen would pass.
-    fn add_limits(
-        &self,
-        multibody: &Multibody,
-        pace: Pace,
-        (bare, driven): (&Solved, &Solved),
-        equations: &mut Equations,
-    ) {
+    fn add_limits(&self, multibody: &Multibody, pace: Pace, holding: &mut Holding<'_>) {
         for (index, dof) in self.dofs.iter().enumerate() {
             let joint = multibody.link(dof.link).map(MultibodyLink::joint);
             let limits = joint.and_then(|joint| {
@@ -99,42 +158,32 @@ impl Tree {
                 continue;
             };
             let Pace { dt, share } = pace;
-            let end = dof.value + dt * (dof.rate + share * dt * driven.along(&row));
+            let end = dof.value + dt * (dof.rate + share * dt * holding.driven.along(&row));
             let (low, high) = (f64::from(limits.min), f64::from(limits.max));
             // What is past its limit already is held where it is.
-            let shift = if end < low {
-                (dof.value - low).max(0.0)
+            let (shift, sign) = if end < low {
+                ((dof.value - low).max(0.0), -1.0)
             } else if end > high {
-                (dof.value - high).min(0.0)
+                ((dof.value - high).min(0.0), 1.0)
             } else {
                 continue;
             };
-            equations.add_spring(&row, pace.held(bare.weight(&row)), shift);
+            let held = pace.held(holding.bare.weight(&row));
+            holding.hold_limit(&row, sign, |equations| {
+                equations.add_spring(&row, held, shift)
+            });
         }
     }
 
     /// Contacts that pressed in rapier's last step against what no contact moves, unless the motion foreseen opens them.
-    fn add_contacts(
-        &self,
-        sets: &RapierSets<'_>,
-        pace: Pace,
-        (bare, driven): (&Solved, &Solved),
-        equations: &mut Equations,
-    ) {
+    fn add_contacts(&self, sets: &RapierSets<'_>, pace: Pace, holding: &mut Holding<'_>) {
         for (index, link) in self.links.iter().enumerate() {
             let Some(body) = sets.bodies.get(link.handle) else {
                 continue;
             };
             for &collider in body.colliders() {
                 for pair in sets.narrow_phase.contact_pairs_with(collider) {
-                    self.add_contact(
-                        pair,
-                        (index, collider),
-                        sets,
-                        pace,
-                        (bare, driven),
-                        equations,
-                    );
+                    self.add_contact(pair, (index, collider), sets, pace, holding);
                 }
             }
         }
@@ -146,8 +195,7 @@ impl Tree {
         (index, own): (usize, ColliderHandle),
         sets: &RapierSets<'_>,
         pace: Pace,
-        (bare, driven): (&Solved, &Solved),
-        equations: &mut Equations,
+        holding: &mut Holding<'_>,
     ) {
         let is_first = pair.collider1 == own;
         let other = if is_first {
@@ -184,19 +232,23 @@ impl Tree {
                     from_rapier(wall.linvel()) + f64::from(wall.angvel()) * perp(lever)
                 });
                 let row = self.point_row(index, at, normal);
-                let rate = equations.rate(&row) - normal.dot(&moves);
-                if rate + pace.dt * driven.along(&row) < 0.0 {
+                let rate = holding.moving.rate(&row) - normal.dot(&moves);
+                if rate + pace.dt * holding.driven.along(&row) < 0.0 {
                     continue;
                 }
                 let most = f64::from(manifold.data.friction) * f64::from(point.data.impulse);
                 let sticks = f64::from(point.data.tangent_impulse[0].abs()) < STICKS * most;
                 let directions = [(normal, true), (perp(normal), sticks)];
                 for (along, _) in directions.into_iter().filter(|(_, is_held)| *is_held) {
-                    let row = self.point_row(index, at, along);
-                    let weight = bare.weight(&row);
+                    let held_row = self.point_row(index, at, along);
+                    let weight = holding.bare.weight(&held_row);
                     if weight.is_finite() {
                         let shift = -pace.dt * along.dot(&moves);
-                        equations.add_spring(&row, pace.held(weight), shift);
+                        let held = pace.held(weight);
+                        // Friction holds where the contact does.
+                        holding.hold_contact(index, normal, |equations| {
+                            equations.add_spring(&held_row, held, shift);
+                        });
                     }
                 }
             }

@@ -2,6 +2,7 @@
 
 use super::claim::Claims;
 use super::places::placed_on;
+use super::quarantine::is_out;
 use super::roster::Roster;
 use super::sets::RapierSets;
 use super::walk::ClaimedPair;
@@ -87,7 +88,7 @@ impl PutTogether {
         self.pairs.retain(|&(one, other)| {
             let in_world = |handle| {
                 let body = flex_bodies.get(handle);
-                body.filter(|body| !body.is_quarantined())
+                body.filter(|body| !is_out(body, sets.bodies))
             };
             let Some(body) = in_world(one) else {
                 return false;

@@ -96,6 +96,40 @@ pub(super) fn travel_of(body: &RigidBody, dt: Real) -> Real {
     travel_vector(body, dt).length()
 }
 
+/// How far some point of a body goes in the step at most, by its turn as well (m).
+pub(super) fn reach_of(body: &RigidBody, colliders: &ColliderSet, dt: Real) -> Real {
+    let turn = turn_of(body, dt);
+    if turn == 0.0 {
+        return travel_of(body, dt);
+    }
+    let own = body.colliders().iter();
+    let swings = own
+        .filter_map(|&handle| colliders.get(handle))
+        .map(|collider| {
+            swing_of(
+                body,
+                &collider.shape().compute_aabb(&placed_on(body, collider)),
+                turn,
+            )
+        });
+    travel_of(body, dt) + swings.fold(0.0, Real::max)
+}
+
+/// How far a body turns in the step (rad).
+fn turn_of(body: &RigidBody, dt: Real) -> Real {
+    if body.body_type() == RigidBodyType::KinematicPositionBased {
+        let (from, to) = (body.rotation(), body.next_position().rotation);
+        return (to * from.inverse()).angle().abs();
+    }
+    body.angvel().abs() * dt
+}
+
+/// How far a turn moves what is in a box on a body at most (m): along a chord.
+fn swing_of(body: &RigidBody, aabb: &Aabb, turn: Real) -> Real {
+    let off = (aabb.center() - body.center_of_mass()).abs();
+    turn.min(2.0) * (off + aabb.half_extents()).length()
+}
+
 /// Box of a collider from where it is to where its body will be.
 pub(super) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) -> Aabb {
     let skin = collider.contact_skin();
@@ -107,18 +141,13 @@ pub(super) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) ->
     if body.is_fixed() {
         return aabb;
     }
-    let extents = aabb.half_extents();
-    let (from, to) = (body.position(), foreseen(body, dt));
-    let turn = if body.body_type() == RigidBodyType::KinematicPositionBased {
-        (to.rotation * from.rotation.inverse()).angle().abs()
-    } else {
-        body.angvel().abs() * dt
-    };
+    let to = foreseen(body, dt);
+    let swing = swing_of(body, &aabb, turn_of(body, dt));
     let offset = collider.position_wrt_parent().copied().unwrap_or_default();
     let moved = loosened(collider.shape().compute_aabb(&(to * offset)), skin);
     loosened(
         aabb.merged(&moved),
-        turn.min(1.0) * extents.length() + 0.01 * extents.length(),
+        swing + 0.01 * aabb.half_extents().length(),
     )
 }
 

@@ -4,7 +4,7 @@
 //! the last sound step left.
 
 use super::sets::RapierSets;
-use crate::body::{FlexBodyError, FlexBodyHandle, FlexBodySet};
+use crate::body::{FlexBody, FlexBodyError, FlexBodyHandle, FlexBodySet};
 use crate::rapier::prelude::*;
 
 impl FlexBodySet {
@@ -30,6 +30,12 @@ impl FlexBodySet {
         }
         Ok(())
     }
+}
+
+/// Whether a body takes no part: it is quarantined, or the user has disabled its carrier, which stops it where it is as rapier's own bodies.
+pub(crate) fn is_out(body: &FlexBody, bodies: &RigidBodySet) -> bool {
+    let carrier = bodies.get(body.rigid_body_handle());
+    body.is_quarantined() || carrier.is_some_and(|carrier| !carrier.is_enabled())
 }
 
 /// Takes a body out of the world.

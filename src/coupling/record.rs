@@ -6,6 +6,7 @@ use super::claim::Claims;
 use super::events::EventBook;
 use super::filter::Answers;
 use super::hooks::HookBook;
+use super::links::KnownForces;
 use super::masters::Master;
 use super::members::Members;
 use super::memory::Memory;
@@ -182,7 +183,7 @@ pub(crate) struct CouplingRecord {
     events: EventRecord,
     hooks: HookRecord,
     masters: Vec<(RigidBodyHandle, Master)>,
-    links: Vec<(RigidBodyHandle, [f64; 3])>,
+    links: Vec<(RigidBodyHandle, KnownForces)>,
     references: References,
     joint_memory: JointMemory,
     explicit: Vec<(u32, ExplicitRecord)>,

@@ -1,6 +1,7 @@
 //! The roster: flexible bodies that take part in a step, with the boxes in which they are looked for, and those that sleep.
 
 use super::places::{loosened, order_of_boxes, swept_surface};
+use super::quarantine::is_out;
 use super::sets::RapierSets;
 use super::sleep::Sleeper;
 use crate::body::{FlexBody, FlexBodySet, FlexState};
@@ -77,7 +78,7 @@ impl Roster {
         self.sleeping_surfaces.clear();
         for (handle, body) in flex_bodies
             .iter()
-            .filter(|(_, body)| !body.is_quarantined())
+            .filter(|(_, body)| !is_out(body, sets.bodies))
         {
             let index = handle.into_raw_parts().0;
             if let Some(sleeper) = Sleeper::new(index, body, sets) {

@@ -11,9 +11,8 @@ use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::Aabb;
 use crate::rapier::prelude::*;
 
-/// How far the fastest node of a body at rest goes in the time until sleep, over the body's size: displacements and forces are then
-/// those of equilibrium to some digits more than rapier's single precision has. Rapier's own threshold, 5 cm/s, would freeze a beam that
-/// swings.
+/// How far a node of a body at rest is at most from where it was, over the body's size: displacements and forces are then those of equilibrium to
+/// some digits more than rapier's single precision has. Rapier's own threshold, 5 cm/s, would freeze a beam that swings.
 const STILL: f64 = 1e-8;
 
 /// Part of the time until sleep at which the timer of a body that moves is set back: not in every step, for rapier then looks at
@@ -175,17 +174,30 @@ pub(crate) fn rests(body: &FlexBody, sets: &RapierSets<'_>) -> bool {
     })
 }
 
-/// Whether a node moves farther than at rest.
+/// Looks whether a body has stayed where it is in a step, after it.
+pub(crate) fn look_whether_still(body: &mut FlexBody, sets: &RapierSets<'_>) {
+    let dt = f64::from(sets.integration_parameters.dt);
+    body.look_whether_still(dt, STILL * size_of(body, sets));
+}
+
+/// Whether a node was elsewhere within the last part of the time until sleep, or goes there within as much.
 fn moves(body: &FlexBody, velocities: &[f64], patience: Real, sets: &RapierSets<'_>) -> bool {
-    let fastest = velocities
-        .chunks_exact(2)
-        .map(|v| v[0] * v[0] + v[1] * v[1])
-        .fold(0.0, f64::max);
+    let nodes = velocities.chunks_exact(2);
+    let fastest = nodes.map(|v| v[0] * v[0] + v[1] * v[1]).fold(0.0, f64::max);
+    let (fastest, way) = (fastest.sqrt(), STILL * size_of(body, sets));
+    let goes_on = fastest * f64::from(patience) > way;
+    // What has stayed for long may tremble, by less than that in a step.
+    let trembles = body.time_still() >= f64::from(SET_BACK * patience)
+        && fastest * f64::from(sets.integration_parameters.dt) <= way;
+    goes_on && !trembles
+}
+
+/// The longer side of a body's box (m).
+fn size_of(body: &FlexBody, sets: &RapierSets<'_>) -> f64 {
     let collider = sets.colliders.get(body.collider_handle());
-    let size = collider.map_or(0.0, |collider| {
+    f64::from(collider.map_or(0.0, |collider| {
         collider.compute_aabb().extents().max_element()
-    });
-    fastest.sqrt() * f64::from(patience) > STILL * f64::from(size)
+    }))
 }
 
 /// Stops a body whose carrier has fallen asleep in rapier's step.

@@ -5,7 +5,7 @@
 //! bodies meet each other and fixed colliders only, all that a claim needs is known without it.
 
 use super::changes::Changes;
-use super::places::{loosened, placed_on, swept_box, travel_of};
+use super::places::{loosened, placed_on, reach_of, swept_box};
 use super::roster::{ClaimedFlex, Roster};
 use super::sets::RapierSets;
 use super::strikes::Strikes;
@@ -227,7 +227,7 @@ pub(super) fn farthest_travel(sets: &RapierSets<'_>, flex: &Roster) -> Real {
     awake
         .filter_map(|handle| sets.bodies.get(handle))
         .filter(|body| !body.is_fixed() && !body.is_sleeping())
-        .map(|body| travel_of(body, dt))
+        .map(|body| reach_of(body, sets.colliders, dt))
         .chain(flex.iter().map(|flex| flex.travel))
         .fold(0.0, Real::max)
 }

@@ -5,6 +5,7 @@
 
 use super::claim::Claims;
 use super::newcomers::{DEEP, depth_in, pushes};
+use super::quarantine::is_out;
 use super::sets::RapierSets;
 use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
 use crate::math::is_held;
@@ -41,10 +42,10 @@ impl Trespassers {
     ) -> &[Trespasser] {
         self.found.clear();
         self.surfaces.clear();
-        self.surfaces
-            .extend(flexible_in_world(flex_bodies).filter_map(|(handle, body)| {
-                Some((handle, box_of(body.collider_handle(), sets)?))
-            }));
+        self.surfaces.extend(
+            flexible_in_world(flex_bodies, sets.bodies)
+                .filter_map(|(handle, body)| Some((handle, box_of(body.collider_handle(), sets)?))),
+        );
         let boxes = self.surfaces.iter().map(|(_, surface)| *surface);
         let Some(around) = boxes.reduce(|one, other| one.merged(&other)) else {
             return &self.found;
@@ -88,8 +89,12 @@ impl Trespassers {
     }
 }
 
-fn flexible_in_world(bodies: &FlexBodySet) -> impl Iterator<Item = (FlexBodyHandle, &FlexBody)> {
-    bodies.iter().filter(|(_, body)| !body.is_quarantined())
+fn flexible_in_world<'a>(
+    flex_bodies: &'a FlexBodySet,
+    bodies: &'a RigidBodySet,
+) -> impl Iterator<Item = (FlexBodyHandle, &'a FlexBody)> {
+    let all = flex_bodies.iter();
+    all.filter(|(_, body)| !is_out(body, bodies))
 }
 
 /// Box of a collider where the step ends, if rapier's queries can reckon with it.

@@ -4,9 +4,9 @@
 
 use super::claim_attachments::Attached;
 use super::claim_joints::ClaimedJoints;
-use super::filter::{Answers, claimable_parent};
+use super::filter::{Answers, claimable_body, claimable_parent};
 use super::members::Members;
-use super::places::{loosened, order_of_colliders, swept_box, travel_of};
+use super::places::{loosened, order_of_colliders, reach_of, swept_box};
 use super::roster::Roster;
 use super::sets::RapierSets;
 use super::sweep::Sweep;
@@ -31,6 +31,7 @@ pub(super) struct Map<'a> {
     pub flex: &'a Roster,
     pub sweep: &'a Sweep,
     pub attached: &'a Attached,
+    pub bonds: &'a [(RigidBodyHandle, u32)],
     /// By how much the boxes have grown in this step (m).
     pub excess: Real,
 }
@@ -58,6 +59,7 @@ impl Walk {
         self.answers.clear();
         self.seen.clear();
         map.attached.claim(sets, &mut self.members);
+        self.claim_bound(map, sets);
         let mut near = std::mem::take(&mut self.near);
         for flex in 0..map.flex.len() {
             self.list_near_flex(map, sets, flex, &mut near);
@@ -81,6 +83,18 @@ impl Walk {
         }
         self.near = near;
         self.members.settle();
+    }
+
+    /// Claims what stays with a flexible body for this step.
+    fn claim_bound(&mut self, map: &Map<'_>, sets: &RapierSets<'_>) {
+        for &(handle, index) in map.bonds {
+            let mut flex = 0..map.flex.len();
+            let partner = flex.find(|&slot| map.flex[slot].index == index);
+            if let Some(partner) = partner.filter(|_| claimable_body(sets, handle)) {
+                let member = self.members.claim(handle);
+                self.members.unite(partner, member);
+            }
+        }
     }
 
     /// Lists the colliders near a flexible body that it may touch: those rapier lists and those the sweep met, each once, in order.
@@ -242,7 +256,7 @@ fn look_around(
     let dt = sets.integration_parameters.dt;
     let farthest = map.sweep.farthest();
     let swept = loosened(swept_box(sets.bodies, collider, dt), map.excess);
-    if travel_of(body, dt) + farthest + map.excess
+    if reach_of(body, sets.colliders, dt) + farthest + map.excess
         <= sets.integration_parameters.prediction_distance()
     {
         return;

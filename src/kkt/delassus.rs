@@ -73,8 +73,15 @@ pub(super) fn compliance(
     let moves = |a: &Attachment| both && blocks[a.block].is_massless(a.grip.point);
     for a in one.attachments() {
         for b in other.attachments() {
-            if a.block == b.block && (!is_quasi_static || moves(a) && moves(b)) {
-                let term = a.weight * b.weight * blocks[a.block].compliance(a.grip, b.grip, of);
+            if is_quasi_static && !(moves(a) && moves(b)) {
+                continue;
+            }
+            let between = match a.block == b.block {
+                true => Some(blocks[a.block].compliance(a.grip, b.grip, of)),
+                false => blocks[a.block].compliance_across(a.grip, (b.block, b.grip), of),
+            };
+            if let Some(between) = between {
+                let term = a.weight * b.weight * between;
                 sum = Some(sum.map_or(term, |sum| sum + term));
             }
         }

@@ -10,7 +10,9 @@
 
 use super::delassus::RowDirection;
 use super::island::{Island, SolveSettings};
+use super::joint_rows::add_wrench;
 use super::summary::IslandSummary;
+use crate::constraint::joint::unit_wrench;
 use crate::math::Vec2;
 use crate::system::{Balance, Block, FlexBlock, Response, RigidBlock, RigidMotion};
 
@@ -79,6 +81,38 @@ impl Island {
         work
     }
 
+    /// Work of the joints on what is not driven from outside (J): nothing but for motors, springs and driven bodies.
+    pub(super) fn joint_work(&self, settings: &SolveSettings) -> f64 {
+        let mut work = 0.0;
+        for tie in &self.ties {
+            if tie.closing != 0.0 {
+                continue;
+            }
+            let is_turn = tie.row.measure.is_turn();
+            let (first, last) = tie.row.grips;
+            for at in first..last {
+                let grip = &self.joint_grips[at];
+                match &self.blocks[grip.block] {
+                    Block::Rigid(block) if block.is_driven() => {}
+                    Block::Rigid(block) if tie.is_hard => {
+                        let mut impulse = [0.0; 3];
+                        let kept = unit_wrench(grip, tie.direction, is_turn);
+                        let end = unit_wrench(&self.end_grips[at], tie.end, is_turn);
+                        add_wrench(&mut impulse, tie.kick, kept);
+                        add_wrench(&mut impulse, tie.impulse, end);
+                        work += block.work_of(impulse);
+                    }
+                    block => {
+                        let moved = block.position(grip.point) - block.start_position(grip.point);
+                        let force = tie.force(settings.dt) * tie.row.sign;
+                        work += force * grip.weight * tie.direction.dot(&moved);
+                    }
+                }
+            }
+        }
+        work
+    }
+
     /// Work done on the island by applied forces and, at most, by moving driven bodies (J).
     pub(super) fn external_work(&self) -> f64 {
         let mut work = self.applied_work();
@@ -119,8 +153,10 @@ impl Island {
             .iter()
             .any(|contact| contact.multiplier[0] > 0.0 || contact.remembered.normal > 0.0);
         let [kinetic, elastic] = summary.end_energy;
-        let kept = match (touches, self.has_swinging_joints(settings.is_within)) {
-            (false, _) => 0.0,
+        let swings = self.has_swinging_joints(settings.is_within);
+        let kept = match (touches, swings) {
+            (false, false) => 0.0,
+            (false, true) => kinetic + elastic,
             (true, false) => SWING * (kinetic + elastic),
             (true, true) => f64::INFINITY,
         };
@@ -129,7 +165,9 @@ impl Island {
             kinetic + elastic - summary.start_energy[0] - summary.start_energy[1] - allowance;
         *reserve -= gain;
         let band = if touches { ROUND_OFF } else { SWING };
-        let debt = -*reserve - band * (kinetic + elastic);
+        // What is there by mistake is no measure of it.
+        let had = summary.start_energy[0] + summary.start_energy[1] + allowance.abs();
+        let debt = -*reserve - band * (kinetic + elastic).min(had);
         // At rest under load there are only rounding errors to take.
         let is_still = kinetic <= ROUND_OFF * elastic;
         if debt <= 0.0 || is_still {
@@ -142,6 +180,10 @@ impl Island {
         };
         if taken < debt {
             taken += self.remove_vibration(debt - taken);
+        }
+        if taken < debt && swings {
+            summary.calmed = self.remove_relative_motion(debt - taken);
+            taken += summary.calmed;
         }
         summary.limited = taken;
         summary.end_energy[0] -= taken;

@@ -45,6 +45,7 @@ impl Island {
                 block.add_impulse(wrench.map(|value| settings.dt * value));
             }
         }
+        self.add_across(Response::Velocity, settings.dt);
         self.weigh_switches(settings);
         self.impact_rows(settings)?;
         self.balance_angular_momentum();
@@ -135,6 +136,7 @@ impl Island {
                 Block::Rigid(block) => block.add_impulse(wrench.map(|value| scale * value)),
             }
         }
+        self.add_across(Response::Velocity, scale);
     }
 
     /// Gain of `H` over the step beyond the work of loads, of prescribed bodies and of friction (J).

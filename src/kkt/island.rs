@@ -333,7 +333,7 @@ impl Island {
         summary.start_energy = before;
         let mut contacts = self.contacts.iter();
         summary.load_energy = self.load_energy();
-        summary.is_parting = contacts.any(|contact| contact.allowance < 0.0);
+        summary.is_parting = contacts.any(|contact| contact.allowance < 0.0) || self.closes();
         let finished = treatment.finish(self, settings, &mut summary);
         let is_unsolved = summary.is_unsolved();
         if finished.is_err() && is_unsolved && !self.path.is_empty() {
@@ -344,9 +344,10 @@ impl Island {
         }
         self.settle_damping(settings);
         let joint_work = self.joint_work(settings);
-        let allowance = loads + joint_work;
-        summary.work = self.actual_work(settings) + joint_work;
         summary.end_energy = self.end_energy();
+        let stretched = self.stretched_by_closing(&summary);
+        let allowance = loads + joint_work + stretched;
+        summary.work = self.actual_work(settings) + joint_work + stretched;
         let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(&summary);
         if is_thrown && settings.may_be_cut {
             summary.is_stopped = true;

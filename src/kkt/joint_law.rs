@@ -32,6 +32,8 @@ pub(super) struct Resolved {
     pub goal: f64,
     /// Where the row is to be in the end (m or rad), which what was put elsewhere comes to over several steps.
     pub target: f64,
+    /// By how much the step brings what was put elsewhere nearer (m or rad).
+    pub closing: f64,
     pub give: f64,
     pub kind: RowKind,
     pub finish: Finish,
@@ -55,13 +57,11 @@ pub(super) fn resolve(
         JointLaw::Rigid { goal, rate } => {
             let (goal, rate) = (row.sign * goal, row.sign * rate);
             let off = start + settings.dt * rate - goal;
+            let left = if off.abs() > SLACK { kept * off } else { 0.0 };
             Resolved {
-                goal: if off.abs() > SLACK {
-                    goal + kept * off
-                } else {
-                    goal
-                },
+                goal: goal + left,
                 target: goal,
+                closing: if left == 0.0 { 0.0 } else { left - off },
                 give: 0.0,
                 kind: RowKind::Bilateral,
                 finish: Finish::Hold { rate },
@@ -70,13 +70,11 @@ pub(super) fn resolve(
         JointLaw::Limit { bound } => {
             let bound = row.sign * bound;
             let off = start - bound;
+            let left = if off < -SLACK { kept * off } else { 0.0 };
             Resolved {
-                goal: if off < -SLACK {
-                    bound + kept * off
-                } else {
-                    bound
-                },
+                goal: bound + left,
                 target: bound,
+                closing: if left == 0.0 { 0.0 } else { left - off },
                 give: 0.0,
                 kind: RowKind::Unilateral,
                 finish: Finish::Limit,
@@ -85,6 +83,7 @@ pub(super) fn resolve(
         JointLaw::Drive { rate, most } => Resolved {
             goal: start + settings.dt * rate,
             target: start + settings.dt * rate,
+            closing: 0.0,
             give: 0.0,
             kind: bounded(most / scale),
             finish: Finish::Hold { rate },
@@ -140,6 +139,7 @@ fn resolve_spring(
     Resolved {
         goal,
         target: goal,
+        closing: 0.0,
         give,
         kind,
         finish,

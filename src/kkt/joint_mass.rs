@@ -136,6 +136,8 @@ impl Island {
         self.solve_impulses(Response::ByMass, dt)?;
         let first = self.rows.len();
         self.clear_impulses();
+        // Without links it stays empty, and takes no memory.
+        let mut across = Vec::new();
         for slot in 0..self.joint_rows.len() {
             let value = self.multipliers[first + slot];
             let tie = self.ties[self.joint_rows[slot]];
@@ -158,10 +160,16 @@ impl Island {
                             Response::Acceleration => block.add_smooth_acceleration(wrench),
                             _ => block.add_impulse(wrench),
                         }
+                        if block.link_response().is_some() {
+                            across.push((grip.block, wrench));
+                        }
                     }
                     _ => {}
                 }
             }
+        }
+        for (block, wrench) in across {
+            self.push_across(of, block, wrench);
         }
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {

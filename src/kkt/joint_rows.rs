@@ -45,6 +45,9 @@ pub struct ActiveJoint {
     /// Multiplier of the position stage (N or N m).
     pub multiplier: f64,
     pub(super) status: Status,
+    /// How far the step brings ends that were put apart nearer to each other (m or rad), and the part of the multiplier that does so.
+    pub(super) closing: f64,
+    pub(super) closer: f64,
     /// Impulses along the rows of the beginning and of the end (N s or N m s).
     pub(super) kick: f64,
     pub(super) impulse: f64,
@@ -72,7 +75,11 @@ impl ActiveJoint {
     /// Mean force or torque over the step, along `+∂q/∂x` (N or N m).
     pub fn force(&self, dt: f64) -> f64 {
         let impulse = (self.kick + self.impulse) / dt;
-        let steady = if self.is_hard { 0.0 } else { self.multiplier };
+        let steady = if self.is_hard {
+            0.0
+        } else {
+            self.multiplier - self.closer
+        };
         self.row.sign * (steady + impulse)
     }
 
@@ -148,6 +155,8 @@ impl Island {
                 end: direction,
                 multiplier: row.last_multiplier(),
                 status,
+                closing: resolved.closing,
+                closer: 0.0,
                 kick: 0.0,
                 impulse: 0.0,
                 driven: 0.0,

@@ -4,7 +4,7 @@ use super::island::{Island, SolveSettings};
 use super::joint_rows::pair_mobility;
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, unit_wrench};
-use crate::math::Vec2;
+use crate::math::{Vec2, cross};
 use crate::system::{Block, Response};
 
 /// Which rows the forces act along.
@@ -131,6 +131,49 @@ impl Island {
             }
             first = last;
         }
+        self.couple_joints_across(of, which);
+    }
+
+    /// Joint rows that hold different links of one multibody.
+    fn couple_joints_across(&mut self, of: Response, which: Rows) {
+        if !self.blocks.iter().any(Block::answers_with_others) {
+            return;
+        }
+        let n = self.rows.len() + self.joint_rows.len();
+        for i in 0..self.holders.len() {
+            for j in 0..self.holders.len() {
+                let ((block, one), (other, source)) = (self.holders[i], self.holders[j]);
+                let (at, from) = (self.joint_slot[one], self.joint_slot[source]);
+                if block == other || at == usize::MAX || from == usize::MAX {
+                    continue;
+                }
+                let (own, others) = (self.grips_of(one, which), self.grips_of(source, which));
+                self.delassus[at * n + from] +=
+                    self.mobility_across((block, own), (other, others), of);
+            }
+        }
+    }
+
+    /// What of the mobility between two rows goes from one link of a multibody to another (1/kg).
+    fn mobility_across(
+        &self,
+        (block, (grips, along, turns)): (usize, (&[JointGrip], Vec2, bool)),
+        (other, (sources, push, is_turned)): (usize, (&[JointGrip], Vec2, bool)),
+        of: Response,
+    ) -> f64 {
+        let mut sum = 0.0;
+        for at in grips.iter().filter(|grip| grip.block == block) {
+            for from in sources.iter().filter(|grip| grip.block == other) {
+                let wrenches = [
+                    unit_wrench(at, along, turns),
+                    unit_wrench(from, push, is_turned),
+                ];
+                let moved =
+                    self.blocks[block].mobility_across(wrenches[0], (other, wrenches[1]), of);
+                sum += moved.unwrap_or(0.0);
+            }
+        }
+        sum
     }
 
     fn mobility_on(
@@ -183,6 +226,18 @@ impl Island {
         of: Response,
     ) -> Vec2 {
         let mut sum = Vec2::zeros();
+        for a in kinematics.attachments().iter().filter(|a| a.block != block) {
+            for from in grips.iter().filter(|grip| grip.block == block) {
+                let pushed = unit_wrench(from, push, is_turn);
+                let along = |axis: Vec2| {
+                    let own = [axis.x, axis.y, cross(a.grip.lever, axis)];
+                    self.blocks[a.block].mobility_across(own, (block, pushed), of)
+                };
+                if let (Some(x), Some(y)) = (along(Vec2::x()), along(Vec2::y())) {
+                    sum += a.weight * Vec2::new(x, y);
+                }
+            }
+        }
         for a in kinematics.attachments().iter().filter(|a| a.block == block) {
             for from in grips.iter().filter(|grip| grip.block == block) {
                 sum += a.weight

@@ -28,7 +28,7 @@ impl Island {
             if !tie.is_hard {
                 continue;
             }
-            let half = settings.b0 * tie.multiplier / settings.dt;
+            let half = settings.b0 * (tie.multiplier - tie.closer) / settings.dt;
             let stayed = tie.row.last_multiplier() > 0.0 && tie.start - tie.goal <= STAYED;
             tie.kick = if tie.finish == Finish::Limit && !stayed {
                 0.0
@@ -292,8 +292,13 @@ impl Island {
         let centripetal = -block.spin() * block.spin() * grip.lever;
         match block {
             Block::Rigid(rigid) => {
-                let [x, y, turn] = rigid.acceleration_under(self.wrenches[grip.block]);
-                [x + centripetal.x, y + centripetal.y, turn]
+                let (under, turn) = block.acceleration_under(&self.wrenches, grip.block);
+                let [x, y, own] = rigid.smooth_end;
+                [
+                    x + under.x + centripetal.x,
+                    y + under.y + centripetal.y,
+                    own + turn,
+                ]
             }
             Block::Flex(_) => {
                 let sum = block.smooth_acceleration(grip.grip()) + centripetal;
@@ -373,35 +378,6 @@ impl Island {
                 block.settle_damping();
             }
         }
-    }
-
-    /// Work of the joints on what is not driven from outside (J): nothing but for motors, springs and driven bodies.
-    pub(super) fn joint_work(&self, settings: &SolveSettings) -> f64 {
-        let mut work = 0.0;
-        for tie in &self.ties {
-            let is_turn = tie.row.measure.is_turn();
-            let (first, last) = tie.row.grips;
-            for at in first..last {
-                let grip = &self.joint_grips[at];
-                match &self.blocks[grip.block] {
-                    Block::Rigid(block) if block.is_driven() => {}
-                    Block::Rigid(block) if tie.is_hard => {
-                        let mut impulse = [0.0; 3];
-                        let kept = unit_wrench(grip, tie.direction, is_turn);
-                        let end = unit_wrench(&self.end_grips[at], tie.end, is_turn);
-                        add_wrench(&mut impulse, tie.kick, kept);
-                        add_wrench(&mut impulse, tie.impulse, end);
-                        work += block.work_of(impulse);
-                    }
-                    block => {
-                        let moved = block.position(grip.point) - block.start_position(grip.point);
-                        let force = tie.force(settings.dt) * tie.row.sign;
-                        work += force * grip.weight * tie.direction.dot(&moved);
-                    }
-                }
-            }
-        }
-        work
     }
 
     /// Leaves the forces of soft joints on the flexible blocks.

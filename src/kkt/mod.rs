@@ -6,6 +6,8 @@
 //!    acceleration; contacts through massless surfaces need it only where the impact is shorter than the step;
 //! 3. energy stage: velocities give back the energy that contact would add.
 
+mod calm;
+mod closing;
 mod constraint_function;
 mod delassus;
 mod energy;
@@ -39,4 +41,5 @@ pub(crate) use gentle::{DOUBLED, GAINED};
 pub use impact::ImpactTreatment;
 pub use island::{ActiveContact, Island, KktError, SolveSettings};
 pub use joint_rows::ActiveJoint;
+pub use momentum::LateForce;
 pub use summary::IslandSummary;

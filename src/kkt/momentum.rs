@@ -6,8 +6,34 @@
 //! velocities of the whole group rigidly, which changes no relative velocity at any contact.
 
 use super::island::{Island, SolveSettings};
+use super::joint_rows::add_wrench;
+use crate::constraint::joint::unit_wrench;
 use crate::math::{Vec2, cross, perp};
-use crate::system::{Block, Moments};
+use crate::system::{Block, Moments, Step};
+
+/// Forces of flexible bodies on a rigid one that these keep in their stored accelerations.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub struct LateForce {
+    /// Whether the rigid body has them in its own as well.
+    pub is_stored: bool,
+    /// Their sum (N, N, N m).
+    pub wrench: [f64; 3],
+    /// One of the flexible bodies, by its index.
+    pub partner: Option<u32>,
+}
+
+impl LateForce {
+    fn add(&mut self, wrench: [f64; 3], partner: Option<u32>) {
+        if wrench != [0.0; 3] {
+            self.partner = self.partner.or(partner);
+            add_wrench(&mut self.wrench, 1.0, wrench);
+        }
+    }
+}
 
 impl Island {
     /// Counts what lasting forces do beyond their time in a part of a step. `1 - β1` of a force acts in the part that follows, as long as that
@@ -19,6 +45,46 @@ impl Island {
             if !contact.is_hard {
                 let (now, before) = (contact.lasting(), contact.remembered.lasting);
                 contact.late = [0, 1].map(|axis| late * (now[axis] - before[axis]));
+            }
+        }
+    }
+
+    /// What soft contacts and joints with flexible blocks that store accelerations have done to every rigid one, and do on in the next step.
+    pub fn late_forces(&self, step: &Step, late: &mut Vec<LateForce>) {
+        let none = LateForce {
+            is_stored: !step.is_within(),
+            ..LateForce::default()
+        };
+        late.clear();
+        late.resize(self.blocks.len(), none);
+        let stores = |block: usize| matches!(&self.blocks[block], Block::Flex(body) if !body.is_large() && !body.is_explicit());
+        for contact in self.contacts.iter().filter(|contact| !contact.is_hard) {
+            let kinematics = &contact.kinematics;
+            let [normal, tangent] = contact.lasting();
+            let force = normal * kinematics.normal + tangent * kinematics.tangent();
+            let grips = || kinematics.attachments().iter();
+            let Some(partner) = grips().map(|grip| grip.block).find(|&block| stores(block)) else {
+                continue;
+            };
+            for grip in grips() {
+                let share = grip.weight * force;
+                let wrench = [share.x, share.y, cross(grip.grip.lever, share)];
+                late[grip.block].add(wrench, self.flex_index[partner]);
+            }
+        }
+        for tie in self.ties.iter().filter(|tie| !tie.is_hard) {
+            let grips = &self.joint_grips[tie.row.grips.0..tie.row.grips.1];
+            let Some(partner) = grips
+                .iter()
+                .map(|grip| grip.block)
+                .find(|&block| stores(block))
+            else {
+                continue;
+            };
+            for grip in grips {
+                let wrench = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
+                let force = tie.multiplier - tie.closer;
+                late[grip.block].add(wrench.map(|part| force * part), self.flex_index[partner]);
             }
         }
     }

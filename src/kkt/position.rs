@@ -13,7 +13,7 @@ use super::summary::IslandSummary;
 use crate::constraint::contact::{Candidate, ContactMemory, Kinematics, Remembered, Scene};
 use crate::linalg::complementarity::Status;
 use crate::math::{Vec2, exp};
-use crate::system::Block;
+use crate::system::{Block, Response};
 
 /// Rate at which bodies that were put into each other part (1/s): a third of the overlap in a step of 1/60 s.
 pub(super) const PARTING_RATE: f64 = 24.0;
@@ -198,6 +198,7 @@ impl Island {
                 Block::Rigid(block) => block.set_position_increment(*wrench),
             }
         }
+        self.add_across(Response::Position, 1.0);
         turned
     }
 

@@ -35,6 +35,8 @@ pub struct IslandSummary {
     pub work: f64,
     /// Energy taken out by the energy stage (J).
     pub limited: f64,
+    /// What of it was taken from all joined motion, as a step far too long leaves no other place to take it from (J).
+    pub calmed: f64,
     /// `dt²/8 a·M a` at the end of an explicit step (J).
     pub swing: f64,
     /// Kinetic energy of the half step of forward contacts that belongs to this instant and is not in the velocities (J).

@@ -150,6 +150,11 @@ impl Island {
 
     /// For each block the first one of those that it touches or is joined with, directly or by others.
     fn touching_groups(&self) -> Vec<usize> {
+        self.groups_of(|_| true)
+    }
+
+    /// The same, joined only by blocks that count.
+    pub(super) fn groups_of(&self, counts: impl Fn(&Block) -> bool) -> Vec<usize> {
         let mut leaders: Vec<usize> = (0..self.blocks.len()).collect();
         let mut join = |blocks: &mut dyn Iterator<Item = usize>| {
             let mut first = None;
@@ -171,12 +176,14 @@ impl Island {
                 contact.is_closed() || contact.base.is_some_and(|base| base.gap <= margin);
             if touches {
                 let attachments = contact.kinematics.attachments().iter();
-                join(&mut attachments.map(|attachment| attachment.block));
+                let blocks = attachments.map(|attachment| attachment.block);
+                join(&mut blocks.filter(|&block| counts(&self.blocks[block])));
             }
         }
         for tie in &self.ties {
             let (from, to) = tie.row.grips;
-            join(&mut self.joint_grips[from..to].iter().map(|grip| grip.block));
+            let blocks = self.joint_grips[from..to].iter().map(|grip| grip.block);
+            join(&mut blocks.filter(|&block| counts(&self.blocks[block])));
         }
         (0..self.blocks.len())
             .map(|block| leader_of(&leaders, block))

@@ -17,7 +17,7 @@ use super::joint_system::Rows;
 use super::multipliers::prepare;
 use super::sparse::Asked;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
-use crate::math::Vec2;
+use crate::math::{Vec2, perp};
 use crate::system::{Block, Response};
 
 impl Island {
@@ -49,6 +49,7 @@ impl Island {
     /// Solves the impact law at the contacts that hold velocities, and gathers its impulses, which rigid bodies take at once;
     /// returns whether there are any.
     pub(super) fn impact_rows(&mut self, settings: &SolveSettings) -> Result<bool, KktError> {
+        self.take_out_closings(settings)?;
         self.kick_joints(settings);
         self.settle_joined_velocities(settings)?;
         self.velocity_rows(settings, |_| true);
@@ -106,6 +107,26 @@ impl Island {
             {
                 block.set_soft_force(*wrench);
             }
+        }
+        let [weight, lasting] = match self.blocks.iter().find_map(Block::soft_weights) {
+            Some(weights) => weights,
+            None => return,
+        };
+        self.add_across(Response::Velocity, weight);
+        self.add_across(Response::Acceleration, lasting);
+    }
+
+    /// Adds what a wrench on a link does to others of its multibody.
+    pub(super) fn push_across(&mut self, of: Response, from: usize, wrench: [f64; 3]) {
+        for block in &mut self.blocks {
+            block.push_across(of, from, wrench);
+        }
+    }
+
+    /// Adds what the gathered wrenches do to other links of the multibodies that they act on, times a scale.
+    pub(super) fn add_across(&mut self, of: Response, scale: f64) {
+        for block in &mut self.blocks {
+            block.add_across(of, &self.wrenches, scale);
         }
     }
 
@@ -337,6 +358,7 @@ impl Island {
                 }
             }
         }
+        self.add_across(of, scale);
     }
 
     /// Adds a multiple of the responses to the flexible blocks.
@@ -395,14 +417,8 @@ impl Island {
             let mut acceleration =
                 kinematics.relative(&self.blocks, |block, grip| block.smooth_acceleration(grip));
             for a in kinematics.attachments() {
-                if let Block::Rigid(block) = &self.blocks[a.block] {
-                    acceleration += a.weight
-                        * block.respond(
-                            a.grip.lever,
-                            self.wrenches[a.block],
-                            Response::Acceleration,
-                        );
-                }
+                let answer = self.blocks[a.block].acceleration_under(&self.wrenches, a.block);
+                acceleration += a.weight * (answer.0 + answer.1 * perp(a.grip.lever));
             }
             let normal = self.rows.len();
             let along = acceleration.dot(&kinematics.normal) + contact.parting[0] / settings.dt;

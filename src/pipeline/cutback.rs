@@ -85,7 +85,7 @@ impl Solver {
             (true, true) => DOUBLED,
             (true, false) => f64::INFINITY,
         };
-        let owes_more = -reserve > share * summary.brought() + (-before).max(0.0);
+        let owes_more = summary.calmed - reserve > share * summary.brought() + (-before).max(0.0);
         let is_coarse = owes_more && !summary.is_parting;
         let is_good = !is_coarse && !summary.is_unsolved();
         let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters, flex_bodies);

@@ -6,6 +6,7 @@ use crate::constraint::joint::{JointOwner, Measure};
 use crate::coupling::{
     FlexPool, JointImpulse, Landing, Push, RapierSets, keep_awake, keep_landing_awake, wake_moving,
 };
+use crate::kkt::LateForce;
 use crate::rapier::prelude::ImpulseJointHandle;
 use crate::system::Block;
 
@@ -31,6 +32,8 @@ pub(super) struct Outcome {
     pub pushes: Vec<Push>,
     /// Impulses on rapier's joints.
     pub joint_impulses: Vec<JointImpulse>,
+    /// Forces that act on in the next step, by the blocks of an island: scratch.
+    late: Vec<LateForce>,
 }
 
 impl Outcome {
@@ -49,10 +52,12 @@ impl Outcome {
             return;
         }
         let island = part.island;
+        island.late_forces(&part.step, &mut self.late);
         for &(block, handle) in part.seats.claimed() {
+            let late = self.late[block];
             if let Block::Rigid(block) = &island.blocks[block] {
                 self.landings
-                    .push(Landing::new(handle, block, &part.step, entry.is_unfinished));
+                    .push(Landing::new(handle, block, late, entry.is_unfinished));
             }
         }
         self.pushes.extend(part.seats.pushes(island));

@@ -9,8 +9,8 @@ use super::notes::notes_of_newcomers;
 use super::overbent::list_overbent;
 use crate::body::FlexBodySet;
 use crate::coupling::{
-    Loan, RapierSets, WorldChange, quarantine, quarantine_carriers, rests, stop_if_asleep,
-    sync_settings, wake_disturbed, write_impulses, write_surface,
+    Loan, RapierSets, WorldChange, look_whether_still, quarantine, quarantine_carriers, rests,
+    stop_if_asleep, sync_settings, wake_disturbed, write_impulses, write_surface,
 };
 use crate::system::Step;
 
@@ -144,6 +144,7 @@ impl FlexPipeline {
         flex_bodies: &FlexBodySet,
         clock: &mut Clock,
     ) -> Result<(), StepError> {
+        self.claims.bind(self.memory.masters.bonds(), sets.bodies);
         self.claims.look_ahead(sets, flex_bodies);
         while self.claims.wake_met(sets) {
             self.claims.look_ahead(sets, flex_bodies);
@@ -217,7 +218,7 @@ impl FlexPipeline {
             .wake_moving(self.solver.pool(), loan.sets(), flex_bodies);
         let is_led = self.parameters.leads(step);
         loan.land(&self.outcome.landings, is_led, &mut self.memory.masters);
-        self.memory.links.keep(&self.outcome.pushes, sets);
+        self.memory.links.keep(&self.outcome.pushes, step, sets);
         write_impulses(&self.outcome.joint_impulses, sets);
     }
 
@@ -238,6 +239,7 @@ impl FlexPipeline {
             body.set_energy_reserve(end.reserve);
             body.count_step(end.is_unfinished);
             self.solver.commit(end.index, body);
+            look_whether_still(body, sets);
             let is_still = rests(body, sets);
             write_surface(
                 body,

@@ -3,6 +3,7 @@
 //! A block predicts its free motion, answers how far a force moves it (its compliance) and corrects itself for
 //! the multipliers. [`FlexBlock`] has two dofs a node, [`RigidBlock`] three.
 
+mod common_motion;
 mod compliance;
 mod explicit_block;
 mod explicit_motion;
@@ -28,16 +29,19 @@ mod moments;
 mod pin_rates;
 mod rigid_block;
 mod rigid_energy;
+mod rigid_load;
 mod rigid_motion;
 mod step;
 
+pub use common_motion::{CommonMotion, Hold};
 #[cfg(feature = "serde-serialize")]
 pub(crate) use explicit_record::ExplicitRecord;
 pub use flex_block::FlexBlock;
 pub use flex_motion::Balance;
-pub use link_response::LinkResponse;
+pub use link_response::{LinkAnswer, LinkResponse};
 pub use moments::Moments;
-pub use rigid_block::{RigidBlock, RigidLoad};
+pub use rigid_block::RigidBlock;
+pub use rigid_load::RigidLoad;
 pub use rigid_motion::RigidMotion;
 pub use step::{FlexLoad, Response, Step};
 
@@ -138,6 +142,80 @@ impl Block {
                 block.compliance(at.lever, from.lever, of)
             }
             _ => mismatch(),
+        }
+    }
+
+    /// How far a grip on a link moves by a unit force at a grip of another block, if that is a link of the same multibody (1/kg).
+    pub fn compliance_across(&self, at: Grip, other: (usize, Grip), of: Response) -> Option<Mat2> {
+        let (other, from) = other;
+        self.links()?
+            .compliance_across(at.lever, (other, from.lever), of)
+    }
+
+    /// What a unit multiplier of a wrench on another block does along one of this, if both are links of the same multibody.
+    pub fn mobility_across(
+        &self,
+        at: [f64; 3],
+        other: (usize, [f64; 3]),
+        of: Response,
+    ) -> Option<f64> {
+        let (other, from) = other;
+        let moved = self.links()?.answer_from(other, from, of)?;
+        Some(at.iter().zip(moved).map(|(at, moved)| at * moved).sum())
+    }
+
+    /// Whether it is a link that answers together with others.
+    pub fn answers_with_others(&self) -> bool {
+        self.links().is_some()
+    }
+
+    /// The answer of a link that others of its multibody answer with.
+    fn links(&self) -> Option<&LinkResponse> {
+        match self {
+            Self::Rigid(block) => block.link_response().filter(|link| link.has_others()),
+            Self::Flex(_) => None,
+        }
+    }
+
+    /// Acceleration and that of the turn which the wrenches on all blocks give to a rigid one, `own` by its place (m/s², rad/s²).
+    pub fn acceleration_under(&self, wrenches: &[[f64; 3]], own: usize) -> (Vec2, f64) {
+        let Self::Rigid(block) = self else {
+            return (Vec2::zeros(), 0.0);
+        };
+        let [x, y, turn] = block.answer(wrenches[own]);
+        let others = self
+            .links()
+            .map(|link| link.answer_others(wrenches, Response::Acceleration));
+        let [other_x, other_y, other_turn] = others.unwrap_or_default();
+        (Vec2::new(x + other_x, y + other_y), turn + other_turn)
+    }
+
+    /// What a link's soft forces are weighed with in velocities (s) and accelerations (-); `None` if it is none that answers with others.
+    pub fn soft_weights(&self) -> Option<[f64; 2]> {
+        self.links()?;
+        match self {
+            Self::Rigid(block) => Some(block.soft_weights()),
+            Self::Flex(_) => None,
+        }
+    }
+
+    /// Adds what wrenches on other links of its multibody do to a link, by the wrenches on all blocks.
+    pub fn add_across(&mut self, of: Response, wrenches: &[[f64; 3]], scale: f64) {
+        if let Some(link) = self.links() {
+            let change = link.answer_others(wrenches, of).map(|part| scale * part);
+            if let Self::Rigid(block) = self {
+                block.add_change(of, change);
+            }
+        }
+    }
+
+    /// Adds what a wrench on another link does to a link of the same multibody.
+    pub fn push_across(&mut self, of: Response, from: usize, wrench: [f64; 3]) {
+        let change = self
+            .links()
+            .and_then(|link| link.answer_from(from, wrench, of));
+        if let (Some(change), Self::Rigid(block)) = (change, self) {
+            block.add_change(of, change);
         }
     }
 

@@ -4,24 +4,25 @@ mod restart;
 
 use super::Response;
 use super::link_response::LinkResponse;
+use super::rigid_load::RigidLoad;
 use super::rigid_motion::RigidMotion;
 use super::step::Step;
 use crate::integrator::Weights;
 use crate::math::{Mat2, Vec2, perp};
 
 /// What a rigid body is in an island, and how it answers forces.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Kind {
     /// Dynamic: by its own mass.
     Free,
     /// Fixed or kinematic: not at all, its motion is given.
     Prescribed,
     /// A link: by the inverse mass of its multibody; it has no mass of its own.
-    Link(LinkResponse),
+    Link(Box<LinkResponse>),
 }
 
 /// A rigid body of an island: free (dynamic), prescribed (fixed and kinematic), or a link of a multibody.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct RigidBlock {
     kind: Kind,
     pub(super) start: RigidMotion,
@@ -46,24 +47,6 @@ pub struct RigidBlock {
     untwisted: [f64; 2],
     /// The end velocity that damping was reckoned with (m/s, m/s, rad/s).
     damped_velocity: [f64; 3],
-}
-
-/// Data of a free rigid body for one step.
-#[derive(Clone, Copy, Debug)]
-pub struct RigidLoad {
-    /// Inverse mass in x, y and inverse inertia about z (1/kg, 1/kg, 1/(kg m²)); zero along locked axes.
-    pub inverse_mass: [f64; 3],
-    /// Applied force and torque, gravity included (N, N, N m).
-    pub force: [f64; 3],
-    /// Damping rates in x, y and rotation (1/s).
-    pub damping: [f64; 3],
-}
-
-impl RigidLoad {
-    /// Acceleration that the applied forces give to the body alone (m/s², rad/s²).
-    pub fn drive(&self) -> [f64; 3] {
-        std::array::from_fn(|i| self.inverse_mass[i] * self.force[i])
-    }
 }
 
 impl RigidBlock {
@@ -159,7 +142,7 @@ impl RigidBlock {
     /// A link of a multibody. It keeps its velocity and gives way to nothing until [`RigidBlock::set_link_response`] tells it more.
     pub fn link(start: RigidMotion, weights: Weights, dt: f64) -> Self {
         Self {
-            kind: Kind::Link(LinkResponse::default()),
+            kind: Kind::Link(Box::default()),
             weights,
             dt,
             ..Self::prescribed(start, start)
@@ -177,7 +160,7 @@ impl RigidBlock {
         self.smooth_start = acceleration;
         self.smooth_end = acceleration;
         self.smooth_free = acceleration;
-        self.kind = Kind::Link(response);
+        self.kind = Kind::Link(Box::new(response));
     }
 
     /// How a link answers and what it has been given, if this is one.
@@ -195,10 +178,10 @@ impl RigidBlock {
 
     /// What a wrench does, `A⁻¹ f` (m/s², rad/s²).
     #[inline]
-    fn answer(&self, wrench: [f64; 3]) -> [f64; 3] {
+    pub(super) fn answer(&self, wrench: [f64; 3]) -> [f64; 3] {
         match self.link_response() {
             None => std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]),
-            Some(link) => link.answer(wrench),
+            Some(link) => link.answer(wrench, Response::Velocity),
         }
     }
 
@@ -305,21 +288,39 @@ impl RigidBlock {
         self.inverse_effective[2]
     }
 
+    /// Adds a change that comes from elsewhere: of acceleration (m/s², rad/s²), of velocity, or of position over the multiplier's weight.
+    pub(super) fn add_change(&mut self, of: Response, change: [f64; 3]) {
+        let [x, y, turn] = change;
+        match of {
+            Response::Position => self
+                .current
+                .shift(change.map(|part| self.position_weight() * part)),
+            Response::Velocity | Response::ByMass => self.add_velocity(Vec2::new(x, y), turn),
+            Response::Acceleration => {
+                for (sum, change) in self.smooth_end.iter_mut().zip(change) {
+                    *sum += change;
+                }
+            }
+        }
+    }
+
+    /// What a multiplier is weighed with in positions (s²). With β0 = 0 it is an impulse at the forward increment.
+    fn position_weight(&self) -> f64 {
+        match self.weights.b0 > 0.0 {
+            true => self.weights.b0,
+            false => self.dt * self.dt,
+        }
+    }
+
     /// Moves the iterate away from the free motion by what a wrench does.
     pub fn set_position_increment(&mut self, wrench: [f64; 3]) {
-        // With β0 = 0 the multiplier is an impulse at the forward increment.
-        let b0 = if self.weights.b0 > 0.0 {
-            self.weights.b0
-        } else {
-            self.dt * self.dt
-        };
-        let step: [f64; 3] = match self.link_response() {
+        let b0 = self.position_weight();
+        let moved: [f64; 3] = match self.link_response() {
             None => std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]),
-            Some(link) => link.answer(wrench).map(|change| b0 * link.reach * change),
+            Some(link) => link.answer(wrench, Response::Position).map(|way| b0 * way),
         };
         self.current = self.free;
-        self.current.centre += Vec2::new(step[0], step[1]);
-        self.current.angle += step[2];
+        self.current.shift(moved);
     }
 
     /// Motion of the centre and turn over the step (m, m, rad).
@@ -332,6 +333,12 @@ impl RigidBlock {
     pub fn displacement(&self, lever: Vec2) -> Vec2 {
         let turned = self.current.angle - self.start.angle;
         self.current.centre - self.start.centre + turned * perp(lever)
+    }
+
+    /// What soft forces are weighed with in velocities (s) and in accelerations (-).
+    pub(super) fn soft_weights(&self) -> [f64; 2] {
+        let lasts = self.weights != Weights::within(self.dt);
+        [self.weights.b1, if lasts { 1.0 } else { 0.0 }]
     }
 
     /// Sets velocity and smooth acceleration for the part of the contact forces that acts as (C.5) says.
@@ -387,9 +394,8 @@ impl RigidBlock {
 
     /// Adds an impulse (N s, N s, N m s) to the end velocity.
     pub fn add_impulse(&mut self, impulse: [f64; 3]) {
-        let change = self.answer(impulse);
-        self.current.velocity += Vec2::new(change[0], change[1]);
-        self.current.spin += change[2];
+        let [x, y, turn] = self.answer(impulse);
+        self.add_velocity(Vec2::new(x, y), turn);
         if let Kind::Link(link) = &mut self.kind {
             link.add_impulse(impulse);
         }
@@ -408,12 +414,11 @@ impl RigidBlock {
 
     /// Acceleration at the end of a lever under a wrench (m/s²).
     pub fn respond(&self, lever: Vec2, wrench: [f64; 3], of: Response) -> Vec2 {
-        let change = self.answer(wrench);
-        let along = Vec2::new(change[0], change[1]) + change[2] * perp(lever);
-        match self.link_response() {
-            Some(link) if of == Response::Position => link.reach * along,
-            _ => along,
-        }
+        let [x, y, turn] = match self.link_response() {
+            Some(link) => link.answer(wrench, of),
+            None => self.answer(wrench),
+        };
+        Vec2::new(x, y) + turn * perp(lever)
     }
 
     /// Acceleration that the applied forces give to the body alone (m/s², rad/s²).

@@ -30,6 +30,12 @@ impl RigidMotion {
         self.velocity + self.spin * perp(rotation(self.angle) * arm)
     }
 
+    /// Moves the centre and turns (m, m, rad).
+    pub(super) fn shift(&mut self, [x, y, turn]: [f64; 3]) {
+        self.centre += Vec2::new(x, y);
+        self.angle += turn;
+    }
+
     /// `arm` (body axes, m) of a world point.
     pub fn arm(&self, point: Vec2) -> Vec2 {
         rotation(-self.angle) * (point - self.centre)

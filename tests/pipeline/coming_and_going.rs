@@ -186,3 +186,41 @@ fn overlaps_and_pins_that_choose_nothing_are_told_in_the_first_step() -> Outcome
     }
     Ok(())
 }
+
+/// Rapier stops a body that is disabled, and nothing meets it: so it is for a flexible one by its carrier, and it goes on as it was when it is enabled.
+#[test]
+fn a_body_whose_carrier_is_disabled_stops_and_goes_on_when_it_is_enabled() -> Outcome {
+    for is_large in [true, false] {
+        let mut scene = Scene::with_floor();
+        let lower = square().translation([0.0, 0.001]);
+        let upper = square().translation([0.0, 1.5]);
+        let [lower, upper] = [lower, upper].map(|body| match is_large {
+            true => body.large_strain(),
+            false => body.small_strain(),
+        });
+        let (lower, upper) = (scene.insert(lower)?, scene.insert(upper)?);
+        scene.steps(10)?;
+        let carrier = scene.flex_bodies[lower].rigid_body_handle();
+        let upper_carrier = scene.flex_bodies[upper].rigid_body_handle();
+        scene.world.bodies[upper_carrier].set_enabled(false);
+        let (at, velocity) = {
+            let body = &scene.flex_bodies[upper];
+            (body.centre_of_mass(), body.linvel())
+        };
+        assert!(velocity[1] < -0.1, "it falls: {velocity:?}");
+        scene.steps(60)?;
+        assert_eq!(scene.flex_bodies[upper].centre_of_mass(), at);
+        scene.world.bodies[upper_carrier].set_enabled(true);
+        scene.world.bodies[carrier].set_enabled(false);
+        let centre = scene.flex_bodies[lower].centre_of_mass();
+        scene.steps(60)?;
+        // The lower one is not there for it: it falls through to the floor.
+        let fallen = scene.flex_bodies[upper].centre_of_mass()[1];
+        assert!(fallen < at[1] - 0.3, "{fallen} m");
+        assert_eq!(scene.flex_bodies[lower].centre_of_mass(), centre);
+        scene.steps(120)?;
+        let rests = scene.flex_bodies[upper].centre_of_mass()[1];
+        assert!((rests - 0.5).abs() < 0.02, "large {is_large}: {rests} m");
+    }
+    Ok(())
+}

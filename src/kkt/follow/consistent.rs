@@ -80,6 +80,7 @@ impl Island {
             if tie.n_same >= FEW_PASSES && tie.error() > least && may_be_left {
                 tie.is_left = true;
                 tie.goal += tie.gap;
+                tie.closing = 0.0;
             }
         }
     }
