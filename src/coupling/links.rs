@@ -303,3 +303,6 @@ fn prescribe(members: &[LinkBlock], dt: f64, sets: &RapierSets<'_>, island: &mut
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

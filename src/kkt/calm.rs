@@ -4,41 +4,23 @@
 //! whole group, `v - c`, may be scaled down without opening a joint, and without a change of momentum or angular momentum where nothing holds the
 //! group; where a joint or a pin holds it, `c` is the motion of that. No joined motion with the momentum of the group has less energy than `c`.
 
+use super::group::Group;
 use super::island::Island;
 use super::joint_rows::ActiveJoint;
-use crate::math::{Vec2, cross};
-use crate::system::{CommonMotion, Hold};
+use crate::system::{Hold, RigidRates};
 
-/// The motion that a group has in common.
+/// A group, and whether it can be calmed.
 #[derive(Clone, Copy, Debug, Default)]
-struct Group {
-    mass: f64,
-    moment: Vec2,
-    momentum: Vec2,
-    /// Polar inertia and angular momentum about its centre (kg m², kg m²/s).
-    polar: f64,
-    angular: f64,
-    anchor: Option<CommonMotion>,
+struct Calmed {
+    group: Group,
     is_joined: bool,
     /// Whether something in it moves as it must, or by laws of its own.
     is_led: bool,
 }
 
-impl Group {
-    fn motion(&self) -> CommonMotion {
-        let spin = match self.polar > 0.0 {
-            true => self.angular / self.polar,
-            false => 0.0,
-        };
-        self.anchor.unwrap_or(CommonMotion {
-            about: self.moment / self.mass,
-            velocity: self.momentum / self.mass,
-            spin,
-        })
-    }
-
+impl Calmed {
     fn can_be_calmed(&self) -> bool {
-        self.is_joined && !self.is_led && self.mass > 0.0
+        self.is_joined && !self.is_led && self.group.mass > 0.0
     }
 }
 
@@ -51,7 +33,7 @@ impl Island {
         let (mut now, mut common, mut relative) = (0.0, 0.0, 0.0);
         for (block, &leader) in self.blocks.iter_mut().zip(&leaders) {
             if groups[leader].can_be_calmed() && !block.is_prescribed() {
-                let [whole, shared, own] = block.energies_about(&groups[leader].motion());
+                let [whole, shared, own] = block.energies_about(&groups[leader].group.motion());
                 now += whole;
                 common += shared;
                 relative += own;
@@ -62,6 +44,10 @@ impl Island {
         }
         let cross = now - common - relative;
         let least = (-0.5 * cross / relative).clamp(0.0, 1.0);
+        if least >= 1.0 {
+            // Nearer to a motion that is driven they would be faster.
+            return 0.0;
+        }
         let off = cross * cross - 4.0 * relative * (common - now + excess);
         let scale = match off > 0.0 {
             true => ((off.sqrt() - cross) / (2.0 * relative)).clamp(least, 1.0),
@@ -69,14 +55,14 @@ impl Island {
         };
         for (block, &leader) in self.blocks.iter_mut().zip(&leaders) {
             if groups[leader].can_be_calmed() && !block.is_prescribed() {
-                block.scale_about(&groups[leader].motion(), scale);
+                block.scale_about(&groups[leader].group.motion(), scale);
             }
         }
         now - common - cross * scale - relative * scale * scale
     }
 
-    fn common_motions(&self, leaders: &[usize]) -> Vec<Group> {
-        let mut groups = vec![Group::default(); self.blocks.len()];
+    fn common_motions(&self, leaders: &[usize]) -> Vec<Calmed> {
+        let mut groups = vec![Calmed::default(); self.blocks.len()];
         let members = || {
             self.blocks
                 .iter()
@@ -84,21 +70,16 @@ impl Island {
                 .filter(|(block, _)| !block.is_prescribed())
         };
         for (block, &leader) in members() {
-            let (group, own) = (&mut groups[leader], block.end_moments());
-            group.mass += own.mass;
-            group.moment += own.mass * own.centre;
-            group.momentum += own.mass * own.velocity;
+            let calmed = &mut groups[leader];
+            calmed.group.add(&block.end_moments());
             match block.hold() {
                 Hold::Free => {}
-                Hold::Held => group.anchor = Some(CommonMotion::default()),
-                Hold::Led => group.is_led = true,
+                Hold::Held => calmed.group.anchor = Some(RigidRates::default()),
+                Hold::Led => calmed.is_led = true,
             }
         }
         for (block, &leader) in members() {
-            let (group, own) = (&mut groups[leader], block.end_moments());
-            let arm = own.centre - group.moment / group.mass;
-            group.polar += own.inertia + own.mass * arm.norm_squared();
-            group.angular += own.spin_momentum + own.mass * cross(arm, own.velocity);
+            groups[leader].group.add_turning(&block.end_moments());
         }
         for tie in &self.ties {
             let prescribed = self
@@ -109,11 +90,11 @@ impl Island {
                 .blocks_of(tie)
                 .filter(|&block| !self.blocks[block].is_prescribed())
             {
-                let group = &mut groups[leaders[block]];
-                group.is_joined = true;
-                match (group.anchor, anchor) {
-                    (None, Some(_)) => group.anchor = anchor,
-                    (Some(one), Some(other)) => group.is_led |= !one.is_same(&other),
+                let calmed = &mut groups[leaders[block]];
+                calmed.is_joined = true;
+                match (calmed.group.anchor, anchor) {
+                    (None, Some(_)) => calmed.group.anchor = anchor,
+                    (Some(one), Some(other)) => calmed.is_led |= !one.is_same(&other),
                     (_, None) => {}
                 }
             }
@@ -126,3 +107,6 @@ impl Island {
         self.joint_grips[first..last].iter().map(|grip| grip.block)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -10,7 +10,7 @@
 
 use super::delassus::RowDirection;
 use super::island::{Island, SolveSettings};
-use super::joint_rows::add_wrench;
+use super::joint_rows::{ActiveJoint, add_wrench};
 use super::summary::IslandSummary;
 use crate::constraint::joint::unit_wrench;
 use crate::math::Vec2;
@@ -86,6 +86,8 @@ impl Island {
         let mut work = 0.0;
         for tie in &self.ties {
             if tie.closing != 0.0 {
+                // Ends that are drawn together move against each other: work is what the driven ones do.
+                work -= self.driven_work(tie, settings.dt);
                 continue;
             }
             let is_turn = tie.row.measure.is_turn();
@@ -111,6 +113,21 @@ impl Island {
             }
         }
         work
+    }
+
+    /// What a joint's mean force does on driven bodies that it holds (J).
+    fn driven_work(&self, tie: &ActiveJoint, dt: f64) -> f64 {
+        let (first, last) = tie.row.grips;
+        let force = tie.force(dt) * tie.row.sign;
+        let driven = self.joint_grips[first..last].iter().filter(
+            |grip| matches!(&self.blocks[grip.block], Block::Rigid(block) if block.is_driven()),
+        );
+        let works = driven.map(|grip| {
+            let block = &self.blocks[grip.block];
+            let moved = block.position(grip.point) - block.start_position(grip.point);
+            force * grip.weight * tie.direction.dot(&moved)
+        });
+        works.sum()
     }
 
     /// Work done on the island by applied forces and, at most, by moving driven bodies (J).

@@ -46,7 +46,6 @@ pub(super) fn resolve(
     (start, mobility): (f64, f64),
     settings: &SolveSettings,
 ) -> Resolved {
-    let kept = exp(-PARTING_RATE * settings.dt);
     // A force over the step, λ, is `scale` times the multiplier.
     let scale = if is_hard {
         2.0 * settings.b0 / (settings.dt * settings.dt)
@@ -57,11 +56,11 @@ pub(super) fn resolve(
         JointLaw::Rigid { goal, rate } => {
             let (goal, rate) = (row.sign * goal, row.sign * rate);
             let off = start + settings.dt * rate - goal;
-            let left = if off.abs() > SLACK { kept * off } else { 0.0 };
+            let [left, closing] = closed(row, off, off.abs() > SLACK, settings.dt);
             Resolved {
                 goal: goal + left,
                 target: goal,
-                closing: if left == 0.0 { 0.0 } else { left - off },
+                closing,
                 give: 0.0,
                 kind: RowKind::Bilateral,
                 finish: Finish::Hold { rate },
@@ -70,11 +69,11 @@ pub(super) fn resolve(
         JointLaw::Limit { bound } => {
             let bound = row.sign * bound;
             let off = start - bound;
-            let left = if off < -SLACK { kept * off } else { 0.0 };
+            let [left, closing] = closed(row, off.min(0.0), off < -SLACK, settings.dt);
             Resolved {
                 goal: bound + left,
                 target: bound,
-                closing: if left == 0.0 { 0.0 } else { left - off },
+                closing,
                 give: 0.0,
                 kind: RowKind::Unilateral,
                 finish: Finish::Limit,
@@ -99,6 +98,17 @@ pub(super) fn resolve(
             )
         }
     }
+}
+
+/// How far a row that is off is left open at the end of the step, and how far it moves towards its place because it was put elsewhere, as it goes on to do
+/// until it is there.
+fn closed(row: &JointRow, off: f64, is_far: bool, dt: f64) -> [f64; 2] {
+    if is_far {
+        let left = exp(-PARTING_RATE * dt) * off;
+        return [left, left - off];
+    }
+    let was_put = row.remembered.is_some_and(|last| last.closes);
+    [0.0, if was_put { -off } else { 0.0 }]
 }
 
 /// A spring that the step resolves acts with its mean force, `q` in the middle of the step, where multipliers act wholly within the step

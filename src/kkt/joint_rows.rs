@@ -69,6 +69,7 @@ impl ActiveJoint {
         RememberedJoint {
             multiplier: self.multiplier,
             driven: self.driven,
+            closes: self.closing != 0.0 && self.goal != self.target,
         }
     }
 

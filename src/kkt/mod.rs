@@ -15,6 +15,7 @@ mod feasible;
 mod follow;
 mod forward;
 mod gentle;
+mod group;
 mod impact;
 mod island;
 mod joined;

@@ -4,47 +4,14 @@
 //! body with the momentum and the angular momentum that they have together: no motion with these has less energy. Where one of them is
 //! held by the world, they move as that one does.
 
+use super::group::Group;
 use super::island::{Island, SolveSettings};
 use super::summary::IslandSummary;
-use crate::math::{Vec2, cross, perp};
-use crate::system::{Block, RigidMotion};
+use crate::math::Vec2;
+use crate::system::{Block, Moments, RigidMotion, RigidRates};
 
-/// A group of blocks that touch, as one rigid body.
-#[derive(Clone, Copy, Debug, Default)]
-struct Group {
-    mass: f64,
-    moment: Vec2,
-    momentum: Vec2,
-    /// Polar inertia and angular momentum about its centre (kg m², kg m²/s).
-    polar: f64,
-    angular: f64,
-    /// The motion of a member that nothing moves.
-    anchor: Option<RigidMotion>,
-}
-
-impl Group {
-    fn centre(&self) -> Vec2 {
-        self.moment / self.mass
-    }
-
-    /// Velocity at a point (m/s) and spin (rad/s).
-    fn motion_at(&self, point: Vec2) -> (Vec2, f64) {
-        if let Some(anchor) = self.anchor {
-            let velocity = anchor.velocity + anchor.spin * perp(point - anchor.centre);
-            return (velocity, anchor.spin);
-        }
-        let spin = if self.polar > 0.0 {
-            self.angular / self.polar
-        } else {
-            0.0
-        };
-        let velocity = self.momentum / self.mass + spin * perp(point - self.centre());
-        (velocity, spin)
-    }
-}
-
-/// Mass, polar inertia and motion of a block at the beginning of the step, or the motion that it keeps whatever happens.
-fn inertia_of(block: &Block) -> Result<(f64, f64, RigidMotion), RigidMotion> {
+/// Moments of a block at the beginning of the step, or the motion that it keeps whatever happens.
+fn moments_of(block: &Block) -> Result<Moments, RigidMotion> {
     match block {
         Block::Flex(body) => {
             let start = body.start_frame();
@@ -63,7 +30,7 @@ fn inertia_of(block: &Block) -> Result<(f64, f64, RigidMotion), RigidMotion> {
                 return Err(rest);
             }
             let (mass, polar) = body.inertia();
-            Ok((mass, polar, motion))
+            Ok(moments(mass, polar, &motion))
         }
         Block::Rigid(body) => {
             let motion = *body.start();
@@ -72,8 +39,26 @@ fn inertia_of(block: &Block) -> Result<(f64, f64, RigidMotion), RigidMotion> {
                 return Err(motion);
             }
             let [mass, _, polar] = body.mass();
-            Ok((mass, polar, motion))
+            Ok(moments(mass, polar, &motion))
         }
+    }
+}
+
+fn moments(mass: f64, inertia: f64, motion: &RigidMotion) -> Moments {
+    Moments {
+        mass,
+        centre: motion.centre,
+        velocity: motion.velocity,
+        spin_momentum: inertia * motion.spin,
+        inertia,
+    }
+}
+
+fn rates_of(motion: &RigidMotion) -> RigidRates {
+    RigidRates {
+        about: motion.centre,
+        velocity: motion.velocity,
+        spin: motion.spin,
     }
 }
 
@@ -95,31 +80,26 @@ impl Island {
         let mut groups = vec![Group::default(); self.blocks.len()];
         for (block, &leader) in self.blocks.iter().zip(&leaders) {
             let group = &mut groups[leader];
-            match inertia_of(block) {
-                Ok((mass, _, motion)) => {
-                    group.mass += mass;
-                    group.moment += mass * motion.centre;
-                    group.momentum += mass * motion.velocity;
-                }
-                Err(motion) => group.anchor = group.anchor.or(Some(motion)),
+            match moments_of(block) {
+                Ok(own) => group.add(&own),
+                Err(motion) => group.anchor = group.anchor.or(Some(rates_of(&motion))),
             }
         }
         for (block, &leader) in self.blocks.iter().zip(&leaders) {
-            let group = &mut groups[leader];
-            if let Ok((mass, polar, motion)) = inertia_of(block) {
-                let arm = motion.centre - group.centre();
-                group.polar += polar + mass * arm.norm_squared();
-                group.angular += polar * motion.spin + mass * cross(arm, motion.velocity);
+            if let Ok(own) = moments_of(block) {
+                groups[leader].add_turning(&own);
             }
         }
         self.contacts.clear();
         self.pressed_before.clear();
         self.ties.clear();
         for (block, &leader) in self.blocks.iter_mut().zip(&leaders) {
-            let own = inertia_of(block);
-            let (velocity, spin) = match own {
-                Ok((_, _, motion)) | Err(motion) => groups[leader].motion_at(motion.centre),
-            };
+            let own = moments_of(block);
+            let centre = own
+                .as_ref()
+                .map_or_else(|motion| motion.centre, |own| own.centre);
+            let motion = groups[leader].motion();
+            let (velocity, spin) = (motion.at(centre), motion.spin);
             match block {
                 Block::Flex(body) if body.is_pinned() || body.is_explicit() => body.hold(),
                 Block::Flex(body) => body.move_on(velocity, spin),
@@ -199,4 +179,4 @@ fn leader_of(leaders: &[usize], mut block: usize) -> usize {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

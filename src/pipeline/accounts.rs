@@ -77,11 +77,7 @@ impl StepReport {
         self.energy_limited += summary.limited;
         let gain: f64 =
             summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
-        let lost = summary.work - gain;
-        // The sum is one for ever.
-        if lost.is_finite() {
-            self.energy.dissipated += lost;
-        }
+        self.energy.dissipated += summary.work - gain;
         if part.span.is_last() {
             self.energy.kinetic += summary.end_energy[0] + summary.pending;
             self.energy.elastic += summary.end_energy[1];

@@ -80,8 +80,7 @@ pub struct EnergyReport {
     /// integrators. `total() - swing` is constant where nothing dissipates, up to the step's limit of stability.
     pub swing: f64,
     /// What friction, damping, restitution and the integrator took since the pipeline was made: work done by applied
-    /// forces and prescribed motion less the gain of kinetic and elastic energy, over bodies while they were claimed; less the steps whose energies no
-    /// number holds.
+    /// forces and prescribed motion less the gain of kinetic and elastic energy, over bodies while they were claimed.
     pub dissipated: f64,
 }
 

@@ -1,19 +1,8 @@
 //! Motion relative to a rigid one that several blocks have in common.
 
-use super::{Block, FlexBlock, RigidBlock, RigidMotion};
+use super::{Block, FlexBlock, RigidBlock, RigidMotion, RigidRates};
 use crate::body::Frame;
-use crate::math::{Vec2, add_node_vec, node_vec, perp};
-
-/// A rigid motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CommonMotion {
-    /// Where the velocity is measured (m).
-    pub about: Vec2,
-    /// Velocity there (m/s).
-    pub velocity: Vec2,
-    /// Spin (rad/s).
-    pub spin: f64,
-}
+use crate::math::{add_node_vec, node_vec};
 
 /// Whether a block follows forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,18 +13,6 @@ pub enum Hold {
     Held,
     /// It moves as it is told, or by laws of its own.
     Led,
-}
-
-impl CommonMotion {
-    /// Velocity at a place (m/s).
-    pub fn at(&self, place: Vec2) -> Vec2 {
-        self.velocity + self.spin * perp(place - self.about)
-    }
-
-    /// Whether both are one motion.
-    pub fn is_same(&self, other: &Self) -> bool {
-        self.spin == other.spin && self.at(other.about) == other.velocity
-    }
 }
 
 impl Block {
@@ -55,16 +32,16 @@ impl Block {
     }
 
     /// The motion of its frame at the end of the step.
-    pub fn frame_motion(&self) -> CommonMotion {
+    pub fn frame_motion(&self) -> RigidRates {
         match self {
-            Self::Flex(block) => CommonMotion {
+            Self::Flex(block) => RigidRates {
                 about: block.frame.centre,
                 velocity: block.frame.velocity,
                 spin: block.frame.spin,
             },
             Self::Rigid(block) => {
                 let motion = block.current();
-                CommonMotion {
+                RigidRates {
                     about: motion.centre,
                     velocity: motion.velocity,
                     spin: motion.spin,
@@ -74,7 +51,7 @@ impl Block {
     }
 
     /// Kinetic energies of the motion at the end of the step, of the common part of it, and of the rest alone (J).
-    pub fn energies_about(&mut self, common: &CommonMotion) -> [f64; 3] {
+    pub fn energies_about(&mut self, common: &RigidRates) -> [f64; 3] {
         match self {
             Self::Flex(block) => flexible_energies(block, common),
             Self::Rigid(block) => rigid_energies(block, common),
@@ -82,7 +59,7 @@ impl Block {
     }
 
     /// Multiplies what the block does beyond the common motion.
-    pub fn scale_about(&mut self, common: &CommonMotion, scale: f64) {
+    pub fn scale_about(&mut self, common: &RigidRates, scale: f64) {
         match self {
             Self::Flex(block) => scale_flexible(block, common, scale),
             Self::Rigid(block) => {
@@ -108,7 +85,7 @@ fn hold_of_pins(block: &FlexBlock) -> Hold {
     }
 }
 
-fn flexible_energies(block: &mut FlexBlock, common: &CommonMotion) -> [f64; 3] {
+fn flexible_energies(block: &mut FlexBlock, common: &RigidRates) -> [f64; 3] {
     let mass = block.model.mass();
     let whole = 0.5 * mass.inner(&block.velocity, &block.velocity);
     for node in 0..block.model.n_nodes() {
@@ -123,7 +100,7 @@ fn flexible_energies(block: &mut FlexBlock, common: &CommonMotion) -> [f64; 3] {
     [whole, shared, 0.5 * mass.inner(&block.local, &block.local)]
 }
 
-fn scale_flexible(block: &mut FlexBlock, common: &CommonMotion, scale: f64) {
+fn scale_flexible(block: &mut FlexBlock, common: &RigidRates, scale: f64) {
     let less = scale - 1.0;
     for node in 0..block.model.n_nodes() {
         let place = node_vec(&block.position, node);
@@ -138,7 +115,7 @@ fn scale_flexible(block: &mut FlexBlock, common: &CommonMotion, scale: f64) {
     }
 }
 
-fn rigid_energies(block: &RigidBlock, common: &CommonMotion) -> [f64; 3] {
+fn rigid_energies(block: &RigidBlock, common: &RigidRates) -> [f64; 3] {
     let own = *block.current();
     let shared = RigidMotion {
         velocity: common.at(own.centre),

@@ -33,13 +33,14 @@ mod rigid_load;
 mod rigid_motion;
 mod step;
 
-pub use common_motion::{CommonMotion, Hold};
+pub use common_motion::Hold;
 #[cfg(feature = "serde-serialize")]
 pub(crate) use explicit_record::ExplicitRecord;
 pub use flex_block::FlexBlock;
 pub use flex_motion::Balance;
 pub use link_response::{LinkAnswer, LinkResponse};
 pub use moments::Moments;
+pub use pin_rates::RigidRates;
 pub use rigid_block::RigidBlock;
 pub use rigid_load::RigidLoad;
 pub use rigid_motion::RigidMotion;

@@ -1,4 +1,4 @@
-//! The rigid motion that pins give to a body.
+//! Velocities of a rigid motion, and those that pins give to a body.
 
 use crate::math::{Vec2, node_vec, perp};
 use nalgebra::{Matrix3, Vector3};
@@ -7,8 +7,8 @@ use nalgebra::{Matrix3, Vector3};
 const FREE: f64 = 1e-9;
 
 /// Velocities of a rigid motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct RigidRates {
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RigidRates {
     /// Where the velocity is measured (m).
     pub about: Vec2,
     /// Velocity there (m/s).
@@ -20,7 +20,7 @@ pub(super) struct RigidRates {
 impl RigidRates {
     /// The rigid motion nearest to the velocities of held dofs, `None` if these rest. What the dofs do not tell of it, as sliding along a guide, is left
     /// out.
-    pub fn of_pins(
+    pub(super) fn of_pins(
         dofs: &[usize],
         position: &[f64],
         velocity: impl Fn(usize) -> f64,
@@ -69,6 +69,11 @@ impl RigidRates {
     /// Velocity at a place (m/s).
     pub fn at(&self, place: Vec2) -> Vec2 {
         self.velocity + self.spin * perp(place - self.about)
+    }
+
+    /// Whether both are one motion.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.spin == other.spin && self.at(other.about) == other.velocity
     }
 }
 

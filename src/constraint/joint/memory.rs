@@ -39,6 +39,8 @@ pub struct RememberedJoint {
     pub multiplier: f64,
     /// Rate at which it was driven from outside when the step ended (m/s or rad/s).
     pub driven: f64,
+    /// Whether its ends were put apart and do not meet yet.
+    pub closes: bool,
 }
 
 /// What the rows of the last step have left behind.

@@ -4,13 +4,14 @@ use crate::constraint::contact::{Kinematics, Remembered};
 use crate::fe::material::LinearElastic;
 use crate::integrator::Beta2;
 use crate::kkt::ActiveContact;
+use crate::math::{cross, perp};
 use crate::path::samples::Random;
 use crate::system::{FlexBlock, FlexLoad, Point, RigidBlock, RigidLoad, Step};
 use std::sync::Arc;
 
 const DT: f64 = 1e-2;
 
-fn random_motion(random: &mut Random, centre: Vec2) -> RigidMotion {
+pub(in crate::kkt) fn random_motion(random: &mut Random, centre: Vec2) -> RigidMotion {
     RigidMotion {
         centre,
         angle: random.within(3.0),
@@ -19,7 +20,7 @@ fn random_motion(random: &mut Random, centre: Vec2) -> RigidMotion {
     }
 }
 
-fn rigid(random: &mut Random, centre: Vec2) -> (Block, Sums) {
+pub(in crate::kkt) fn rigid(random: &mut Random, centre: Vec2) -> (Block, Sums) {
     let [mass, polar] = [0, 1].map(|_| 0.2 + random.unit());
     let load = RigidLoad {
         inverse_mass: [mass, mass, polar],
@@ -34,7 +35,11 @@ fn rigid(random: &mut Random, centre: Vec2) -> (Block, Sums) {
 }
 
 /// A rectangle that moves as a rigid body; one that is pinned stays.
-fn flexible(random: &mut Random, centre: Vec2, is_pinned: bool) -> (Block, Sums) {
+pub(in crate::kkt) fn flexible(
+    random: &mut Random,
+    centre: Vec2,
+    is_pinned: bool,
+) -> (Block, Sums) {
     let [width, height] = [0.3 + random.unit(), 0.3 + random.unit()];
     let material = LinearElastic::plane_stress(1e5, 0.3).density(1.0);
     let mut builder = FlexBodyBuilder::rectangle([width, height], [3, 2])
@@ -83,7 +88,7 @@ fn press(island: &mut Island, blocks: [usize; 2]) {
 }
 
 /// Linear momentum, angular momentum about the origin, kinetic energy.
-type Sums = [f64; 4];
+pub(in crate::kkt) type Sums = [f64; 4];
 
 fn of_rigid(body: &RigidBlock, motion: &RigidMotion) -> Sums {
     let [mass, _, polar] = body.mass();
@@ -109,7 +114,7 @@ fn total(all: &[Sums]) -> Sums {
 }
 
 /// An island of blocks with what they have at the beginning.
-fn island_of(blocks: Vec<(Block, Sums)>) -> (Island, Vec<Sums>) {
+pub(in crate::kkt) fn island_of(blocks: Vec<(Block, Sums)>) -> (Island, Vec<Sums>) {
     let mut island = Island::default();
     let (members, start) = blocks.into_iter().unzip();
     island.blocks = members;
