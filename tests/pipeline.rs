@@ -11,6 +11,8 @@ mod put_together;
 mod rapier_features;
 #[path = "pipeline/stability.rs"]
 mod stability;
+#[path = "pipeline/steering.rs"]
+mod steering;
 #[path = "pipeline/support.rs"]
 mod support;
 #[path = "pipeline/time.rs"]

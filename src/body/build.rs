@@ -303,7 +303,7 @@ fn check_places(rest: &[f64]) -> Result<(), BuildError> {
 const RANGE: std::ops::RangeInclusive<f64> = 1e-36..=1e36;
 
 /// Refuses a body whose mass or stiffness is zero, infinite or near to either.
-fn check_range(model: &Model) -> Result<(), BuildError> {
+pub(super) fn check_range(model: &Model) -> Result<(), BuildError> {
     let mass: f64 = model.mass().node_sums().iter().sum();
     let own = |node| model.stiffness().block(node, node);
     let traces = (0..model.n_nodes()).map(|node| own(node).map_or(0.0, |b| b[0] + b[3]));

@@ -132,6 +132,11 @@ pub enum FlexBodyError {
     /// A node is not pinned.
     #[error("node {0} is not pinned: pin it in the builder before prescribing its displacement")]
     NotPinned(usize),
+    /// The body is pinned where it is.
+    #[error(
+        "{0:?} is pinned, and its pins stay where they are: move them by `set_pin_displacement`, or hold the body by attachments instead"
+    )]
+    Pinned(FlexBodyHandle),
     /// A value is not finite, or too large for rapier's precision.
     #[error("{0} holds a number that is not finite or too large for rapier: nothing was changed")]
     NotFinite(&'static str),

@@ -8,8 +8,9 @@ use crate::fe::finite_strain::FiniteStrainModel;
 use crate::fe::mesh::Mesh;
 use crate::fe::model::{Model, ModelError};
 use crate::fe::recovery::Stress;
-use crate::math::{Vec2, cross, node_vec};
+use crate::math::{Vec2, cross, node_vec, perp, set_node_vec};
 use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 /// A flexible body.
@@ -22,6 +23,8 @@ pub struct FlexBody {
     pub(super) is_fixed: Vec<bool>,
     pub(super) prescribed: Vec<f64>,
     pub(super) nodal_force: Vec<f64>,
+    /// Of the step to come (N s).
+    pub(super) nodal_impulse: Vec<f64>,
     pub(super) body_force: Vec2,
     pub(super) gravity_scale: f64,
     pub(super) contact: ContactSettings,
@@ -62,6 +65,7 @@ impl FlexBody {
             is_fixed,
             prescribed: zeros.clone(),
             nodal_force: zeros.clone(),
+            nodal_impulse: zeros.clone(),
             body_force: Vec2::zeros(),
             gravity_scale: 1.0,
             contact,
@@ -211,6 +215,23 @@ impl FlexBody {
         self.mean(&self.state.velocity).into()
     }
 
+    /// Angular velocity (rad/s): that of a rigid body of the same masses and places with the same angular momentum about the centre of mass.
+    pub fn angvel(&self) -> f64 {
+        self.angular_momentum(self.centre_of_mass()) / self.polar_moment()
+    }
+
+    /// Moment of inertia about the centre of mass, as the body is deformed (kg m²).
+    pub fn polar_moment(&self) -> f64 {
+        let centre = self.mean(&self.state.position);
+        let mut turning = vec![0.0; self.model.n_dofs()];
+        for node in 0..self.n_nodes() {
+            let arm = node_vec(&self.state.position, node) - centre;
+            set_node_vec(&mut turning, node, perp(arm));
+        }
+        let mass = self.model.mass();
+        mass.moment(centre, &self.state.position, &turning)
+    }
+
     fn mean(&self, dofs: &[f64]) -> Vec2 {
         let masses = self.arms.node_mass.iter().enumerate();
         let sum: Vec2 = masses
@@ -347,8 +368,18 @@ impl FlexBody {
         self.state.stop();
     }
 
-    pub(crate) fn nodal_force(&self) -> &[f64] {
+    /// Forces on nodes, interleaved (N).
+    pub fn nodal_forces(&self) -> &[f64] {
         &self.nodal_force
+    }
+
+    /// Forces on nodes in a step of length `dt` (s), what strikes them in it included, interleaved (N).
+    pub(crate) fn forces_over(&self, dt: f64) -> Cow<'_, [f64]> {
+        if self.nodal_impulse.iter().all(|impulse| *impulse == 0.0) {
+            return Cow::Borrowed(&self.nodal_force);
+        }
+        let pairs = self.nodal_force.iter().zip(&self.nodal_impulse);
+        pairs.map(|(force, impulse)| force + impulse / dt).collect()
     }
 
     pub(crate) fn prescribed(&self) -> &[f64] {

@@ -53,9 +53,10 @@ impl FlexBody {
         self.is_new
     }
 
-    /// Notes that a step has been taken with it.
+    /// Notes that a step has been taken with it, which what struck it was for.
     pub(crate) fn greet(&mut self) {
         self.is_new = false;
+        self.nodal_impulse.fill(0.0);
     }
 
     /// How many calls of `pin_where` chose no node.

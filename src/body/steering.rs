@@ -1,7 +1,15 @@
 //! What a user changes on a body between steps. All of it wakes the body.
 
-use super::error::{FlexBodyError, check_finite, check_held};
+use super::build::check_range;
+use super::error::{BuildError, FlexBodyError, check_finite, check_held};
 use super::flex_body::FlexBody;
+use super::frame::Arms;
+use super::state::FlexState;
+use super::stillness::Stillness;
+use crate::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+use crate::fe::material::Material;
+use crate::math::{Vec2, node_vec, perp, rotation, set_node_vec};
+use std::sync::{Arc, OnceLock};
 
 impl FlexBody {
     /// Sets a constant force on a node (N), until it is set again.
@@ -82,6 +90,184 @@ impl FlexBody {
         self.velocity_changed();
         self.is_disturbed = true;
         Ok(())
+    }
+
+    /// Sets the velocity of the centre of mass (m/s): every node's changes by as much, and the body spins and vibrates as before. Pinned
+    /// directions stay at rest.
+    ///
+    /// # Errors
+    /// If rapier's precision cannot hold the velocity; nothing is then changed.
+    pub fn set_linvel(&mut self, linvel: [f64; 2]) -> Result<(), FlexBodyError> {
+        let change = Vec2::from(linvel) - Vec2::from(self.linvel());
+        self.add_rigid_velocity("the velocity", change, 0.0)
+    }
+
+    /// Sets the angular velocity (rad/s), see [`FlexBody::angvel`]: the body turns about its centre of mass, which keeps its velocity, and
+    /// vibrates as before. Pinned directions stay at rest.
+    ///
+    /// # Errors
+    /// If rapier's precision cannot hold the velocity of a node; nothing is then changed.
+    pub fn set_angvel(&mut self, angvel: f64) -> Result<(), FlexBodyError> {
+        let change = angvel - self.angvel();
+        self.add_rigid_velocity("the angular velocity", Vec2::zeros(), change)
+    }
+
+    /// Changes the linear momentum at once (N s), as [`RigidBody::apply_impulse`](crate::rapier::dynamics::RigidBody::apply_impulse) does: by the
+    /// same velocity everywhere but in pinned directions, which stay at rest.
+    ///
+    /// # Errors
+    /// If the impulse is not finite, or rapier's precision cannot hold the velocity; nothing is then changed.
+    pub fn apply_impulse(&mut self, impulse: [f64; 2]) -> Result<(), FlexBodyError> {
+        let change = Vec2::from(impulse) / self.mass();
+        self.add_rigid_velocity("the impulse", change, 0.0)
+    }
+
+    /// Changes linear and angular momentum at once by an impulse (N s) along a line through a point of the world (m), as
+    /// [`RigidBody::apply_impulse_at_point`](crate::rapier::dynamics::RigidBody::apply_impulse_at_point) does: the body moves as a whole, but
+    /// for its pinned directions. [`FlexBody::apply_impulse_at_node`] deforms it.
+    ///
+    /// # Errors
+    /// If a number is not finite, or rapier's precision cannot hold the velocity of a node; nothing is then changed.
+    pub fn apply_impulse_at_point(
+        &mut self,
+        impulse: [f64; 2],
+        point: [f64; 2],
+    ) -> Result<(), FlexBodyError> {
+        check_held("the point", &point)?;
+        let arm = Vec2::from(point) - Vec2::from(self.centre_of_mass());
+        let impulse = Vec2::from(impulse);
+        let spin = perp(arm).dot(&impulse) / self.polar_moment();
+        self.add_rigid_velocity("the impulse", impulse / self.mass(), spin)
+    }
+
+    /// Changes the angular momentum about the centre of mass at once (N m s): the body turns as a whole, but for its pinned directions.
+    ///
+    /// # Errors
+    /// If the impulse is not finite, or rapier's precision cannot hold the velocity of a node; nothing is then changed.
+    pub fn apply_torque_impulse(&mut self, torque_impulse: f64) -> Result<(), FlexBodyError> {
+        let spin = torque_impulse / self.polar_moment();
+        self.add_rigid_velocity("the impulse", Vec2::zeros(), spin)
+    }
+
+    /// Strikes a node with an impulse (N s): a force on it all through the next step, besides
+    /// [`set_nodal_force`](FlexBody::set_nodal_force), from which waves run through the body. Several add up. The step after the next brings
+    /// the last part of it to bodies of small strain, whose loads act as means of two steps.
+    ///
+    /// # Errors
+    /// If the node does not exist or the impulse is not finite; nothing is then changed.
+    pub fn apply_impulse_at_node(
+        &mut self,
+        node: usize,
+        impulse: [f64; 2],
+    ) -> Result<(), FlexBodyError> {
+        self.check_node(node)?;
+        let own = &mut self.nodal_impulse[2 * node..2 * node + 2];
+        let sum = [own[0] + impulse[0], own[1] + impulse[1]];
+        check_finite("the impulse", &sum)?;
+        own.copy_from_slice(&sum);
+        self.is_disturbed = true;
+        Ok(())
+    }
+
+    /// Makes the body of another material, its damping included; places and velocities stay. A deformed body has another elastic energy from
+    /// then on, and one of another density another momentum.
+    ///
+    /// # Errors
+    /// If the material is out of range, has no law for a body of large strain, or makes the body one that cannot be computed; nothing is then
+    /// changed.
+    pub fn set_material(&mut self, material: impl Material + 'static) -> Result<(), BuildError> {
+        material.validate()?;
+        self.remake(Arc::new(material), self.model.thickness())
+    }
+
+    /// Makes the body as thick (m); places and velocities stay.
+    ///
+    /// # Errors
+    /// If the thickness is not positive, or makes the body one that cannot be computed; nothing is then changed.
+    pub fn set_thickness(&mut self, thickness: f64) -> Result<(), BuildError> {
+        self.remake(Arc::clone(self.model.shared_material()), thickness)
+    }
+
+    fn remake(&mut self, material: Arc<dyn Material>, thickness: f64) -> Result<(), BuildError> {
+        let model = self.model.remade(material, thickness)?;
+        check_range(&model)?;
+        let large = match self.large {
+            None => None,
+            Some(_) => {
+                let description = FiniteStrainDescription::of_model(&model);
+                let description = description.ok_or(BuildError::NoLargeLaw)?;
+                Some(Arc::new(FiniteStrainModel::assemble(description)?))
+            }
+        };
+        self.arms = Arms::new(&model, self.frame);
+        (self.model, self.large) = (Arc::new(model), large);
+        self.frequency = OnceLock::new();
+        self.state.elastic_energy = self.energy().elastic;
+        self.velocity_changed();
+        self.begin_anew();
+        Ok(())
+    }
+
+    /// Adds a rigid motion to the velocities of all nodes.
+    ///
+    /// - `change`: of the centre of mass (m/s).
+    /// - `spin`: about it (rad/s).
+    fn add_rigid_velocity(
+        &mut self,
+        name: &'static str,
+        change: Vec2,
+        spin: f64,
+    ) -> Result<(), FlexBodyError> {
+        let centre = Vec2::from(self.centre_of_mass());
+        let mut velocity = self.state.velocity.clone();
+        for node in 0..self.n_nodes() {
+            let arm = node_vec(&self.state.position, node) - centre;
+            let own = node_vec(&velocity, node) + change + spin * perp(arm);
+            set_node_vec(&mut velocity, node, own);
+        }
+        check_held(name, &velocity)?;
+        self.set_velocities(&velocity)
+    }
+
+    /// Puts the body's centre of mass and its angle elsewhere, as it is: linear and angular velocity stay, deformation and vibrations turn
+    /// along, and what acted where it was acts no more.
+    pub(crate) fn place(&mut self, centre: Vec2, angle: f64) -> Result<(), FlexBodyError> {
+        let [from, mean] = [self.centre_of_mass(), self.linvel()].map(Vec2::from);
+        let turn = rotation(angle - self.state.frame.angle);
+        let mut positions = self.state.position.clone();
+        for node in 0..self.n_nodes() {
+            let place = centre + turn * (node_vec(&positions, node) - from);
+            set_node_vec(&mut positions, node, place);
+        }
+        check_held("the position", &positions)?;
+        let FlexState {
+            position,
+            velocity,
+            frame,
+            ..
+        } = &mut self.state;
+        *position = positions;
+        for node in 0..velocity.len() / 2 {
+            let own = mean + turn * (node_vec(velocity, node) - mean);
+            set_node_vec(velocity, node, own);
+        }
+        frame.centre = centre + turn * (frame.centre - from);
+        frame.angle = angle;
+        self.velocity_changed();
+        self.contact_force.fill(0.0);
+        self.reaction.fill(0.0);
+        self.is_new = true;
+        self.begin_anew();
+        Ok(())
+    }
+
+    /// Lets the next step find the accelerations, as the first one does: those of the last are of another body, or of another place.
+    fn begin_anew(&mut self) {
+        self.state.clear_accelerations();
+        self.is_started = false;
+        self.energy_reserve = 0.0;
+        self.stillness = Stillness::default();
+        self.is_disturbed = true;
     }
 
     /// Wakes the body, and with it all that it touches, at the next step.

@@ -66,6 +66,62 @@ impl FlexBodySet {
         Ok(self.insert_body(body))
     }
 
+    /// Puts a body elsewhere, as it is deformed: its [centre of mass](crate::body::FlexBody::centre_of_mass) (m) and its
+    /// [angle](crate::body::FlexBody::angle) (rad). Linear and angular velocity stay, vibrations turn along. The next step wakes it and what
+    /// rested on it, and tells what it was put into, as for a body just inserted. Attachments stay, and pull.
+    ///
+    /// ```
+    /// use foil2d::prelude::*;
+    /// use foil2d::rapier::prelude::*;
+    /// let (mut world, mut flex_bodies) = (PhysicsWorld::new(), FlexBodySet::new());
+    /// let rubber = LinearElastic::plane_stress(1e6, 0.3).density(1000.0);
+    /// let block = flex_bodies.insert(FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4]).material(rubber), &mut world)?;
+    /// flex_bodies.set_position(block, [3.0, 2.0], 0.5, &mut world)?;
+    /// let [x, y] = flex_bodies[block].centre_of_mass();
+    /// assert!((x - 3.0).abs() < 1e-12 && (y - 2.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the handle is stale or foreign, the body is pinned, the world does not hold its carrier, or rapier's precision cannot hold where it
+    /// would be. Nothing is then changed.
+    pub fn set_position(
+        &mut self,
+        handle: FlexBodyHandle,
+        centre_of_mass: [f64; 2],
+        angle: f64,
+        world: &mut PhysicsWorld,
+    ) -> Result<(), FlexBodyError> {
+        let (bodies, colliders) = (&world.bodies, &mut world.colliders);
+        self.set_position_with_sets(handle, centre_of_mass, angle, bodies, colliders)
+    }
+
+    /// [`FlexBodySet::set_position`] for programs that keep rapier's sets apart.
+    ///
+    /// # Errors
+    /// As [`FlexBodySet::set_position`].
+    pub fn set_position_with_sets(
+        &mut self,
+        handle: FlexBodyHandle,
+        centre_of_mass: [f64; 2],
+        angle: f64,
+        bodies: &RigidBodySet,
+        colliders: &mut ColliderSet,
+    ) -> Result<(), FlexBodyError> {
+        let body = self.try_get_mut(handle)?;
+        if body.fixed_dofs().contains(&true) {
+            return Err(FlexBodyError::Pinned(handle));
+        }
+        if !is_carried(body, bodies, colliders) {
+            return Err(FlexBodyError::NoCarrier(handle));
+        }
+        body.place(centre_of_mass.into(), angle)?;
+        if let Some(collider) = colliders.get_mut(body.collider_handle()) {
+            place_vertices(body, collider);
+        }
+        Ok(())
+    }
+
     /// Removes a body from the set and its carrier from the world.
     ///
     /// # Errors
@@ -273,7 +329,6 @@ pub(crate) fn write_surface(
     parameters: &IntegrationParameters,
 ) {
     let handle = body.collider_handle();
-    let nodes = body.mesh().boundary().nodes();
     let share = if rests { LAG } else { 0.0 };
     let current = colliders
         .get(handle)
@@ -284,6 +339,14 @@ pub(crate) fn write_surface(
     let Some(collider) = colliders.get_mut(handle) else {
         return;
     };
+    place_vertices(body, collider);
+    let aabb = collider.compute_aabb();
+    broad_phase.set_aabb(parameters, handle, aabb);
+}
+
+/// Puts the vertices of a surface where the nodes are.
+fn place_vertices(body: &FlexBody, collider: &mut Collider) {
+    let nodes = body.mesh().boundary().nodes();
     let Some(polyline) = collider.shape_mut().as_polyline_mut() else {
         return;
     };
@@ -292,6 +355,4 @@ pub(crate) fn write_surface(
             *vertex = to_rapier(node_vec(body.positions(), node));
         }
     });
-    let aabb = collider.compute_aabb();
-    broad_phase.set_aabb(parameters, handle, aabb);
 }

@@ -7,7 +7,7 @@
 use super::places::{loosened, placed_on, swept_box};
 use super::roster::Roster;
 use super::sets::RapierSets;
-use super::sleep::{is_asleep, reaches};
+use super::sleep::reaches;
 use crate::body::FlexBodySet;
 use crate::rapier::data::HasModifiedFlag;
 use crate::rapier::math::Vector;
@@ -90,7 +90,7 @@ impl Changes {
             return WorldChange::None;
         };
         let mut all = flex_bodies.iter();
-        if all.any(|(_, body)| is_asleep(body, sets.bodies)) {
+        if all.any(|(_, body)| body.is_sleeping(sets.bodies)) {
             change
         } else {
             WorldChange::None
@@ -122,7 +122,7 @@ impl Changes {
                         && reaches(sets, surface, &near)
                 })
             };
-            if is_asleep(body, sets.bodies) && self.colliders.iter().any(meets) {
+            if body.is_sleeping(sets.bodies) && self.colliders.iter().any(meets) {
                 sets.islands
                     .wake_up(sets.bodies, body.rigid_body_handle(), true);
             }

@@ -10,7 +10,6 @@ use super::pair_name::PairName;
 use super::quarantine::is_out;
 use super::roster::Roster;
 use super::sets::RapierSets;
-use super::sleep::is_asleep;
 use super::strikes::Strikes;
 use super::sweep::Sweep;
 use super::waking::wake_met;
@@ -50,7 +49,7 @@ impl Claims {
     /// Whether all that could move sleeps, so that there is nothing to do.
     pub fn is_all_asleep(&self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
         let is_quiet = |body: &FlexBody| {
-            is_out(body, sets.bodies) || !body.is_disturbed() && is_asleep(body, sets.bodies)
+            is_out(body, sets.bodies) || !body.is_disturbed() && body.is_sleeping(sets.bodies)
         };
         self.changes.leave_at_rest(sets, &self.flex)
             && flex_bodies.iter().all(|(_, body)| is_quiet(body))

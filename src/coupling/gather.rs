@@ -148,8 +148,9 @@ impl Gatherer {
         let pins = sources
             .under_way
             .pins(index, settings.span, rest, body.prescribed());
+        let forces = body.forces_over(settings.step.dt / settings.span.share());
         let load = FlexLoad {
-            force: body.nodal_force(),
+            force: &forces,
             gravity,
             prescribed: pins.as_deref().unwrap_or(body.prescribed()),
             reaction: body.reactions(),

@@ -84,8 +84,8 @@ pub(crate) use seats::Seats;
 pub use sets::RapierSets;
 pub(crate) use shapes::{ShapeFault, rounding};
 pub(crate) use sleep::{
-    is_asleep, keep_awake, keep_landing_awake, look_whether_still, rests, stop_if_asleep,
-    wake_disturbed, wake_moving,
+    keep_awake, keep_landing_awake, look_whether_still, rests, stop_if_asleep, wake_disturbed,
+    wake_moving,
 };
 pub(crate) use trespassers::{Trespasser, Trespassers};
 pub(crate) use under_way::{Span, UnderWay};

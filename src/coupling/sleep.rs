@@ -40,7 +40,7 @@ impl Sleeper {
     /// The sleeper that a body is, unless it is awake.
     pub fn new(index: u32, body: &FlexBody, sets: &RapierSets<'_>) -> Option<Self> {
         let collider = sets.colliders.get(body.collider_handle())?;
-        is_asleep(body, sets.bodies).then(|| Self {
+        body.is_sleeping(sets.bodies).then(|| Self {
             index,
             carrier: body.rigid_body_handle(),
             collider: body.collider_handle(),
@@ -49,10 +49,12 @@ impl Sleeper {
     }
 }
 
-/// Whether the carrier of a body sleeps.
-pub(crate) fn is_asleep(body: &FlexBody, bodies: &RigidBodySet) -> bool {
-    let carrier = bodies.get(body.rigid_body_handle());
-    carrier.is_some_and(RigidBody::is_sleeping)
+impl FlexBody {
+    /// Whether the body sleeps in the world of these bodies.
+    pub fn is_sleeping(&self, bodies: &RigidBodySet) -> bool {
+        let carrier = bodies.get(self.rigid_body_handle());
+        carrier.is_some_and(RigidBody::is_sleeping)
+    }
 }
 
 /// Wakes the bodies that the user changed; all of them if `all`.
@@ -202,7 +204,7 @@ fn size_of(body: &FlexBody, sets: &RapierSets<'_>) -> f64 {
 
 /// Stops a body whose carrier has fallen asleep in rapier's step.
 pub(crate) fn stop_if_asleep(body: &mut FlexBody, bodies: &RigidBodySet) {
-    if is_asleep(body, bodies) {
+    if body.is_sleeping(bodies) {
         body.stop();
     }
 }

@@ -135,6 +135,18 @@ impl Model {
         })
     }
 
+    /// The same body of another material and thickness (m).
+    ///
+    /// # Errors
+    /// As [`Model::assemble`].
+    pub fn remade(&self, material: Arc<dyn Material>, thickness: f64) -> Result<Self, ModelError> {
+        Self::assemble(ModelDescription {
+            material,
+            thickness,
+            ..self.description.clone()
+        })
+    }
+
     /// The mesh, in its own coordinates.
     pub fn mesh(&self) -> &Mesh {
         &self.description.mesh
@@ -188,6 +200,11 @@ impl Model {
     /// Damping coefficients of the material.
     pub fn rayleigh(&self) -> Rayleigh {
         self.description.material.rayleigh()
+    }
+
+    /// The constitutive law, to be shared.
+    pub(crate) fn shared_material(&self) -> &Arc<dyn Material> {
+        &self.description.material
     }
 
     /// The constitutive law.

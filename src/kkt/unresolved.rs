@@ -105,7 +105,7 @@ mod tests {
         let mut block = FlexBlock::new(Arc::clone(body.model()), fixed, body.frame());
         let step = Step::new(&Beta2::default(), DT);
         let load = FlexLoad {
-            force: body.nodal_force(),
+            force: body.nodal_forces(),
             gravity: Vec2::zeros(),
             prescribed: body.prescribed(),
             reaction: body.reactions(),

@@ -3,9 +3,7 @@
 use super::error::StepError;
 use super::settings::FlexParameters;
 use crate::body::{FlexBody, FlexBodyError, FlexBodyHandle, FlexBodySet};
-use crate::coupling::{
-    RapierSets, Seats, is_asleep, is_carried, is_out, is_representable_motion, rounding,
-};
+use crate::coupling::{RapierSets, Seats, is_carried, is_out, is_representable_motion, rounding};
 use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
 use crate::kkt::{Island, KktError};
@@ -69,7 +67,7 @@ pub(super) fn check_bodies(
     flex_bodies: &FlexBodySet,
 ) -> Result<(), StepError> {
     for (handle, body) in flex_bodies.iter() {
-        if is_out(body, sets.bodies) || is_asleep(body, sets.bodies) {
+        if is_out(body, sets.bodies) || body.is_sleeping(sets.bodies) {
             continue;
         }
         if !is_carried(body, sets.bodies, sets.colliders) {

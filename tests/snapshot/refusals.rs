@@ -4,7 +4,7 @@ use super::support::*;
 use foil2d::pipeline::{Snapshot, SnapshotError};
 
 const MAGIC: u64 = 0x0000_666f_696c_3264;
-const FORMAT: u32 = 8;
+const FORMAT: u32 = 9;
 
 fn small() -> Run {
     let log = Recorder::default();
@@ -33,7 +33,7 @@ fn another_format_is_refused_before_its_data_is_read() {
         postcard::to_stdvec(&(MAGIC, FORMAT + 1, 32_u8, "data of tomorrow")).expect("is written");
     let error = refusal(&bytes).expect("it is refused");
     assert_eq!(error, SnapshotError::Format(FORMAT + 1));
-    assert!(error.to_string().contains("format 8"), "{error}");
+    assert!(error.to_string().contains("format 9"), "{error}");
 }
 
 #[test]
@@ -49,9 +49,9 @@ fn another_precision_is_refused() {
 
 #[test]
 fn a_text_of_another_format_is_refused_too() {
-    let text = format!("[{MAGIC}, 9, 32, {{\"world\": null}}, 0]");
+    let text = format!("[{MAGIC}, 10, 32, {{\"world\": null}}, 0]");
     let snapshot: Snapshot = serde_json::from_str(&text).expect("its header is read");
-    assert_eq!(snapshot.restore().err(), Some(SnapshotError::Format(9)));
+    assert_eq!(snapshot.restore().err(), Some(SnapshotError::Format(10)));
 }
 
 #[test]

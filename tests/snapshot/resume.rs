@@ -188,6 +188,8 @@ fn changes_that_wait_for_the_next_step_are_saved_too() {
     straight.rigid([5.5, 2.0], ColliderBuilder::ball(0.2));
     let (slider, body) = straight.flex_bodies.iter_mut().nth(1).expect("it is there");
     body.set_nodal_force(0, [0.0, 50.0]).expect("it has a node");
+    body.apply_impulse_at_node(1, [0.0, 2.0])
+        .expect("it has two");
     body.set_velocities(&vec![0.5; 2 * body.n_nodes()])
         .expect("two a node");
     let spring = AttachmentBuilder::spring_damper(added, 1e3, 10.0)

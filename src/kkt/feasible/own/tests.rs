@@ -38,7 +38,7 @@ fn scene(body: &FlexBody, place: impl Fn([f64; 2]) -> Vec2) -> (FeasiblePath, bo
         set_node_vec(&mut state.position, node, place(*at));
     }
     let load = FlexLoad {
-        force: body.nodal_force(),
+        force: body.nodal_forces(),
         gravity: Vec2::zeros(),
         prescribed: body.prescribed(),
         reaction: body.reactions(),
