@@ -1097,12 +1097,37 @@ fn margins_of_a_disabled_collider_stop_nothing() {
     scene.assert_goes_on();
 }
 
+/// What lies in a body is measured, and told, step after step; what has no end is not.
+#[test]
+fn a_shape_without_an_end_given_to_what_lies_in_a_body_stops_nothing() {
+    for warm_up in [0, 1, 5] {
+        let mut scene = Scene::new();
+        let at = Vector::new;
+        let place = RigidBodyBuilder::kinematic_velocity_based().translation(at(0.5, 0.5));
+        let (_, stone) = scene.world.insert(place, ColliderBuilder::cuboid(0.2, 0.2));
+        for _ in 0..warm_up {
+            scene.step().expect("a sound step");
+        }
+        let (corner, end) = (at(0.0, 0.3), at(0.3, Real::INFINITY));
+        let endless = SharedShape::triangle(at(0.0, 0.0), end, corner);
+        scene.world.colliders[stone].set_shape(endless);
+        for _ in 0..3 {
+            match scene.step() {
+                Ok(()) => {}
+                Err(StepError::Shape { collider, .. }) => assert_eq!(collider, stone),
+                Err(error) => panic!("{error}"),
+            }
+            scene.assert_flexible_state_is_finite();
+        }
+    }
+}
+
 /// Rapier steps such shapes, or takes them out, so long as nothing of ours has to measure a distance to them.
 #[test]
 fn shapes_that_no_body_can_have_are_refused_by_name_where_they_are_met() {
     let nan = Real::NAN;
     let at = Vector::new;
-    let shapes: [(&str, SharedShape); 9] = [
+    let shapes: [(&str, SharedShape); 10] = [
         ("normal", SharedShape::halfspace(at(0.0, 0.0))),
         ("normal", SharedShape::halfspace(at(nan, 1.0))),
         ("radius", SharedShape::ball(-1.0)),
@@ -1112,6 +1137,10 @@ fn shapes_that_no_body_can_have_are_refused_by_name_where_they_are_met() {
         (
             "vertex",
             SharedShape::triangle(at(0.0, 0.0), at(nan, 0.0), at(0.0, 1.0)),
+        ),
+        (
+            "vertex",
+            SharedShape::triangle(at(0.0, 0.0), at(0.3, Real::INFINITY), at(0.0, 0.3)),
         ),
         (
             "vertex",

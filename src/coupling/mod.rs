@@ -76,7 +76,7 @@ pub(crate) use memory::Memory;
 pub(crate) use newcomers::{PutTogether, overlaps_of_newcomers};
 pub(crate) use pool::FlexPool;
 pub(crate) use pressed_point::PressedPoint;
-pub(crate) use quarantine::{is_out, quarantine, quarantine_carriers};
+pub(crate) use quarantine::{disable_joints_of_disabled, is_out, quarantine, quarantine_carriers};
 pub(crate) use reading::{GatherError, is_representable_motion};
 #[cfg(feature = "serde-serialize")]
 pub(crate) use record::CouplingRecord;

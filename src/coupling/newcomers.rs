@@ -148,12 +148,25 @@ pub(super) fn depth_in(body: &FlexBody, other: ColliderHandle, sets: &RapierSets
     let is_solid = collider.shape().contains_local_point(local.center());
     let middle = pose_of(collider, sets) * local.center();
     let at_surface = crossing(body.collider_handle(), other, sets);
-    if is_solid && body.contains(from_rapier(middle).into()) {
-        let half = local.half_extents();
-        at_surface.max(f64::from(half.x.min(half.y)))
+    let half = local.half_extents();
+    let half = f64::from(half.x.min(half.y));
+    // What is larger than the body is not in it, whatever is where its middle is: a half-space has one at its surface.
+    if is_solid && half <= size_of(body) && body.contains(from_rapier(middle).into()) {
+        at_surface.max(half)
     } else {
         at_surface
     }
+}
+
+/// The larger side of the box that a body's surface is in (m).
+fn size_of(body: &FlexBody) -> f64 {
+    let nodes = body.mesh().boundary().nodes().iter();
+    let none = [Vec2::repeat(f64::INFINITY), Vec2::repeat(f64::NEG_INFINITY)];
+    let [low, high] = nodes.fold(none, |[low, high], &node| {
+        let place = node_vec(body.positions(), node);
+        [low.inf(&place), high.sup(&place)]
+    });
+    (high - low).max()
 }
 
 /// The middle of a cell: a point in the material, off the surface.
@@ -176,6 +189,14 @@ fn crossing(one: ColliderHandle, other: ColliderHandle, sets: &RapierSets<'_>) -
     let [Some(one), Some(other)] = both else {
         return 0.0;
     };
+    // Rapier asks for distances of shapes that have a size only; others are refused where they are met.
+    let is_bounded = |collider: &Collider| {
+        let local = collider.shape().compute_local_aabb();
+        local.mins.is_finite() && local.maxs.is_finite()
+    };
+    if ![one, other].into_iter().all(is_bounded) {
+        return 0.0;
+    }
     let poses = [one, other].map(|collider| pose_of(collider, sets));
     let found = query::contact(&poses[0], one.shape(), &poses[1], other.shape(), 0.0);
     let contact = found.ok().flatten();

@@ -81,6 +81,28 @@ pub(crate) fn quarantine_carriers(
     }
 }
 
+/// Disables the joints of disabled bodies that hold nothing else that moves, as rapier does with those that a body has when it is disabled: it
+/// panics where one is put to bodies that have been disabled before. They are enabled again with a body.
+pub(crate) fn disable_joints_of_disabled(sets: &mut RapierSets<'_>) {
+    let bodies = &*sets.bodies;
+    let is_idle = |joint: &ImpulseJoint| {
+        let ends = [joint.body1(), joint.body2()].map(|end| bodies.get(end));
+        let is_disabled = |body: &RigidBody| !body.is_enabled();
+        let mut ends = ends.into_iter().flatten();
+        ends.clone().any(is_disabled) && ends.all(|body| is_disabled(body) || body.is_fixed())
+    };
+    let joints = sets.impulse_joints.iter();
+    let idle: Vec<ImpulseJointHandle> = joints
+        .filter(|(_, joint)| joint.data.is_enabled() && is_idle(joint))
+        .map(|(handle, _)| handle)
+        .collect();
+    for handle in idle {
+        if let Some(joint) = sets.impulse_joints.get_mut(handle, false) {
+            joint.data.enabled = JointEnabled::DisabledByAttachedBody;
+        }
+    }
+}
+
 fn enable(
     is_enabled: bool,
     carrier: RigidBodyHandle,

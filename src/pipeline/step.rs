@@ -9,8 +9,9 @@ use super::notes::notes_of_newcomers;
 use super::overbent::list_overbent;
 use crate::body::FlexBodySet;
 use crate::coupling::{
-    Loan, RapierSets, WorldChange, look_whether_still, quarantine, quarantine_carriers, rests,
-    stop_if_asleep, sync_settings, wake_disturbed, write_impulses, write_surface,
+    Loan, RapierSets, WorldChange, disable_joints_of_disabled, look_whether_still, quarantine,
+    quarantine_carriers, rests, stop_if_asleep, sync_settings, wake_disturbed, write_impulses,
+    write_surface,
 };
 use crate::system::Step;
 
@@ -61,6 +62,7 @@ impl FlexPipeline {
         let dissipated = self.report.energy.dissipated;
         let step = check_step(&self.parameters, sets)?;
         drop_orphans(sets, flex_bodies);
+        disable_joints_of_disabled(sets);
         let change = self.claims.look_for_changes(sets, flex_bodies);
         check_colliders(sets, self.claims.marked_colliders())?;
         let is_quiet = step.dt > 0.0 && change == WorldChange::None;

@@ -224,3 +224,41 @@ fn a_body_whose_carrier_is_disabled_stops_and_goes_on_when_it_is_enabled() -> Ou
     }
     Ok(())
 }
+
+/// Rapier disables the joints that a body has when it is disabled, but not one that is put to it later, and panics.
+#[test]
+fn joints_put_to_disabled_bodies_wait_until_these_are_enabled() -> Outcome {
+    for other_is_fixed in [true, false] {
+        let mut scene = Scene::with_floor();
+        scene.insert(square())?;
+        let first = scene.insert_box(0.1, [4.0, 3.0], 100.0);
+        let second = scene.insert_box(0.1, [5.0, 3.0], 100.0);
+        // Rapier looks at all joints where half of the bodies or more are awake.
+        for x in [7.0, 8.0, 9.0] {
+            scene.insert_box(0.1, [x, 9.0], 100.0);
+        }
+        if other_is_fixed {
+            scene.world.bodies[second].set_body_type(RigidBodyType::Fixed, true);
+        } else {
+            scene.world.bodies[second].set_enabled(false);
+        }
+        scene.world.bodies[first].set_enabled(false);
+        scene.steps(2)?;
+        let joint = FixedJointBuilder::new().local_anchor1(vec2(1.0, 0.0));
+        scene
+            .world
+            .impulse_joints
+            .insert(first, second, joint, true);
+        scene.steps(2)?;
+        assert!((scene.height(first) - 3.0).abs() < 1e-6);
+        for body in [first, second] {
+            scene.world.bodies[body].set_enabled(true);
+        }
+        scene.steps(30)?;
+        let [one, other] = [first, second].map(|body| scene.world.bodies[body].translation());
+        assert!((one - other).length() - 1.0 < 1e-2, "the joint holds");
+        let has_fallen = scene.height(first) < 2.5;
+        assert_eq!(has_fallen, !other_is_fixed);
+    }
+    Ok(())
+}

@@ -121,3 +121,22 @@ fn what_is_let_pass_is_told_no_more() {
     scene.step();
     assert_eq!(scene.report().gap_violation(), 0.0);
 }
+
+/// A half-space has a middle at its surface, which may be in a body that lies on it, and no size.
+#[test]
+fn a_body_laid_flush_on_a_half_space_is_not_in_it() {
+    for at in [[0.0, 0.0], [-0.5, 0.0], [-0.5, 1e-4]] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        let up = foil2d::rapier::math::Vector::new(0.0, 1.0);
+        scene.fixed(ColliderBuilder::new(SharedShape::halfspace(up)));
+        let block = FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4])
+            .material(LinearElastic::plane_stress(1e7, 0.3).density(1000.0))
+            .translation(at);
+        scene.flexible(block);
+        for _ in 0..3 {
+            scene.step();
+            assert!(scene.report().insertion_notes().is_empty());
+            assert!(scene.report().gap_violation() < 1e-6);
+        }
+    }
+}
