@@ -3,6 +3,8 @@
 #[path = "pipeline/coming_and_going.rs"]
 mod coming_and_going;
 mod common;
+#[path = "pipeline/late_loads.rs"]
+mod late_loads;
 #[path = "pipeline/loads.rs"]
 mod loads;
 #[path = "pipeline/put_together.rs"]

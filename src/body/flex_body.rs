@@ -44,7 +44,7 @@ pub struct FlexBody {
     pub(super) collider: ColliderHandle,
     pub(super) is_disturbed: bool,
     pub(super) is_quarantined: bool,
-    /// Whether no step has been taken with it.
+    /// Whether no step has been taken with it since it came into the world, or was put where it is.
     pub(super) is_new: bool,
     /// Calls of `pin_where` that chose no node.
     pub(super) n_idle_pins: usize,
@@ -361,6 +361,8 @@ impl FlexBody {
     pub(crate) fn set_quarantined(&mut self, is_quarantined: bool) {
         self.is_quarantined = is_quarantined;
         self.is_disturbed = true;
+        // What it was struck with may be what it is sick of.
+        self.nodal_impulse.fill(0.0);
     }
 
     /// Takes what motion is left when the body falls asleep.
@@ -371,6 +373,11 @@ impl FlexBody {
     /// Forces on nodes, interleaved (N).
     pub fn nodal_forces(&self) -> &[f64] {
         &self.nodal_force
+    }
+
+    /// Impulses that strike nodes in the next step, interleaved (N s).
+    pub fn nodal_impulses(&self) -> &[f64] {
+        &self.nodal_impulse
     }
 
     /// Forces on nodes in a step of length `dt` (s), what strikes them in it included, interleaved (N).

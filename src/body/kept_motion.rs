@@ -48,14 +48,20 @@ impl FlexBody {
         self.energy_reserve = energy_reserve;
     }
 
-    /// Whether no step has been taken with the body.
+    /// Whether no step has been taken with the body since it came into the world.
     pub(crate) fn is_new(&self) -> bool {
         self.is_new
+    }
+
+    /// Notes that the body is out of the world: when it comes back, others may be where it is.
+    pub(crate) fn be_new(&mut self) {
+        self.is_new = true;
     }
 
     /// Notes that a step has been taken with it, which what struck it was for.
     pub(crate) fn greet(&mut self) {
         self.is_new = false;
+        self.n_idle_pins = 0;
         self.nodal_impulse.fill(0.0);
     }
 

@@ -39,4 +39,4 @@ pub use pin::Pin;
 #[cfg(feature = "serde-serialize")]
 pub(crate) use record::{SetRecord, SetRecordError};
 pub use set::FlexBodySet;
-pub use state::{BodyEnergy, FlexState, FrameMotion};
+pub use state::{AppliedLoad, BodyEnergy, FlexState, FrameMotion, KnownLoads};

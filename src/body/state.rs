@@ -36,6 +36,44 @@ pub struct BodyEnergy {
     pub elastic: f64,
 }
 
+/// What acts on a body besides contact.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub struct AppliedLoad {
+    /// Nodal forces, interleaved (N).
+    pub force: Vec<f64>,
+    /// Gravity and body force (m/s²).
+    pub gravity: Vec2,
+}
+
+impl AppliedLoad {
+    /// Takes over a load.
+    pub fn assign(&mut self, force: &[f64], gravity: Vec2) {
+        self.force.clear();
+        self.force.extend_from_slice(force);
+        self.gravity = gravity;
+    }
+}
+
+/// What the stored accelerations of a body of small strain know of its loads. A step takes the mean of the accelerations at its beginning and
+/// its end: of a load that has jumped it brings less than its time, as much as it brings beyond that in the step in which it is gone.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub struct KnownLoads {
+    /// At the end of the last step; without forces where nothing is known.
+    pub last: AppliedLoad,
+    /// Of which nothing is late.
+    pub base: AppliedLoad,
+    /// They are late by `1 - β1` of a step of this length (s).
+    pub lag: f64,
+}
+
 /// The committed motion of a flexible body; nodal vectors are interleaved.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -55,6 +93,8 @@ pub struct FlexState {
     pub rate: Vec<f64>,
     /// Its second rate (m/s²), without hard contact forces.
     pub acceleration: Vec<f64>,
+    /// What the accelerations know of loads.
+    pub loads: KnownLoads,
     /// Torque of all forces about the centre at the end of the step (N m).
     pub torque: f64,
     /// Kinetic energy (J).
@@ -77,6 +117,7 @@ impl FlexState {
             displacement: zeros.clone(),
             rate: zeros.clone(),
             acceleration: zeros,
+            loads: KnownLoads::default(),
             torque: 0.0,
             kinetic_energy: 0.0,
             elastic_energy: 0.0,
@@ -101,6 +142,15 @@ impl FlexState {
         self.frame.acceleration = Vec2::zeros();
         self.frame.spin_rate = 0.0;
         self.torque = 0.0;
+    }
+
+    /// Takes over that the mass has grown by the factor `1/share`: forces of the last step that are still to come are as large as they were, and
+    /// gravity has grown with it.
+    pub(super) fn share_accelerations(&mut self, share: f64) {
+        self.acceleration.iter_mut().for_each(|a| *a *= share);
+        let gravity = self.loads.last.gravity;
+        self.frame.acceleration = gravity + share * (self.frame.acceleration - gravity);
+        self.frame.spin_rate *= share;
     }
 
     /// Forgets all velocities and accelerations.

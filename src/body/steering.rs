@@ -93,7 +93,7 @@ impl FlexBody {
     }
 
     /// Sets the velocity of the centre of mass (m/s): every node's changes by as much, and the body spins and vibrates as before. Pinned
-    /// directions stay at rest.
+    /// directions stay at rest, so that a pinned body reads back less.
     ///
     /// # Errors
     /// If rapier's precision cannot hold the velocity; nothing is then changed.
@@ -123,8 +123,8 @@ impl FlexBody {
     }
 
     /// Changes linear and angular momentum at once by an impulse (N s) along a line through a point of the world (m), as
-    /// [`RigidBody::apply_impulse_at_point`](crate::rapier::dynamics::RigidBody::apply_impulse_at_point) does: the body moves as a whole, but
-    /// for its pinned directions. [`FlexBody::apply_impulse_at_node`] deforms it.
+    /// [`RigidBody::apply_impulse_at_point`](crate::rapier::dynamics::RigidBody::apply_impulse_at_point) does: the body moves as a whole, about
+    /// its centre of mass, but for its pinned directions. [`FlexBody::apply_impulse_at_node`] deforms it.
     ///
     /// # Errors
     /// If a number is not finite, or rapier's precision cannot hold the velocity of a node; nothing is then changed.
@@ -149,9 +149,9 @@ impl FlexBody {
         self.add_rigid_velocity("the impulse", Vec2::zeros(), spin)
     }
 
-    /// Strikes a node with an impulse (N s): a force on it all through the next step, besides
-    /// [`set_nodal_force`](FlexBody::set_nodal_force), from which waves run through the body. Several add up. The step after the next brings
-    /// the last part of it to bodies of small strain, whose loads act as means of two steps.
+    /// Strikes a node with an impulse (N s): by a force all through the next step that the body takes part in, besides
+    /// [`set_nodal_force`](FlexBody::set_nodal_force), from which waves run through the body. Several add up,
+    /// [`nodal_impulses`](FlexBody::nodal_impulses) are those to come. A body that leaves the world for its numbers forgets them.
     ///
     /// # Errors
     /// If the node does not exist or the impulse is not finite; nothing is then changed.
@@ -199,12 +199,15 @@ impl FlexBody {
                 Some(Arc::new(FiniteStrainModel::assemble(description)?))
             }
         };
+        let before = self.mass();
         self.arms = Arms::new(&model, self.frame);
         (self.model, self.large) = (Arc::new(model), large);
         self.frequency = OnceLock::new();
         self.state.elastic_energy = self.energy().elastic;
         self.velocity_changed();
-        self.begin_anew();
+        self.state.share_accelerations(before / self.mass());
+        self.stillness = Stillness::default();
+        self.is_disturbed = true;
         Ok(())
     }
 
@@ -230,7 +233,7 @@ impl FlexBody {
     }
 
     /// Puts the body's centre of mass and its angle elsewhere, as it is: linear and angular velocity stay, deformation and vibrations turn
-    /// along, and what acted where it was acts no more.
+    /// along.
     pub(crate) fn place(&mut self, centre: Vec2, angle: f64) -> Result<(), FlexBodyError> {
         let [from, mean] = [self.centre_of_mass(), self.linvel()].map(Vec2::from);
         let turn = rotation(angle - self.state.frame.angle);
@@ -254,20 +257,9 @@ impl FlexBody {
         frame.centre = centre + turn * (frame.centre - from);
         frame.angle = angle;
         self.velocity_changed();
-        self.contact_force.fill(0.0);
-        self.reaction.fill(0.0);
-        self.is_new = true;
-        self.begin_anew();
-        Ok(())
-    }
-
-    /// Lets the next step find the accelerations, as the first one does: those of the last are of another body, or of another place.
-    fn begin_anew(&mut self) {
-        self.state.clear_accelerations();
-        self.is_started = false;
-        self.energy_reserve = 0.0;
         self.stillness = Stillness::default();
-        self.is_disturbed = true;
+        (self.is_new, self.is_disturbed) = (true, true);
+        Ok(())
     }
 
     /// Wakes the body, and with it all that it touches, at the next step.

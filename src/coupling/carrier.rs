@@ -68,7 +68,8 @@ impl FlexBodySet {
 
     /// Puts a body elsewhere, as it is deformed: its [centre of mass](crate::body::FlexBody::centre_of_mass) (m) and its
     /// [angle](crate::body::FlexBody::angle) (rad). Linear and angular velocity stay, vibrations turn along. The next step wakes it and what
-    /// rested on it, and tells what it was put into, as for a body just inserted. Attachments stay, and pull.
+    /// rested on it, and tells what it was put into, as for a body just inserted. Attachments stay, and pull, over any distance.
+    /// [`FlexBodyBuilder::translation`] is where the origin of the mesh is put, which is no centre of mass but for a disc's.
     ///
     /// ```
     /// use foil2d::prelude::*;

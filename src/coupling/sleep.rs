@@ -4,6 +4,7 @@
 //! rapier wakes is awake here too. What is awake and comes near a sleeper wakes it before they touch: see [`super::waking`].
 
 use super::landing::Landing;
+use super::quarantine::is_out;
 use super::sets::RapierSets;
 use crate::body::{FlexBody, FlexBodySet};
 use crate::math::from_rapier;
@@ -60,6 +61,9 @@ impl FlexBody {
 /// Wakes the bodies that the user changed; all of them if `all`.
 pub(crate) fn wake_disturbed(sets: &mut RapierSets<'_>, flex_bodies: &mut FlexBodySet, all: bool) {
     for (_, body) in flex_bodies.iter_mut() {
+        if is_out(body, sets.bodies) {
+            body.be_new();
+        }
         if !body.is_quarantined() && (body.is_disturbed() || all) {
             body.clear_disturbance();
             sets.islands

@@ -168,6 +168,7 @@ impl FlexBlock {
         state.displacement.copy_from_slice(&self.displacement);
         state.frame = self.frame;
         state.torque = 0.0;
+        state.loads.last.force.clear();
         let back = self.turn.transpose();
         for node in 0..self.model.n_nodes() {
             let acceleration = back * node_vec(&self.explicit.acceleration, node);

@@ -10,6 +10,7 @@ use super::flex_path::clearance_of;
 use super::flex_surface::FollowingSurface;
 use super::large_block::Large;
 use super::step::{FlexLoad, Step};
+use super::step_loads::StepLoads;
 use crate::body::{Arms, FlexState, Frame, FrameMotion};
 use crate::fe::model::Model;
 use crate::integrator::{Beta2, Weights};
@@ -53,6 +54,7 @@ pub struct FlexBlock {
     pub(super) start_torque: f64,
     pub(super) start_momentum: f64,
     /// Kinetic and elastic energy at the beginning (J).
+    pub(super) loads: StepLoads,
     pub(super) start_energy: [f64; 2],
     /// Elastic energy at the end (J).
     pub(super) end_elastic: f64,
@@ -157,6 +159,7 @@ impl FlexBlock {
             start_frame: FrameMotion::default(),
             start_torque: 0.0,
             start_momentum: 0.0,
+            loads: StepLoads::default(),
             start_energy: [0.0; 2],
             end_elastic: 0.0,
             start_acceleration: zeros(),
@@ -254,6 +257,7 @@ impl FlexBlock {
             return self.predict_large(state);
         }
         self.factorize(step.weights)?;
+        self.take_up_load(&state.loads);
         if self.kind == Frame::Fixed {
             self.take_up_jump();
         }
@@ -274,6 +278,7 @@ impl FlexBlock {
             self.prescribed[dof] = load.prescribed[dof];
             self.start_reaction[dof] = load.reaction[dof];
         }
+        self.loads.begin(load, state.loads.lag);
         for (node, mass) in self.arms.node_mass.iter().enumerate() {
             for axis in 0..2 {
                 let dof = 2 * node + axis;
@@ -296,7 +301,11 @@ impl FlexBlock {
                 &self.start_velocity,
                 &self.start_acceleration,
             ],
-            _ => [&state.displacement[..], &state.rate, &state.acceleration],
+            _ => [
+                &state.displacement[..],
+                &state.rate,
+                &self.start_acceleration,
+            ],
         };
         Beta2::predict(
             self.step.dt,
@@ -320,17 +329,6 @@ impl FlexBlock {
             self.place();
         } else {
             self.position.copy_from_slice(&state.position);
-        }
-    }
-
-    /// Nodes that follow have no history but where they are.
-    fn predict_following(&mut self, state: &FlexState) {
-        for &dof in &self.following_dofs {
-            self.displacement_q[dof] = state.displacement[dof];
-            self.rate_q[dof] = 0.0;
-        }
-        if let Some(surface) = &mut self.surface {
-            surface.begin(&self.model, &state.displacement, self.step.dt);
         }
     }
 
@@ -385,6 +383,8 @@ impl FlexBlock {
         state.frame.spin_rate = turn;
         state.acceleration.copy_from_slice(&self.local);
         state.torque = 0.0;
+        state.loads.last.assign(load.force, load.gravity);
+        state.loads.base.assign(load.force, load.gravity);
         for (node, mass) in self.arms.node_mass.iter().enumerate() {
             let applied = node_vec(load.force, node) + *mass * load.gravity;
             state.torque += cross(

@@ -1,10 +1,11 @@
-//! Angular momentum of a flexible block: the angle obeys its balance instead of its row of (C.5), which is exact for
-//! finite displacements too.
+//! Momentum of a flexible block: loads that jump bring all of it in their own step, and the angle obeys the balance of angular momentum instead
+//! of its row of (C.5), which is exact for finite displacements too.
 
 use super::flex_block::FlexBlock;
-use crate::body::{Frame, FrameMotion};
+use super::flex_motion::spread_accelerations;
+use crate::body::{Frame, FrameMotion, KnownLoads};
 use crate::integrator::Weights;
-use crate::math::{Vec2, cross, node_vec};
+use crate::math::{Vec2, cross, node_vec, rotation, set_node_vec};
 
 impl FlexBlock {
     /// `I(u) ω + Σ m u × u̇` (N m s).
@@ -50,6 +51,59 @@ impl FlexBlock {
         self.frame.angle += 0.5 * self.step.dt * change;
         self.frame.spin_rate += change / self.step.dt;
         self.place();
+    }
+
+    /// Lets loads that jump bring all their momentum, whatever the steps are long.
+    ///
+    /// A step of length `h` brings `(1 - β1) h f` of the load `f` before it and `β1 h f'` of its own: of a jump `Δf` less than its time by
+    /// `(1 - β1) h Δf`, and more by as much when it is gone, if that step is as long. All jumps are to be late by the length `l` of the first one after
+    /// nothing was: the acceleration at the beginning of the step has jumped by `(1 - l/h) κ A⁻¹ Δf` for that, `κ = 1 + α b1`, by its part of
+    /// `M⁻¹ Δf` where the step resolves it, rigid motion above all, and by nothing where it does not, which would swing.
+    pub(super) fn take_up_load(&mut self, known: &KnownLoads) {
+        let (last, length) = (&known.last, self.step.dt);
+        if last.force.len() != self.loads.own.force.len() || *last == self.loads.own {
+            return;
+        }
+        if *last == known.base {
+            self.loads.lag = length;
+        }
+        let late = self.loads.lag / length;
+        let share = 1.0 - late;
+        let mean = (1.0 - self.step.weights.b1 / length) * late;
+        let turn = self.start_frame.angle;
+        let (back, centre) = (rotation(-turn), self.start_frame.centre);
+        let (mut force, mut torque) = (Vec2::zeros(), 0.0);
+        self.loads.late.resize(self.force.len(), 0.0);
+        for (node, mass) in self.arms.node_mass.iter().enumerate() {
+            let own = node_vec(&self.loads.own.force, node) - node_vec(&last.force, node);
+            let whole: Vec2 = own + *mass * (self.loads.own.gravity - last.gravity);
+            set_node_vec(&mut self.loads.late, node, -mean * whole);
+            let jump = share * whole;
+            force += jump;
+            torque += cross(node_vec(&self.start_position, node) - centre, jump);
+            set_node_vec(&mut self.local, node, back * jump);
+        }
+        if share == 0.0 {
+            return;
+        }
+        for &dof in &self.fixed_dofs {
+            self.local[dof] = 0.0;
+        }
+        self.factor.solve_in_place(&mut self.local);
+        self.n_solves += 1;
+        let kept = 1.0 + self.model.rayleigh().mass * self.step.weights.b1;
+        self.local.iter_mut().for_each(|value| *value *= kept);
+        spread_accelerations(&self.model, &self.is_fixed, &mut self.local);
+        self.arms.split(self.kind, &mut self.local);
+        for (start, jump) in self.start_acceleration.iter_mut().zip(&self.local) {
+            *start += jump;
+        }
+        if self.kind == Frame::Free {
+            self.start_frame.acceleration += force / self.arms.mass;
+        }
+        if self.kind != Frame::Fixed {
+            self.start_torque += torque;
+        }
     }
 
     /// Torque of the frame's own acceleration when the hinge is moved.

@@ -290,7 +290,10 @@ impl FlexBlock {
     /// Work of the applied forces over the step, `Σ f·(x' - x)`, and of the pins that move, by the mean of their reactions (J).
     pub fn applied_work(&self) -> f64 {
         let arrays = [&self.force[..], &self.position, &self.start_position];
-        sum_over(arrays, |[force, end, start]| force * (end - start)) + self.pin_work()
+        let work = sum_over(arrays, |[force, end, start]| force * (end - start));
+        let late = self.loads.late.iter().enumerate();
+        let late = late.map(|(dof, f)| f * (self.position[dof] - self.start_position[dof]));
+        work + late.sum::<f64>() + self.pin_work()
     }
 
     fn pin_work(&self) -> f64 {
@@ -322,6 +325,8 @@ impl FlexBlock {
         state.position.copy_from_slice(&self.position);
         state.velocity.copy_from_slice(&self.velocity);
         state.displacement.copy_from_slice(&self.displacement);
+        state.loads.last.clone_from(&self.loads.own);
+        state.loads.lag = self.loads.lag;
         state.frame = self.frame;
         state.torque = match self.kind {
             // Nothing turns, and nobody asks.
@@ -408,7 +413,7 @@ impl FlexBlock {
 
 /// Gives massless nodes the mean acceleration of the nodes that carry their mass: their own is a remainder without
 /// inertia that the trapezoidal rule would amplify.
-fn spread_accelerations(model: &Model, is_fixed: &[bool], acceleration: &mut [f64]) {
+pub(super) fn spread_accelerations(model: &Model, is_fixed: &[bool], acceleration: &mut [f64]) {
     for (node, support) in model.massless_support() {
         if support.is_empty() {
             continue;

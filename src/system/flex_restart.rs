@@ -1,7 +1,7 @@
 //! Ways back to the beginning of a step whose iterations have failed.
 
 use super::flex_block::FlexBlock;
-use crate::body::Frame;
+use crate::body::{FlexState, Frame};
 use crate::math::{Vec2, is_held, node_vec, perp, set_node_vec};
 
 impl FlexBlock {
@@ -33,6 +33,17 @@ impl FlexBlock {
     fn restart_following(&mut self) {
         for &dof in &self.following_dofs {
             (self.displacement[dof], self.rate[dof]) = (self.displacement_q[dof], 0.0);
+        }
+    }
+
+    /// Nodes that follow have no history but where they are.
+    pub(super) fn predict_following(&mut self, state: &FlexState) {
+        for &dof in &self.following_dofs {
+            self.displacement_q[dof] = state.displacement[dof];
+            self.rate_q[dof] = 0.0;
+        }
+        if let Some(surface) = &mut self.surface {
+            surface.begin(&self.model, &state.displacement, self.step.dt);
         }
     }
 
@@ -104,7 +115,10 @@ impl FlexBlock {
 
     /// Kinetic energy that the loads would give in the step to the whole body at rest, if nothing held it (J).
     pub fn load_energy(&self) -> f64 {
-        let nodes = self.force.chunks_exact(2);
+        let nodes = self
+            .force
+            .chunks_exact(2)
+            .chain(self.loads.late.chunks_exact(2));
         let total: Vec2 = nodes.map(|force| Vec2::new(force[0], force[1])).sum();
         0.5 * (self.step.dt * total).norm_squared() / self.arms.mass
     }

@@ -258,6 +258,7 @@ impl FlexBlock {
         state.position.copy_from_slice(&self.position);
         state.velocity.copy_from_slice(&self.velocity);
         state.torque = 0.0;
+        state.loads.last.force.clear();
         state.frame = self.frame;
         state.frame.acceleration = Vec2::zeros();
         state.frame.spin_rate = 0.0;

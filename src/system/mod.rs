@@ -32,6 +32,7 @@ mod rigid_energy;
 mod rigid_load;
 mod rigid_motion;
 mod step;
+mod step_loads;
 
 pub use common_motion::Hold;
 #[cfg(feature = "serde-serialize")]

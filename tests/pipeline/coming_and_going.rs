@@ -262,3 +262,20 @@ fn joints_put_to_disabled_bodies_wait_until_these_are_enabled() -> Outcome {
     }
     Ok(())
 }
+
+/// What has come to where a body is while it was out of the world is told when it comes back.
+#[test]
+fn what_a_body_comes_back_into_is_told() -> Outcome {
+    let mut scene = Scene::with_floor();
+    let block = scene.insert(square())?;
+    scene.steps(5)?;
+    let carrier = scene.flex_bodies[block].rigid_body_handle();
+    scene.world.bodies[carrier].set_enabled(false);
+    scene.insert_box(0.2, [0.5, 0.3], 500.0);
+    scene.steps(60)?;
+    assert!(scene.step()?.insertion_notes().is_empty());
+    scene.world.bodies[carrier].set_enabled(true);
+    assert_eq!(scene.step()?.insertion_notes().len(), 1);
+    assert!(scene.step()?.insertion_notes().is_empty(), "told once");
+    Ok(())
+}

@@ -17,11 +17,6 @@ fn flying(is_large: bool) -> Result<(Scene, FlexBodyHandle), Box<dyn std::error:
     Ok((scene, block))
 }
 
-fn is_near(found: &[f64], expected: &[f64], tolerance: f64) -> bool {
-    let mut pairs = found.iter().zip(expected);
-    found.len() == expected.len() && pairs.all(|(a, b)| (a - b).abs() <= tolerance)
-}
-
 /// Turned by `angle` about the origin.
 fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
     let (sin, cos) = angle.sin_cos();
@@ -34,7 +29,13 @@ fn linear_and_angular_velocity_are_set_apart_from_each_other_and_from_vibrations
         let (mut scene, block) = flying(is_large)?;
         let body = &mut scene.flex_bodies[block];
         let (spin, rate) = (body.angvel(), body.state().rate.clone());
-        assert!(rate.iter().any(|value| value.abs() > 1e-2), "it vibrates");
+        let largest = rate
+            .iter()
+            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        assert!(
+            largest > 1e-2,
+            "it vibrates by {largest} m/s, large {is_large}"
+        );
         body.set_linvel([-3.0, 4.0])?;
         assert!(is_near(&body.linvel(), &[-3.0, 4.0], 1e-12));
         assert!((body.angvel() - spin).abs() < 1e-12);
@@ -71,48 +72,6 @@ fn impulses_change_both_momenta_by_what_they_are() -> Outcome {
         let expected =
             about + moment(centre, [20.0, -10.0]) + moment([2.0, 1.0], [-5.0, 30.0]) + 7.0;
         assert!((body.angular_momentum(origin) - expected).abs() < 1e-9);
-    }
-    Ok(())
-}
-
-#[test]
-fn a_struck_node_takes_the_whole_impulse_whatever_the_integrator() -> Outcome {
-    let integrators = [
-        (true, Beta2::damped(0.9)?),
-        (true, Beta2::trapezoidal()),
-        (false, Beta2::damped(0.9)?),
-        (false, Beta2::trapezoidal()),
-        (false, Beta2::central_difference()),
-    ];
-    for (is_large, integrator) in integrators {
-        let mut scene = Scene::without_gravity();
-        scene.set_dt(1e-4);
-        scene.flex = FlexPipeline::new().with_integrator(integrator);
-        let block =
-            FlexBodyBuilder::rectangle([1.0, 0.6], [6, 4]).material(elastic(1e6, 1000.0, 0.0));
-        let block = scene.insert(if is_large {
-            block
-        } else {
-            block.small_strain()
-        })?;
-        scene.steps(2)?;
-        let body = &mut scene.flex_bodies[block];
-        body.apply_impulse_at_node(0, [2.0, -1.0])?;
-        body.apply_impulse_at_node(0, [1.0, -2.0])?;
-        scene.steps(3)?;
-        let body = &scene.flex_bodies[block];
-        assert!(
-            is_near(&body.momentum(), &[3.0, -3.0], 1e-9),
-            "{:?}",
-            body.momentum()
-        );
-        assert!(body.energy().elastic > 1e-3, "it is deformed");
-        // It was struck at a corner, which has hardly moved.
-        let about = body.angular_momentum([0.0, 0.0]);
-        assert!(about.abs() < 3e-3, "{about}");
-        let kept = body.momentum();
-        scene.steps(20)?;
-        assert!(is_near(&scene.flex_bodies[block].momentum(), &kept, 1e-9));
     }
     Ok(())
 }
@@ -293,5 +252,23 @@ fn what_a_body_cannot_be_made_of_is_refused_and_nothing_changes() -> Outcome {
     assert_eq!(scene.bits(), before);
     let body = &scene.flex_bodies[beam];
     assert!((body.mass() - 400.0).abs() < 1e-9 && body.model().thickness() == 1.0);
+    Ok(())
+}
+
+#[test]
+fn what_overloads_a_body_is_forgotten_with_it() -> Outcome {
+    let (mut scene, block) = flying(true)?;
+    let body = &mut scene.flex_bodies[block];
+    body.apply_impulse_at_node(0, [1e300, 0.0])?;
+    assert_eq!(body.nodal_impulses()[0], 1e300);
+    scene.step()?;
+    let body = &scene.flex_bodies[block];
+    assert!(body.is_quarantined() && body.nodal_impulses().iter().all(|j| *j == 0.0));
+    let PhysicsWorld {
+        bodies, colliders, ..
+    } = &mut scene.world;
+    scene.flex_bodies.reinstate(block, bodies, colliders)?;
+    scene.steps(3)?;
+    assert!(!scene.flex_bodies[block].is_quarantined());
     Ok(())
 }

@@ -100,3 +100,9 @@ impl Scene {
         Some((hit.0, 20.0 - f64::from(hit.1)))
     }
 }
+
+/// Whether numbers are others, but for a tolerance.
+pub fn is_near(found: &[f64], expected: &[f64], tolerance: f64) -> bool {
+    let mut pairs = found.iter().zip(expected);
+    found.len() == expected.len() && pairs.all(|(a, b)| (a - b).abs() <= tolerance)
+}
