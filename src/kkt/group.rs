@@ -35,6 +35,11 @@ impl Group {
         self.moment / self.mass
     }
 
+    /// Adds the momentum that loads bring (N s).
+    pub fn push(&mut self, impulse: Vec2) {
+        self.momentum += impulse;
+    }
+
     /// The motion of one rigid body with the momentum of the group, or that of what holds it.
     pub fn motion(&self) -> RigidRates {
         let spin = match self.polar > 0.0 {

@@ -358,7 +358,7 @@ impl Island {
             self.end_gently(settings, memory, &mut summary)?;
         }
         if is_thrown && !has_path || self.has_gained(settings, &summary) {
-            self.end_together(&mut summary);
+            self.end_together(settings.dt, &mut summary);
             self.measure_ended(settings, &mut summary);
         }
         if treatment.limits_energy() {

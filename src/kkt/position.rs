@@ -79,7 +79,7 @@ impl Island {
             self.list_parted();
         } else if summary.is_stopped && !settings.may_be_cut {
             // No path tells how far the bodies may go.
-            self.end_together(summary);
+            self.end_together(settings.dt, summary);
         }
         if !self.ties.is_empty() {
             self.prepare_joints();

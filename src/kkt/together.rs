@@ -2,13 +2,14 @@
 //!
 //! The places are those of the step before, so nothing overlaps that did not. Bodies that touch or are joined get the motion of one rigid
 //! body with the momentum and the angular momentum that they have together: no motion with these has less energy. Where one of them is
-//! held by the world, they move as that one does.
+//! held by the world, they move as that one does. Where nobody else is near they go that way under their loads, as one body: what was put into
+//! each other and finds no way out flies and falls.
 
 use super::group::Group;
 use super::island::{Island, SolveSettings};
 use super::summary::IslandSummary;
 use crate::math::Vec2;
-use crate::system::{Block, Moments, RigidMotion, RigidRates};
+use crate::system::{Block, Moments, RigidMotion, RigidRates, RigidWay};
 
 /// Moments of a block at the beginning of the step, or the motion that it keeps whatever happens.
 fn moments_of(block: &Block) -> Result<Moments, RigidMotion> {
@@ -54,6 +55,17 @@ fn moments(mass: f64, inertia: f64, motion: &RigidMotion) -> Moments {
     }
 }
 
+/// Sum of the forces of the loads on a block that moves freely (N).
+fn resultant(block: &Block) -> Vec2 {
+    match block {
+        Block::Flex(body) => body.resultant(),
+        Block::Rigid(body) => {
+            let [x, y, _] = body.force();
+            Vec2::new(x, y)
+        }
+    }
+}
+
 fn rates_of(motion: &RigidMotion) -> RigidRates {
     RigidRates {
         about: motion.centre,
@@ -66,7 +78,7 @@ impl Island {
     /// Ends the step where it began; returns whether it does.
     ///
     /// Not if loads beyond all measure are to blame: then the step is to be refused.
-    pub(super) fn end_together(&mut self, summary: &mut IslandSummary) -> bool {
+    pub(super) fn end_together(&mut self, dt: f64, summary: &mut IslandSummary) -> bool {
         let is_overloaded =
             |block: &Block| matches!(block, Block::Flex(block) if block.is_overloaded());
         if self.blocks.iter().any(is_overloaded) {
@@ -90,6 +102,13 @@ impl Island {
                 groups[leader].add_turning(&own);
             }
         }
+        let may_go = !has_explicit && self.are_alone(&leaders);
+        let before = groups.clone();
+        if may_go {
+            for (block, &leader) in self.blocks.iter().zip(&leaders) {
+                groups[leader].push(dt * resultant(block));
+            }
+        }
         self.contacts.clear();
         self.pressed_before.clear();
         self.ties.clear();
@@ -100,6 +119,23 @@ impl Island {
                 .map_or_else(|motion| motion.centre, |own| own.centre);
             let motion = groups[leader].motion();
             let (velocity, spin) = (motion.at(centre), motion.spin);
+            let goes = may_go && own.is_ok() && groups[leader].anchor.is_none();
+            if goes {
+                let change = motion.velocity - before[leader].motion().velocity;
+                let way = RigidWay {
+                    about: motion.about,
+                    shift: dt * (motion.velocity - 0.5 * change),
+                    turn: dt * spin,
+                    velocity: motion.velocity,
+                    spin,
+                    acceleration: change / dt,
+                };
+                match block {
+                    Block::Flex(body) => body.carry_on(&way),
+                    Block::Rigid(body) => body.carry_on(&way),
+                }
+                continue;
+            }
             match block {
                 Block::Flex(body) if body.is_pinned() || body.is_explicit() => body.hold(),
                 Block::Flex(body) => body.move_on(velocity, spin),
@@ -112,6 +148,12 @@ impl Island {
             }
         }
         true
+    }
+
+    /// Whether no two of those that might meet in the step are of different groups.
+    fn are_alone(&self, leaders: &[usize]) -> bool {
+        let mut pairs = self.candidates.iter().map(|one| one.pair.blocks());
+        self.path.is_empty() && pairs.all(|[one, other]| leaders[one] == leaders[other])
     }
 
     /// Makes velocities and energies known of members that have been put elsewhere after the stages.

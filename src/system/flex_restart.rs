@@ -1,6 +1,7 @@
 //! Ways back to the beginning of a step whose iterations have failed.
 
 use super::flex_block::FlexBlock;
+use super::rigid_way::RigidWay;
 use crate::body::{FlexState, Frame};
 use crate::math::{Vec2, is_held, node_vec, perp, set_node_vec};
 
@@ -88,6 +89,26 @@ impl FlexBlock {
             }
         }
         self.place();
+    }
+
+    /// Ends the step as a rigid motion leads it, undeformed further; free bodies in implicit steps only.
+    pub fn carry_on(&mut self, way: &RigidWay) {
+        if self.is_large() {
+            self.carry_large_on(way);
+            return;
+        }
+        self.hold();
+        self.frame.centre = way.end(self.start_frame.centre);
+        self.frame.angle = self.start_frame.angle + way.turn;
+        self.frame.velocity = way.velocity_at(self.frame.centre);
+        self.frame.spin = way.spin;
+        self.shift += way.acceleration;
+        self.place();
+    }
+
+    /// Sum of the forces of the loads on a free body (N).
+    pub fn resultant(&self) -> Vec2 {
+        self.force_total
     }
 
     /// Whether some dofs are pinned.

@@ -4,6 +4,7 @@ use super::flex_block::FlexBlock;
 use super::large_block::Large;
 use super::large_equation::total_decay;
 use super::pin_rates::RigidRates;
+use super::rigid_way::RigidWay;
 use crate::body::{FlexState, Frame};
 use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec, sum_over};
 
@@ -232,6 +233,21 @@ impl FlexBlock {
                 let dof = 2 * node + axis;
                 self.velocity[dof] = if self.is_fixed[dof] { 0.0 } else { rigid[axis] };
             }
+        }
+        if let Some(large) = &mut self.large {
+            large.acceleration.fill(0.0);
+            large.resolved.copy_from_slice(&self.velocity);
+        }
+        self.follow_centre();
+    }
+
+    /// Ends the step as a rigid motion leads it.
+    pub(super) fn carry_large_on(&mut self, way: &RigidWay) {
+        self.restart_large();
+        for node in 0..self.model.n_nodes() {
+            let end = way.end(node_vec(&self.position, node));
+            set_node_vec(&mut self.position, node, end);
+            set_node_vec(&mut self.velocity, node, way.velocity_at(end));
         }
         if let Some(large) = &mut self.large {
             large.acceleration.fill(0.0);

@@ -31,6 +31,7 @@ mod rigid_block;
 mod rigid_energy;
 mod rigid_load;
 mod rigid_motion;
+mod rigid_way;
 mod step;
 mod step_loads;
 
@@ -45,6 +46,7 @@ pub use pin_rates::RigidRates;
 pub use rigid_block::RigidBlock;
 pub use rigid_load::RigidLoad;
 pub use rigid_motion::RigidMotion;
+pub use rigid_way::RigidWay;
 pub use step::{FlexLoad, Response, Step};
 
 use crate::math::{Mat2, Vec2};

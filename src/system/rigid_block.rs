@@ -382,7 +382,7 @@ impl RigidBlock {
     }
 
     /// Applied force and torque, gravity included (N, N, N m).
-    pub(super) fn force(&self) -> [f64; 3] {
+    pub fn force(&self) -> [f64; 3] {
         self.force
     }
 

@@ -1,6 +1,6 @@
 //! Rigid bodies that the user puts into flexible ones that have been there before.
 
-use crate::common::{Scene, real, vec2};
+use crate::common::{G, Scene, real, vec2};
 use foil2d::pipeline::{InsertionNote, Participant, Quality};
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
@@ -138,5 +138,63 @@ fn a_body_laid_flush_on_a_half_space_is_not_in_it() {
             assert!(scene.report().insertion_notes().is_empty());
             assert!(scene.report().gap_violation() < 1e-6);
         }
+    }
+}
+
+/// Bodies that find no way out of each other fly and fall as one body would.
+#[test]
+fn what_is_put_into_each_other_in_flight_flies_on() {
+    for (young, overlap, turned, is_large) in [
+        (1e5, 0.5, 0.5, true),
+        (1e6, 0.9, 0.5, true),
+        (1e5, 0.9, 0.0, false),
+    ] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        let [one, other] = [0.0, 5.0].map(|x| {
+            let body = FlexBodyBuilder::rectangle([1.0, 0.6], [6, 4])
+                .material(LinearElastic::plane_stress(young, 0.3).density(1000.0))
+                .translation([x, 100.0])
+                .linvel([3.0, 0.0]);
+            scene.flexible(match is_large {
+                true => body,
+                false => body.small_strain(),
+            })
+        });
+        scene.steps(10);
+        let [x, y] = scene.body(one).centre_of_mass();
+        let place = [x + 1.0 - overlap, y];
+        let Scene { world, bodies, .. } = &mut scene;
+        let is_put = bodies.set_position(other, place, turned, world);
+        assert_eq!(is_put, Ok(()));
+        let mean = |scene: &Scene, of: fn(&FlexBody) -> [f64; 2]| {
+            let [a, b] = [one, other].map(|body| of(scene.body(body)));
+            [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+        };
+        let (from, before) = (
+            mean(&scene, FlexBody::centre_of_mass),
+            mean(&scene, FlexBody::linvel),
+        );
+        let dt = f64::from(scene.world.integration_parameters.dt);
+        let mut is_unfinished = false;
+        for step in 1..=60 {
+            scene.try_step().expect("a step");
+            is_unfinished |= scene.report().quality() == Quality::Unfinished;
+            let time = f64::from(step) * dt;
+            let velocity = mean(&scene, FlexBody::linvel);
+            let off = velocity[1] - before[1] + G * time;
+            assert!(
+                off.abs() < 1e-6 && (velocity[0] - 3.0).abs() < 1e-6,
+                "{off}"
+            );
+            let centre = mean(&scene, FlexBody::centre_of_mass);
+            let fallen = before[1] * time - 0.5 * G * time * time;
+            let off = [
+                centre[0] - from[0] - 3.0 * time,
+                centre[1] - from[1] - fallen,
+            ];
+            // Steps take the mean of accelerations, within a part of the last one.
+            assert!(off[0].abs() < 1e-5 && off[1].abs() < 1e-2, "{off:?}");
+        }
+        assert!(is_unfinished, "they are in each other");
     }
 }

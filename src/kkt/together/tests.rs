@@ -1,6 +1,8 @@
 use super::*;
 use crate::body::{FlexBodyBuilder, Pin};
-use crate::constraint::contact::{Kinematics, Remembered};
+use crate::constraint::contact::{
+    Candidate, ContactKey, ContactLaw, Kinematics, Owner, Pair, Remembered,
+};
 use crate::fe::material::LinearElastic;
 use crate::integrator::Beta2;
 use crate::kkt::ActiveContact;
@@ -122,7 +124,7 @@ pub(in crate::kkt) fn island_of(blocks: Vec<(Block, Sums)>) -> (Island, Vec<Sums
 }
 
 fn ended(island: &mut Island) -> Vec<Sums> {
-    assert!(island.end_together(&mut IslandSummary::default()));
+    assert!(island.end_together(DT, &mut IslandSummary::default()));
     island.blocks.iter_mut().map(at_end).collect()
 }
 
@@ -225,26 +227,52 @@ fn bodies_that_touch_what_is_held_move_as_that_does() {
 }
 
 #[test]
-fn places_are_those_of_the_beginning_and_contacts_are_forgotten() {
-    let mut random = Random::new(5);
-    let one = rigid(&mut random, Vec2::new(0.3, 0.4));
-    let other = flexible(&mut random, Vec2::new(-0.3, 0.1), false);
-    let (mut island, _) = island_of(vec![one, other]);
-    press(&mut island, [0, 1]);
-    ended(&mut island);
-    assert!(island.contacts.is_empty());
-    for block in &island.blocks {
-        match block {
-            Block::Rigid(body) => {
-                assert_eq!(body.current().centre, body.start().centre);
-                assert_eq!(body.current().angle, body.start().angle);
-            }
-            Block::Flex(body) => {
-                let pairs = body.positions().iter().zip(body.start_positions());
-                for (end, start) in pairs {
-                    assert!((end - start).abs() < 1e-12);
+fn places_are_those_of_the_beginning_where_others_are_near_and_contacts_are_forgotten() {
+    for is_near in [true, false] {
+        let mut random = Random::new(5);
+        let members = [
+            rigid(&mut random, Vec2::new(0.3, 0.4)),
+            flexible(&mut random, Vec2::new(-0.3, 0.1), false),
+            rigid(&mut random, Vec2::new(0.0, 10.0)),
+        ];
+        let (mut island, start) = island_of(members.into());
+        press(&mut island, [0, 1]);
+        if is_near {
+            island.candidates.push(Candidate {
+                key: ContactKey {
+                    contactor: Owner::Flex(0),
+                    point: 0,
+                    target: Owner::Collider(0),
+                    part: 0,
+                },
+                pair: Pair::Near { blocks: [1, 2] },
+                law: ContactLaw::default(),
+            });
+        }
+        let end = ended(&mut island);
+        assert!(island.contacts.is_empty());
+        let mut moved: f64 = 0.0;
+        for block in &island.blocks {
+            match block {
+                Block::Rigid(body) => {
+                    let way = body.current().centre - body.start().centre;
+                    let turn = body.current().angle - body.start().angle;
+                    moved = moved.max(way.norm()).max(turn.abs());
+                }
+                Block::Flex(body) => {
+                    let pairs = body.positions().iter().zip(body.start_positions());
+                    moved = pairs.fold(moved, |moved, (end, start)| moved.max((end - start).abs()));
                 }
             }
+        }
+        assert_eq!(moved < 1e-12, is_near, "{moved} m");
+        // Wherever they go, as one body, they keep what they have.
+        let (found, expected) = (total(&end), total(&start));
+        for k in 0..3 {
+            assert!(
+                (found[k] - expected[k]).abs() < 1e-9,
+                "{found:?} {expected:?}"
+            );
         }
     }
 }

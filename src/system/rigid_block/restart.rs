@@ -2,7 +2,7 @@
 
 use super::{Kind, RigidBlock};
 use crate::math::Vec2;
-use crate::system::RigidMotion;
+use crate::system::{RigidMotion, RigidWay};
 
 impl RigidBlock {
     /// Puts the iterate back to the beginning of the step.
@@ -36,6 +36,15 @@ impl RigidBlock {
     pub fn move_on(&mut self, velocity: Vec2, spin: f64) {
         (self.current.velocity, self.current.spin) = (velocity, spin);
         self.free = self.current;
+    }
+
+    /// Ends the step as a rigid motion leads it.
+    pub fn carry_on(&mut self, way: &RigidWay) {
+        self.hold();
+        self.current.centre = way.end(self.start.centre);
+        self.current.angle = self.start.angle + way.turn;
+        self.move_on(way.velocity_at(self.current.centre), way.spin);
+        self.forget_contact();
     }
 
     /// Ends the step where it began, without velocities, unless the motion is given.
