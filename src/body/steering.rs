@@ -235,6 +235,7 @@ impl FlexBody {
     /// Puts the body's centre of mass and its angle elsewhere, as it is: linear and angular velocity stay, deformation and vibrations turn
     /// along.
     pub(crate) fn place(&mut self, centre: Vec2, angle: f64) -> Result<(), FlexBodyError> {
+        check_held("the angle", &[angle])?;
         let [from, mean] = [self.centre_of_mass(), self.linvel()].map(Vec2::from);
         let turn = rotation(angle - self.state.frame.angle);
         let mut positions = self.state.position.clone();

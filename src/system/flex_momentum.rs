@@ -1,5 +1,5 @@
-//! Momentum of a flexible block: loads that jump bring all of it in their own step, and the angle obeys the balance of angular momentum instead
-//! of its row of (C.5), which is exact for finite displacements too.
+//! Momentum of a flexible block: loads that come and go bring all of it whatever the steps, and the angle obeys the balance of angular momentum
+//! instead of its row of (C.5), which is exact for finite displacements too.
 
 use super::flex_block::FlexBlock;
 use super::flex_motion::spread_accelerations;

@@ -188,3 +188,45 @@ fn a_body_made_anew_in_every_step_rests_with_its_weight() -> Outcome {
     }
     Ok(())
 }
+
+/// Gravity grows with the mass, and what is still to come of a blow does not.
+#[test]
+fn a_body_that_grows_heavier_falls_as_before_and_feels_what_is_left_of_a_blow() -> Outcome {
+    for is_large in [true, false] {
+        for share in [2.0, 0.5] {
+            let (mut scene, block) = block_in_space(1e7, is_large, Beta2::damped(0.9)?)?;
+            scene.set_dt(1.0 / 60.0);
+            scene.flex_bodies[block].apply_impulse_at_node(0, [60.0, 0.0])?;
+            scene.step()?;
+            let [come, _] = scene.flex_bodies[block].momentum();
+            scene.flex_bodies[block].set_thickness(share)?;
+            scene.steps(3)?;
+            let [found, _] = scene.flex_bodies[block].momentum();
+            let expected = share * come + (60.0 - come);
+            assert!((found - expected).abs() < 1e-8, "{found} not {expected}");
+        }
+        let mut scene = Scene::default();
+        let block = FlexBodyBuilder::rectangle([1.0, 0.6], [6, 4]).translation([0.0, 50.0]);
+        let block = block.material(elastic(1e7, 1000.0, 1e-4));
+        let block = scene.insert(match is_large {
+            true => block,
+            false => block.small_strain(),
+        })?;
+        let (gravity, mut time) = (f64::from(scene.world.gravity.y), 0.0);
+        for step in 0..20 {
+            match step {
+                5 => scene.flex_bodies[block].set_thickness(2.0)?,
+                10 => scene.flex_bodies[block].set_material(elastic(1e6, 300.0, 0.0))?,
+                _ => {}
+            }
+            scene.step()?;
+            time += scene.dt();
+            let [_, velocity] = scene.flex_bodies[block].linvel();
+            assert!(
+                (velocity - gravity * time).abs() < 1e-9,
+                "{step}: {velocity} m/s"
+            );
+        }
+    }
+    Ok(())
+}
