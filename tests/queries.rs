@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use foil2d::pipeline::Participant;
 
 /// A beam held at its ends that sags under its weight by centimetres.
 fn sagging() -> (Scene, FlexBodyHandle) {
@@ -149,4 +150,53 @@ fn a_hit_is_told_by_body_segment_weights_and_node() {
         "{}",
         outside.distance
     );
+}
+
+/// A block that does not bulge presses the floor evenly: by its weight over its width, at a corner the mean of two sides of which one is free.
+#[test]
+fn the_pressure_of_contact_is_the_force_over_the_surface() {
+    for (is_large, turn) in [(true, 0.0), (false, 0.0), (true, 0.5), (false, 0.5)] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        let (sin, cos) = f64::sin_cos(turn);
+        scene.world.gravity = vec2(G * sin, -G * cos);
+        let plane = ColliderBuilder::new(SharedShape::halfspace(vec2(-sin, cos))).friction(0.0);
+        let floor = scene.world.insert_collider(plane, None);
+        let material = LinearElastic::plane_stress(1e7, 0.0)
+            .density(1000.0)
+            .rayleigh(2e-2);
+        let block = FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4])
+            .material(material)
+            .thickness(0.2)
+            .friction(0.0)
+            .rotation(turn)
+            .translation([-2e-4 * sin, 2e-4 * cos]);
+        let block = match is_large {
+            true => block.large_strain(),
+            false => block.small_strain(),
+        };
+        let block = scene.flexible(block);
+        for _ in 0..180 {
+            scene.step();
+        }
+        let report = scene.step().clone();
+        let body = scene.body(block);
+        let even = 1000.0 * G;
+        for (node, expected) in [(0, 0.5), (1, 1.0), (2, 1.0), (3, 1.0), (4, 0.5)] {
+            let found = body.contact_pressure(node) / even;
+            assert!(
+                (found / expected - 1.0).abs() < 5e-3,
+                "node {node}: {found} of the even pressure, large {is_large}, turned {turn}"
+            );
+        }
+        // In the middle, and on top.
+        assert_eq!([12, 22].map(|node| body.contact_pressure(node)), [0.0; 2]);
+        let own: Vec<_> = report.contacts_of(Participant::Flex(block)).collect();
+        assert_eq!(
+            own.len(),
+            report.contacts_of(Participant::Rigid(floor)).count()
+        );
+        assert!(own.len() >= 5, "{} contacts", own.len());
+        let normal: f64 = own.iter().map(|contact| contact.normal_force).sum();
+        assert!((normal / (200.0 * G) - 1.0).abs() < 1e-3, "{normal} N");
+    }
 }

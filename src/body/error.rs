@@ -137,6 +137,11 @@ pub enum FlexBodyError {
         "{0:?} is pinned, and its pins stay where they are: move them by `set_pin_displacement`, or hold the body by attachments instead"
     )]
     Pinned(FlexBodyHandle),
+    /// The body is out of the world because its motion would not have been finite.
+    #[error(
+        "{0:?} is quarantined: mend what made its motion more than numbers can hold, and put it back by `FlexBodySet::reinstate`"
+    )]
+    Quarantined(FlexBodyHandle),
     /// A value is not finite, or too large for rapier's precision.
     #[error("{0} holds a number that is not finite or too large for rapier: nothing was changed")]
     NotFinite(&'static str),

@@ -1,4 +1,4 @@
-//! Picking: which part of which body a query has hit.
+//! What is asked of the surface of a body: which part of which body a query has hit, what lies inside, what presses.
 
 use super::flex_body::FlexBody;
 use super::handle::FlexBodyHandle;
@@ -85,6 +85,33 @@ impl FlexBody {
             spans && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
         });
         crossed.count() % 2 == 1
+    }
+
+    /// Pressure of contact at a node in the last step (Pa): the normal part of [`FlexBody::contact_force`] over the deformed surface next to the
+    /// node, half of each of its segments, times the thickness. Zero inside.
+    ///
+    /// A uniform pressure on a smooth surface is met exactly. At a corner the mean of both sides is told, and what
+    /// is attached to the node counts as contact.
+    ///
+    /// # Panics
+    /// If there is no such node.
+    pub fn contact_pressure(&self, node: usize) -> f64 {
+        let boundary = self.mesh().boundary();
+        let Some(after) = boundary.nodes().iter().position(|&other| other == node) else {
+            assert!(node < self.n_nodes(), "a node of the body");
+            return 0.0;
+        };
+        let before = boundary.segments()[boundary.previous_segment(after)][0];
+        let following = boundary.segments()[after][1];
+        let [from, to] = [before, following].map(|node| node_vec(self.positions(), node));
+        // The material is on the left of a segment, and half the sum of both segments is half of what leads from `from` to `to`.
+        let inward = 0.5 * self.model.thickness() * Vec2::new(from.y - to.y, to.x - from.x);
+        let squared_area = inward.norm_squared();
+        if squared_area > 0.0 {
+            node_vec(&self.contact_force, node).dot(&inward) / squared_area
+        } else {
+            0.0
+        }
     }
 }
 

@@ -177,10 +177,11 @@ fn is_altered(sets: &RapierSets<'_>, flex: &Roster, handle: ColliderHandle) -> b
     let Some(collider) = sets.colliders.get(handle) else {
         return false;
     };
-    if flex.is_surface(handle) {
-        return false;
-    }
     let body = collider.parent().and_then(|parent| sets.bodies.get(parent));
+    if flex.is_surface(handle) {
+        // It took part in the last step.
+        return body.is_some_and(|body| !body.is_enabled());
+    }
     collider.has_modified_flag()
         || body.is_some_and(|body| {
             *collider.position() != placed_on(body, collider)

@@ -1,13 +1,82 @@
-//! Quarantine: a body whose motion is not finite leaves the world, as in rapier, and the rest of it goes on.
+//! Bodies that are out of the world, and whose motion waits as the last sound step left it: the user has disabled them, or they are quarantined
+//! because they would move as no number can say, as in rapier, while the rest of the world goes on.
 //!
-//! Its carrier and surface are disabled, so nothing meets it and no query sees it; its attachments hold nothing. Its motion stays what
-//! the last sound step left.
+//! Their carriers and surfaces are disabled, so nothing meets them and no query sees them; their attachments hold nothing.
 
+use super::carrier::is_carried;
 use super::sets::RapierSets;
 use crate::body::{FlexBody, FlexBodyError, FlexBodyHandle, FlexBodySet};
 use crate::rapier::prelude::*;
 
 impl FlexBodySet {
+    /// Takes a body out of the world, or puts it back, as rapier's `RigidBody::set_enabled` does: while it is out it stays where it is, deformed
+    /// and as fast as it was, nothing meets it, no query sees it and its attachments hold nothing. The next step wakes what rested on it; a body
+    /// that is put back wakes, and what it is put into is told, as for a body just inserted.
+    ///
+    /// What has been quarantined stays out until [`FlexBodySet::reinstate`] is called.
+    ///
+    /// ```
+    /// use foil2d::prelude::*;
+    /// use foil2d::rapier::prelude::*;
+    /// let (mut world, mut flex_bodies) = (PhysicsWorld::new(), FlexBodySet::new());
+    /// let rubber = LinearElastic::plane_stress(1e6, 0.3).density(1000.0);
+    /// let block = flex_bodies.insert(FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4]).material(rubber), &mut world)?;
+    /// flex_bodies.set_enabled(block, false, &mut world)?;
+    /// FlexPipeline::new().step(&mut world, &mut flex_bodies)?;
+    /// assert_eq!(flex_bodies[block].linvel(), [0.0, 0.0], "it does not fall");
+    /// assert!(!flex_bodies.is_enabled(block, &world.bodies)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the handle is stale or foreign, the body is quarantined, or the world does not hold its carrier. Nothing is then changed.
+    pub fn set_enabled(
+        &mut self,
+        handle: FlexBodyHandle,
+        is_enabled: bool,
+        world: &mut PhysicsWorld,
+    ) -> Result<(), FlexBodyError> {
+        let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
+        self.set_enabled_with_sets(handle, is_enabled, bodies, colliders)
+    }
+
+    /// [`FlexBodySet::set_enabled`] for programs that keep rapier's sets apart.
+    ///
+    /// # Errors
+    /// As [`FlexBodySet::set_enabled`].
+    pub fn set_enabled_with_sets(
+        &mut self,
+        handle: FlexBodyHandle,
+        is_enabled: bool,
+        bodies: &mut RigidBodySet,
+        colliders: &mut ColliderSet,
+    ) -> Result<(), FlexBodyError> {
+        let body = self.try_get_mut(handle)?;
+        if body.is_quarantined() {
+            return Err(FlexBodyError::Quarantined(handle));
+        }
+        if !is_carried(body, bodies, colliders) {
+            return Err(FlexBodyError::NoCarrier(handle));
+        }
+        if is_out(body, bodies) == is_enabled {
+            let (carrier, surface) = (body.rigid_body_handle(), body.collider_handle());
+            enable(is_enabled, carrier, surface, bodies, colliders);
+        }
+        Ok(())
+    }
+
+    /// Whether a body takes part in the world of these bodies: nobody has disabled it or its carrier, and it is not quarantined.
+    ///
+    /// # Errors
+    /// If the handle is stale or foreign.
+    pub fn is_enabled(
+        &self,
+        handle: FlexBodyHandle,
+        bodies: &RigidBodySet,
+    ) -> Result<bool, FlexBodyError> {
+        Ok(!is_out(self.try_get(handle)?, bodies))
+    }
+
     /// Puts a quarantined body back into the world, where and as fast as it was: what made it sick has to be mended before, or
     /// the next step takes it out again. Does nothing to a body that is well.
     ///

@@ -411,6 +411,12 @@ impl StepReport {
         &self.insertion_notes
     }
 
+    /// The contacts of a participant: those in which it has the contactor or the target, once where it meets itself.
+    pub fn contacts_of(&self, participant: Participant) -> impl Iterator<Item = &ContactReport> {
+        let all = self.contacts.iter();
+        all.filter(move |contact| [contact.contactor, contact.target].contains(&participant))
+    }
+
     /// Sum of the normal and tangential contact forces on a participant (N).
     pub fn force_on(&self, participant: Participant) -> [f64; 2] {
         let mut sum = [0.0; 2];

@@ -225,6 +225,59 @@ fn a_body_whose_carrier_is_disabled_stops_and_goes_on_when_it_is_enabled() -> Ou
     Ok(())
 }
 
+/// Disabled by its handle a body is out at once, what slept on it falls in the next step, and what it comes back into is told.
+#[test]
+fn a_body_is_disabled_and_enabled_by_its_handle() -> Outcome {
+    for upper_is_flexible in [true, false] {
+        let mut scene = Scene::with_floor();
+        let lower = scene.insert(square())?;
+        let upper = match upper_is_flexible {
+            true => scene.insert(square().translation([0.0, 1.0]))?,
+            false => {
+                scene.insert_box(0.5, [0.5, 1.5], 1000.0);
+                lower
+            }
+        };
+        let mut n_steps = 0;
+        while !scene.flex_bodies[lower].is_sleeping(&scene.world.bodies) {
+            scene.steps(1)?;
+            n_steps += 1;
+            assert!(n_steps < 1200, "they never sleep");
+        }
+        let height = |scene: &Scene| match upper_is_flexible {
+            true => scene.flex_bodies[upper].centre_of_mass()[1],
+            false => {
+                let boxes = scene.world.bodies.iter().map(|(_, body)| body);
+                boxes.fold(0.0, |top: f64, body| {
+                    top.max(f64::from(body.translation().y))
+                })
+            }
+        };
+        let before = height(&scene);
+        let at = scene.flex_bodies[lower].centre_of_mass();
+        let (flex_bodies, world) = (&mut scene.flex_bodies, &mut scene.world);
+        flex_bodies.set_enabled(lower, false, world)?;
+        flex_bodies.set_enabled(lower, false, world)?;
+        assert!(!flex_bodies.is_enabled(lower, &world.bodies)?);
+        scene.steps(1)?;
+        let fallen = before - height(&scene);
+        let expected = GRAVITY / 3600.0;
+        assert!(
+            (0.4..1.1).contains(&(fallen / expected)),
+            "fallen by {fallen} of {expected} m in the first step, flexible {upper_is_flexible}"
+        );
+        scene.steps(180)?;
+        assert!((height(&scene) - 0.5).abs() < 0.02, "on the floor");
+        assert_eq!(scene.flex_bodies[lower].centre_of_mass(), at);
+        let (flex_bodies, world) = (&mut scene.flex_bodies, &mut scene.world);
+        flex_bodies.set_enabled(lower, true, world)?;
+        assert!(flex_bodies.is_enabled(lower, &world.bodies)?);
+        let report = scene.step()?;
+        assert!(!report.insertion_notes().is_empty(), "it is in the other");
+    }
+    Ok(())
+}
+
 /// Rapier disables the joints that a body has when it is disabled, but not one that is put to it later, and panics.
 #[test]
 fn joints_put_to_disabled_bodies_wait_until_these_are_enabled() -> Outcome {
