@@ -52,6 +52,7 @@ mod sensor_events;
 mod sets;
 mod shapes;
 mod sleep;
+mod soft_body;
 mod strikes;
 mod sweep;
 mod trespassers;
@@ -87,6 +88,7 @@ pub(crate) use sleep::{
     keep_awake, keep_landing_awake, look_whether_still, rests, stop_if_asleep, wake_disturbed,
     wake_moving,
 };
+pub use soft_body::SoftBodyError;
 pub(crate) use trespassers::{Trespasser, Trespassers};
 pub(crate) use under_way::{Span, UnderWay};
 pub(crate) use walk::ClaimedPair;
