@@ -18,6 +18,7 @@ pub mod body;
 pub mod constraint;
 pub mod coupling;
 pub mod fe;
+pub mod guide;
 pub mod integrator;
 pub mod kkt;
 pub mod large;

@@ -1,0 +1,73 @@
+//! Flexible bodies in an app that exists.
+//!
+//! # The step
+//!
+//! [`FlexPipeline::step`](crate::pipeline::FlexPipeline::step) takes the place of rapier's step, and is rapier's step where no flexible body is. It takes rapier's
+//! `PhysicsWorld`, or, by [`step_split`](crate::pipeline::FlexPipeline::step_split), rapier's sets one by one, as older programs hold them. Everything
+//! else stays: queries, events, hooks, joints, sensors, snapshots of rapier's own.
+//!
+//! ```
+//! use foil2d::prelude::*;
+//! use foil2d::rapier::prelude::*;
+//!
+//! struct App {
+//!     world: PhysicsWorld,
+//!     flex_bodies: FlexBodySet,
+//!     flex: FlexPipeline,
+//!     behind: f64,
+//! }
+//!
+//! impl App {
+//!     /// Steps of equal length, however long frames are.
+//!     fn frame(&mut self, seconds: f64) -> Result<(), Box<dyn std::error::Error>> {
+//!         let dt = f64::from(self.world.integration_parameters.dt);
+//!         self.behind += seconds.min(0.1);
+//!         while self.behind >= dt {
+//!             self.flex.step(&mut self.world, &mut self.flex_bodies)?;
+//!             self.behind -= dt;
+//!         }
+//!         Ok(())
+//!     }
+//! }
+//!
+//! let mut app = App {
+//!     world: PhysicsWorld::new(),
+//!     flex_bodies: FlexBodySet::new(),
+//!     flex: FlexPipeline::new(),
+//!     behind: 0.0,
+//! };
+//! let rubber = LinearElastic::plane_stress(1e6, 0.3).density(1000.0);
+//! let block = FlexBodyBuilder::rectangle([1.0, 1.0], [4, 4]).material(rubber);
+//! let block = app.flex_bodies.insert(block, &mut app.world)?;
+//! app.frame(0.05)?;
+//!
+//! // What to draw: the edges of the mesh between the positions of its nodes.
+//! let body = &app.flex_bodies[block];
+//! for [from, to] in body.mesh().edges() {
+//!     let _line = (body.position(from), body.position(to));
+//! }
+//! // What the mouse is on.
+//! assert!(body.contains([0.5, 0.5]));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Verbs
+//!
+//! | in rapier | here |
+//! |---|---|
+//! | `set_translation`, `set_position` | [`FlexBodySet::set_position`](crate::body::FlexBodySet::set_position) |
+//! | `set_linvel`, `set_angvel`, `apply_impulse`, `apply_torque_impulse` | the same on [`FlexBody`](crate::body::FlexBody); at a point and at a node too |
+//! | `add_force` | [`FlexBody::set_nodal_force`](crate::body::FlexBody::set_nodal_force), [`set_body_force`](crate::body::FlexBody::set_body_force): they last until set anew |
+//! | `set_enabled` | [`FlexBodySet::set_enabled`](crate::body::FlexBodySet::set_enabled) |
+//! | `set_body_type` | pins in the builder, [`set_pin_displacement`](crate::body::FlexBody::set_pin_displacement) moves them |
+//! | an impulse joint | an [`AttachmentBuilder`](crate::body::AttachmentBuilder): pin, weld or spring to the world, a rigid or a flexible body |
+//! | `remove` | [`FlexBodySet::remove`](crate::body::FlexBodySet::remove) |
+//!
+//! The collider of a flexible body, [`FlexBody::collider_handle`](crate::body::FlexBody::collider_handle), is what rapier's queries and events name;
+//! [`FlexBodySet::of_collider`](crate::body::FlexBodySet::of_collider) tells whose it is, and [`FlexBodySet::pick`](crate::body::FlexBodySet::pick) which node. Its rigid body is a
+//! carrier: leave its pose alone, and put no joints on it.
+//!
+//! # Saving
+//!
+//! With the feature `serde-serialize`, `pipeline::Snapshot` saves a world with its flexible bodies through any serde format, and goes on bit for bit. Rapier's own
+//! snapshots do not know of flexible bodies.

@@ -1,0 +1,54 @@
+//! Bodies that bend far, and bodies that do not.
+//!
+//! | | large strain, the default | [`small_strain`](crate::body::FlexBodyBuilder::small_strain) |
+//! |---|---|---|
+//! | bends, stretches, folds | as far as it likes | strains of a few percent, in one frame that turns with the body |
+//! | meets itself | yes | no |
+//! | step | a nonlinear one: a factorization now and then | linear: one factorization for ever |
+//! | integrator | energy–momentum, the decay of the pipeline's member | any member of Beta-2, explicit ones too |
+//! | materials | any with a [law for large strains](crate::fe::material::Material::large_law) | any |
+//!
+//! A body of small strain that is bent further is another body than you mean, and the report says so:
+//!
+//! ```
+//! use foil2d::prelude::*;
+//! use foil2d::rapier::prelude::*;
+//!
+//! let bent = |is_small: bool| -> Result<(f64, usize), Box<dyn std::error::Error>> {
+//!     let (mut world, mut flex_bodies) = (PhysicsWorld::new(), FlexBodySet::new());
+//!     let rubber = LinearElastic::plane_stress(1e6, 0.3).density(1000.0).rayleigh(2e-2);
+//!     let strip = FlexBodyBuilder::rectangle([1.0, 0.05], [20, 1])
+//!         .material(rubber)
+//!         .pin_where(|[x, _]| x == 0.0, Pin::both());
+//!     let strip = if is_small { strip.small_strain() } else { strip };
+//!     let strip = flex_bodies.insert(strip, &mut world)?;
+//!     let mut flex = FlexPipeline::new();
+//!     for _ in 0..600 {
+//!         flex.step(&mut world, &mut flex_bodies)?;
+//!     }
+//!     // How long its upper side has become.
+//!     let side: Vec<[f64; 2]> = (21..42).map(|node| flex_bodies[strip].position(node)).collect();
+//!     let length = side.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).sum();
+//!     Ok((length, flex.report().overbent().len()))
+//! };
+//! // It hangs down from its clamp, about as long as it was.
+//! let (length, n_overbent) = bent(false)?;
+//! assert!((0.98..1.1).contains(&length) && n_overbent == 0);
+//! // Small strains do not know of turns: the strip is drawn out as it sinks.
+//! let (length, n_overbent) = bent(true)?;
+//! assert!(length > 1.5 && n_overbent == 1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Laws
+//!
+//! | law | for |
+//! |---|---|
+//! | [`LinearElastic`](crate::fe::material::LinearElastic) | Hooke's at small strains; neo-Hookean with the same moduli beyond |
+//! | [`Corotated`](crate::fe::material::hyperelastic::Corotated) | what is stiff and bends far |
+//! | [`StableNeoHookean`](crate::fe::material::hyperelastic::StableNeoHookean) | what is soft, and may be crushed flat: it recovers from being turned inside out |
+//! | [`NeoHookean`](crate::fe::material::hyperelastic::NeoHookean) | what must never turn inside out |
+//! | [`StVenantKirchhoff`](crate::fe::material::hyperelastic::StVenantKirchhoff) | comparisons |
+//!
+//! A law of your own is an `impl` of [`Hyperelastic`](crate::fe::material::hyperelastic::Hyperelastic), and
+//! [`conformance::check_law`](crate::fe::material::hyperelastic::conformance::check_law) tests it.

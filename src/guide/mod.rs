@@ -1,0 +1,27 @@
+//! A guide, page by page; all code on these pages is run as tests.
+//!
+//! | page | tells |
+//! |---|---|
+//! | [`first_beam`] | a beam in a rapier world, and whether it is right |
+//! | [`mesh_and_step`] | which mesh, which step, which damping, which integrator |
+//! | [`contact`] | what touches what, with which forces, at which distance |
+//! | [`large_or_small`] | bodies that bend far and bodies that do not |
+//! | [`reports`] | what a step tells, and what to do about it |
+//! | [`statics`] | equilibria without a world |
+//! | [`embedding`] | flexible bodies in an app that exists: events, joints, saving, sleep |
+//! | [`performance`] | what a step costs, and how to make it cost less |
+//! | [`soft_bodies`] | coming from rapier's own soft bodies |
+//! | [`equations`] | the equations of the source, and where each is computed |
+//! | [`limits`] | what the crate cannot do, or does with an error that is known |
+
+pub mod contact;
+pub mod embedding;
+pub mod equations;
+pub mod first_beam;
+pub mod large_or_small;
+pub mod limits;
+pub mod mesh_and_step;
+pub mod performance;
+pub mod reports;
+pub mod soft_bodies;
+pub mod statics;

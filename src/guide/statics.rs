@@ -1,0 +1,40 @@
+//! Equilibria without a world.
+//!
+//! [`LoadStepper`](crate::large::LoadStepper) leads a body of large strain through equilibria as loads and held nodes go where a
+//! [`LoadCase`](crate::large::LoadCase) says:
+//!
+//! ```
+//! use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+//! use foil2d::fe::material::hyperelastic::Corotated;
+//! use foil2d::fe::mesh::{CellKind, generate::rectangle};
+//! use foil2d::large::{LargeSettings, LoadCase, LoadStepper};
+//!
+//! // A strip of 1 m, clamped on its left, loaded at its end until it hangs.
+//! let (length, height, young) = (1.0, 0.01, 1e7);
+//! let mesh = rectangle([length, height], [50, 1], CellKind::Tri6)?;
+//! let law = Corotated::plane_strain(young, 0.0);
+//! let model = FiniteStrainModel::assemble(FiniteStrainDescription::new(mesh, law, 1000.0))?;
+//! let mut places = model.rest_positions().to_vec();
+//! let is_held: Vec<bool> = places.chunks(2).flat_map(|at| [at[0] == 0.0; 2]).collect();
+//! let tip: Vec<usize> = (0..model.rest_positions().len() / 2).filter(|&node| places[2 * node] == length).collect();
+//!
+//! // Twice E I / L², shared by the nodes of the end face as a uniform traction is: corners a sixth, the middle two thirds.
+//! let load = 2.0 * young * height.powi(3) / 12.0;
+//! let none = vec![0.0; places.len()];
+//! let mut at_end = none.clone();
+//! for &node in &tip {
+//!     let is_corner = places[2 * node + 1] == 0.0 || places[2 * node + 1] == height;
+//!     at_end[2 * node + 1] = -load * if is_corner { 1.0 / 6.0 } else { 2.0 / 3.0 };
+//! }
+//! let rest = places.clone();
+//! let case = LoadCase { from: &none, to: &at_end, is_held: &is_held, places: &rest, n_increments: 10 };
+//! LoadStepper::new(model, LargeSettings::conserving().with_tolerance(1e-8))?.solve(case, &mut places)?;
+//!
+//! // The elastica: .493457 L down.
+//! let middle = tip.iter().copied().find(|&node| rest[2 * node + 1] == 0.5 * height).expect("a midside node");
+//! let sag = 0.5 * height - places[2 * middle + 1];
+//! assert!((sag / 0.493457 - 1.0).abs() < 1e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! In a world, bodies at rest are in equilibrium with what touches them: let them settle, or sleep.
