@@ -1,7 +1,8 @@
-//! The largest frequency of a body, which bounds the step of an explicit integrator.
+//! Natural frequencies of a body: the largest one, which bounds the step of an explicit integrator, and the lowest ones.
 
 use super::flex_body::FlexBody;
 use crate::fe::frequency::frequency_bound;
+use crate::fe::modes::{Modes, ModesError, lowest_modes, lowest_modes_at};
 use crate::math::hypot;
 
 impl FlexBody {
@@ -19,5 +20,20 @@ impl FlexBody {
             let ratio = 0.5 * self.model().rayleigh().stiffness * omega;
             omega * (ratio + hypot(ratio, 1.0))
         })
+    }
+
+    /// The `n_modes` lowest natural modes of the body as it is pinned, known to `tolerance`; see [`lowest_modes`].
+    ///
+    /// Of a body of small strain in its frame, whatever its place; of one of large strain about where it is now and in the world's axes, which
+    /// is meant for equilibria. Contacts, joints, attachments and damping are left out.
+    ///
+    /// # Errors
+    /// [`ModesError`], as of [`lowest_modes`] and [`lowest_modes_at`].
+    pub fn natural_modes(&self, n_modes: usize, tolerance: f64) -> Result<Modes, ModesError> {
+        let is_fixed = self.fixed_dofs();
+        match self.large() {
+            Some(large) => lowest_modes_at(large, self.positions(), is_fixed, n_modes, tolerance),
+            None => lowest_modes(self.model(), is_fixed, n_modes, tolerance),
+        }
     }
 }

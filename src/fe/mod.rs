@@ -10,6 +10,7 @@
 //! | [`finite_strain`] | internal force and tangent of one body at large strain, in world coordinates |
 //! | [`mass`] | nodal masses with an inertia-free contact boundary |
 //! | [`frequency`] | the largest natural frequency, which bounds the step of explicit integration |
+//! | [`modes`] | the lowest natural frequencies and their shapes |
 //! | [`record`] | names of elements and materials in snapshots |
 //! | [`recovery`] | stresses at points and, smoothed, at nodes |
 //!
@@ -26,5 +27,6 @@ pub mod mesh;
 pub mod model;
 #[cfg(feature = "serde-serialize")]
 pub(crate) mod model_record;
+pub mod modes;
 pub mod record;
 pub mod recovery;
