@@ -20,6 +20,7 @@ pub mod coupling;
 pub mod fe;
 pub mod guide;
 pub mod integrator;
+pub mod io;
 pub mod kkt;
 pub mod large;
 pub mod linalg;

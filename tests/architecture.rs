@@ -7,8 +7,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layers from the top; members of one layer do not import each other.
-const LAYERS: [&[&str]; 11] = [
+const LAYERS: [&[&str]; 12] = [
     &["guide"],
+    &["io"],
     &["pipeline"],
     &["coupling"],
     &["kkt"],
