@@ -1,5 +1,19 @@
-//! Into the library and out of it: meshes of other programs.
+//! Into the library and out of it: meshes of other programs, results for them.
+//!
+//! - [`MshMesh`] reads meshes of gmsh, with their physical groups.
+//! - [`VtuSeries`] and [`write_vtu`] write results for ParaView, [`History`] tables of chosen numbers.
 
+mod base64;
+mod history;
 mod msh;
+mod outline;
+mod output;
+mod scene;
+mod stress;
+mod vtu;
 
+pub use history::{History, HistoryError};
 pub use msh::{MshError, MshMesh, MshPlace, NamedCells, NamedNodes};
+pub use output::OutputError;
+pub use scene::Scene;
+pub use vtu::{VtuEncoding, VtuSeries, write_vtu};

@@ -1,0 +1,6 @@
+//! What is written of a run is what the library says of it.
+
+#[path = "results/grid.rs"]
+mod grid;
+#[path = "results/vtu.rs"]
+mod vtu;
