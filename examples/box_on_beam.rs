@@ -17,6 +17,8 @@
 
 #[path = "support/cli.rs"]
 pub mod cli;
+#[path = "support/doctor.rs"]
+mod doctor;
 
 use clap::Parser;
 use cli::{Options, print_json};
@@ -94,6 +96,7 @@ fn stand(ratio: f64, options: &Options) -> Result<Outcome, Box<dyn Error>> {
     let box_collider = world.insert_collider(shape, Some(box_body));
     let mut pipeline = FlexPipeline::new().with_integrator(Beta2::damped(0.9)?);
 
+    doctor::require_sound(&world, &flex_bodies, &pipeline)?;
     let n_steps = options.n_steps(N_STEPS);
     let n_measured = N_MEASURED.min(n_steps);
     let (mut force, mut squared_speed, mut max_penetration_m) = (0.0, 0.0, 0.0f64);

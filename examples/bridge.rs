@@ -29,7 +29,7 @@ use scene::{Scene, Setup};
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use support::{chart, cli, film};
+use support::{chart, cli, doctor, film};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -133,6 +133,7 @@ pub fn full() -> Result<Setup, Failure> {
 /// If a step fails.
 pub fn run(setup: &Setup, n_steps: usize, progress: impl Fn(&Record)) -> Result<Run, Failure> {
     let mut scene = Scene::new(setup)?;
+    doctor::require_sound(&scene.world, &scene.flex_bodies, &scene.flex)?;
     let mut records = Vec::with_capacity(n_steps);
     let mut snapshots = Vec::new();
     let (mut max_newton, mut max_solver_residual) = (0, 0.0f64);

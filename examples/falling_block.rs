@@ -20,6 +20,8 @@
 
 #[path = "support/cli.rs"]
 pub mod cli;
+#[path = "support/doctor.rs"]
+mod doctor;
 
 use clap::Parser;
 use cli::{Options, print_json};
@@ -118,6 +120,7 @@ pub fn impact(
     let body = flex_bodies.insert(builder.translation([0.0, gap]), &mut world)?;
     let mut pipeline = FlexPipeline::new().with_integrator(Beta2::trapezoidal());
 
+    doctor::require_sound(&world, &flex_bodies, &pipeline)?;
     let at_start = flex_bodies[body].energy().kinetic;
     let momentum = flex_bodies[body].momentum()[1];
     let mut impact = Impact::default();

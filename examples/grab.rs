@@ -14,6 +14,8 @@
 
 #[path = "support/cli.rs"]
 pub mod cli;
+#[path = "support/doctor.rs"]
+mod doctor;
 
 use clap::Parser;
 use cli::{Options, print_json};
@@ -66,6 +68,7 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
     )?;
     let weight = GRAVITY * flex_bodies[block].mass();
     let mut flex = FlexPipeline::new();
+    doctor::require_sound(&world, &flex_bodies, &flex)?;
     let cursor = [0.45, 0.52];
     let node = nearest_node(&flex_bodies[block], cursor);
     let spring = AttachmentBuilder::spring_damper(block, STIFFNESS, DAMPING)

@@ -15,6 +15,8 @@
 
 #[path = "support/cli.rs"]
 pub mod cli;
+#[path = "support/doctor.rs"]
+mod doctor;
 
 use clap::Parser;
 use cli::{Options, print_json};
@@ -70,6 +72,7 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
         add_finger(side, hand, &mut world, &mut flex_bodies)?;
     }
     let mut flex = FlexPipeline::new();
+    doctor::require_sound(&world, &flex_bodies, &flex)?;
     for step in 0..options.n_steps(CLOSE + LIFT + HOLD) {
         let rises = (CLOSE..CLOSE + LIFT).contains(&step);
         let speed = if rises { SPEED } else { 0.0 };

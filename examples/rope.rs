@@ -20,6 +20,7 @@ use foil2d::rapier::prelude::*;
 use serde::Serialize;
 use std::error::Error;
 use support::cli::{Options, print_json};
+use support::doctor::require_sound;
 use support::film::{FORCE, Film, Legend, View};
 
 const LENGTH: f64 = 2.4;
@@ -173,6 +174,7 @@ impl Scene {
 /// Lets the rope swing for four seconds; pictures go to `film` if there is one.
 pub fn run(options: &Options, mut film: Option<&mut Film>) -> Result<Outcome, Box<dyn Error>> {
     let mut scene = Scene::new()?;
+    require_sound(&scene.world, &scene.flex_bodies, &scene.pipeline)?;
     let mut outcome = Outcome {
         steps: options.n_steps(480),
         ..Outcome::default()

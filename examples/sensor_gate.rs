@@ -14,6 +14,8 @@
 
 #[path = "support/cli.rs"]
 pub mod cli;
+#[path = "support/doctor.rs"]
+mod doctor;
 
 use clap::Parser;
 use cli::{Options, print_json};
@@ -86,6 +88,7 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
     let (send_tear, _tears) = channel();
     let events = ChannelEventCollector::new(send_collision, send_force, send_tear);
     let mut pipeline = FlexPipeline::new();
+    doctor::require_sound(&world, &flex_bodies, &pipeline)?;
     let mut outcome = Outcome::default();
     let surface = flex_bodies[block].collider_handle();
     let start = flex_bodies[block].centre_of_mass()[1];

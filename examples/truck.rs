@@ -14,6 +14,8 @@
 
 #[path = "support/cli.rs"]
 pub mod cli;
+#[path = "support/doctor.rs"]
+mod doctor;
 
 use clap::Parser;
 use cli::{Options, print_json};
@@ -79,6 +81,7 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
     let (chassis, wheels) = add_truck(&mut world);
     // The near wheel stands on the deck, so that all of the truck is solved with it.
     let mut flex = FlexPipeline::new();
+    doctor::require_sound(&world, &flex_bodies, &flex)?;
     let mut outcome = Outcome::default();
     for step in 0..options.n_steps(STAND + DRIVE) {
         if step == STAND {

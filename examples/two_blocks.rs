@@ -16,6 +16,8 @@
 
 #[path = "support/cli.rs"]
 pub mod cli;
+#[path = "support/doctor.rs"]
+mod doctor;
 
 use clap::Parser;
 use cli::{Options, print_json};
@@ -146,6 +148,7 @@ fn stack(options: &Options) -> Result<Stack, Box<dyn Error>> {
         .friction(FRICTION as Real);
     scene.world.insert_collider(floor, None);
 
+    doctor::require_sound(&scene.world, &scene.flex_bodies, &scene.pipeline)?;
     for _ in 0..options.n_steps(720) {
         scene.step()?;
     }

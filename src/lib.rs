@@ -17,6 +17,7 @@ pub use rapier2d_f64 as rapier;
 pub mod body;
 pub mod constraint;
 pub mod coupling;
+pub mod doctor;
 pub mod fe;
 pub mod guide;
 pub mod integrator;

@@ -4,4 +4,5 @@
 
 pub mod chart;
 pub mod cli;
+pub mod doctor;
 pub mod film;

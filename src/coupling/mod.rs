@@ -74,7 +74,7 @@ pub(crate) use landing::Landing;
 pub(crate) use links::Push;
 pub(crate) use loan::{Lent, Loan};
 pub(crate) use memory::Memory;
-pub(crate) use newcomers::{PutTogether, overlaps_of_newcomers};
+pub(crate) use newcomers::{DEEP, PutTogether, ReadSets, depth_in, overlap, overlaps_of_newcomers};
 pub(crate) use pool::FlexPool;
 pub(crate) use pressed_point::PressedPoint;
 pub(crate) use quarantine::{disable_joints_of_disabled, is_out, quarantine, quarantine_carriers};

@@ -11,9 +11,27 @@ use crate::math::{Vec2, from_rapier, node_vec};
 use crate::rapier::parry::query;
 use crate::rapier::prelude::*;
 
+/// Rapier's bodies and colliders, to be read.
+#[derive(Clone, Copy)]
+pub(crate) struct ReadSets<'a> {
+    /// Bodies.
+    pub bodies: &'a RigidBodySet,
+    /// Colliders.
+    pub colliders: &'a ColliderSet,
+}
+
+impl<'a> From<&'a RapierSets<'_>> for ReadSets<'a> {
+    fn from(sets: &'a RapierSets<'_>) -> Self {
+        Self {
+            bodies: sets.bodies,
+            colliders: sets.colliders,
+        }
+    }
+}
+
 /// Depth over the length of a boundary segment from which bodies count as overlapping: bodies that were laid flush overlap by the
 /// rounding of rapier's numbers, and boxes at rest in rapier by a few thousandths of their size.
-pub(super) const DEEP: f64 = 1e-2;
+pub(crate) const DEEP: f64 = 1e-2;
 
 /// The pairs of this step in which a flexible body that has not been stepped before, or a rigid one that the user has inserted, moved or altered,
 /// overlaps what it meets.
@@ -30,14 +48,14 @@ pub(crate) fn overlaps_of_newcomers(
     let overlaps = |pair: &ClaimedPair| match *pair {
         ClaimedPair::FlexRigid(slot, other) => {
             let body = body_of(slot).filter(|body| body.is_new() || claims.has_altered(other));
-            body.is_some_and(|body| depth_in(body, other, sets) > least_depth(flex, slot))
+            body.is_some_and(|body| depth_in(body, other, sets.into()) > least_depth(flex, slot))
         }
         ClaimedPair::FlexFlex(one, other) => {
             let [Some(first), Some(second)] = [one, other].map(body_of) else {
                 return false;
             };
             let depth = least_depth(flex, one).min(least_depth(flex, other));
-            (first.is_new() || second.is_new()) && overlap(first, second, depth, sets)
+            (first.is_new() || second.is_new()) && overlap(first, second, depth, sets.into())
         }
         ClaimedPair::RigidRigid(..) => false,
     };
@@ -97,7 +115,7 @@ impl PutTogether {
             let edge = |body: &FlexBody| body.mesh().boundary().mean_segment_length();
             let (met, depth, edge, pushes) = match other {
                 Other::Rigid(met) => {
-                    let depth = depth_in(body, met, sets);
+                    let depth = depth_in(body, met, sets.into());
                     (met, depth, edge(body), pushes(body, met, sets))
                 }
                 Other::Flex(other) => {
@@ -105,7 +123,7 @@ impl PutTogether {
                         return false;
                     };
                     let met = other.collider_handle();
-                    let depth = crossing(surface, met, sets);
+                    let depth = crossing(surface, met, sets.into());
                     let groups = [body, other].map(|one| one.contact_settings().solver_groups);
                     let pushes = groups[0].test(groups[1]);
                     (met, depth, edge(body).min(edge(other)), pushes)
@@ -133,14 +151,14 @@ fn least_depth(flex: &Roster, slot: usize) -> f64 {
 }
 
 /// Whether the surfaces cross, or a piece of material of one lies in the other.
-fn overlap(one: &FlexBody, other: &FlexBody, depth: f64, sets: &RapierSets<'_>) -> bool {
+pub(crate) fn overlap(one: &FlexBody, other: &FlexBody, depth: f64, sets: ReadSets<'_>) -> bool {
     one.contains(inner_point(other).into())
         || other.contains(inner_point(one).into())
         || crossing(one.collider_handle(), other.collider_handle(), sets) > depth
 }
 
 /// How deep a collider is in a flexible body (m), zero where it is not: at the surface, or by half its width if its middle is in there.
-pub(super) fn depth_in(body: &FlexBody, other: ColliderHandle, sets: &RapierSets<'_>) -> f64 {
+pub(crate) fn depth_in(body: &FlexBody, other: ColliderHandle, sets: ReadSets<'_>) -> f64 {
     let Some(collider) = sets.colliders.get(other) else {
         return 0.0;
     };
@@ -184,7 +202,7 @@ fn inner_point(body: &FlexBody) -> Vec2 {
 }
 
 /// How deep rapier finds the shapes of two colliders in each other (m), zero where they are not, or it has no answer.
-fn crossing(one: ColliderHandle, other: ColliderHandle, sets: &RapierSets<'_>) -> f64 {
+fn crossing(one: ColliderHandle, other: ColliderHandle, sets: ReadSets<'_>) -> f64 {
     let both = [one, other].map(|handle| sets.colliders.get(handle));
     let [Some(one), Some(other)] = both else {
         return 0.0;
@@ -203,7 +221,7 @@ fn crossing(one: ColliderHandle, other: ColliderHandle, sets: &RapierSets<'_>) -
     contact.map_or(0.0, |contact| f64::from(-contact.dist).max(0.0))
 }
 
-fn pose_of(collider: &Collider, sets: &RapierSets<'_>) -> Pose {
+fn pose_of(collider: &Collider, sets: ReadSets<'_>) -> Pose {
     let parent = collider.parent().and_then(|parent| sets.bodies.get(parent));
     parent.map_or(*collider.position(), |body| placed_on(body, collider))
 }

@@ -73,7 +73,7 @@ impl Trespassers {
                     };
                     let surface = flexible.collider_handle();
                     let least = DEEP * flexible.mesh().boundary().mean_segment_length();
-                    let depth = depth_in(flexible, collider, sets);
+                    let depth = depth_in(flexible, collider, sets.into());
                     let mut may_touch = || claims.may_touch(sets, surface, collider);
                     if depth > known.max(least) && pushes(flexible, collider, sets) && may_touch() {
                         self.found.push(Trespasser {
