@@ -4,6 +4,10 @@
 mod dynamics;
 #[path = "large/forces.rs"]
 mod forces;
+#[path = "../examples/verify/frame.rs"]
+mod frame;
+#[path = "large/paths.rs"]
+mod paths;
 #[path = "large/robustness.rs"]
 mod robustness;
 #[path = "large/statics.rs"]

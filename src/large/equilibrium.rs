@@ -42,7 +42,7 @@ pub struct LoadReport {
 /// Finds equilibria of one body of large strain by load control.
 ///
 /// Load control follows a path as long as the load can grow; at a limit load, where bodies snap through, no cutback helps and
-/// the error names the node that does not come to rest.
+/// the error names the node that does not come to rest: [`PathStepper`](super::PathStepper) goes on there.
 #[derive(Clone, Debug)]
 pub struct LoadStepper {
     model: Arc<FiniteStrainModel>,

@@ -81,4 +81,53 @@ pub enum LargeError {
         /// Node of the largest residual seen last.
         node: usize,
     },
+    /// The tangent of a path has no factor.
+    #[error(
+        "the tangent is singular at the load factor {factor}: hold the rigid motions of the body, and where two paths cross disturb its \
+         shape or its load a little"
+    )]
+    Singular {
+        /// Where (-).
+        factor: f64,
+    },
+    /// There is not enough memory for a factor.
+    #[error("there is no memory for the factor of {n_dofs} dofs")]
+    Memory {
+        /// Rows of the matrix.
+        n_dofs: usize,
+    },
+    /// Nothing moves with the load factor.
+    #[error(
+        "no node moves with the load factor: give loads at free dofs, or other places to held ones"
+    )]
+    Still,
+    /// A path turns sharply, also in short increments.
+    #[error(
+        "the path turns at the load factor {factor}, with a cosine of {cosine} to its way before, also in short increments: there is a kink, or \
+         another path near by; allow more cutbacks, or disturb the shape or the load a little"
+    )]
+    Turn {
+        /// Where (-).
+        factor: f64,
+        /// Between the tangents before and after the increment (-).
+        cosine: f64,
+    },
+    /// The end of a path was not reached.
+    #[error(
+        "the end was not reached in {n_increments} increments, the last at the load factor {factor}: look whether the path leads there"
+    )]
+    Unreached {
+        /// Increments taken.
+        n_increments: usize,
+        /// Where the path is (-).
+        factor: f64,
+    },
+    /// A follower force cannot act.
+    #[error(
+        "follower force {index} has a node that does not exist, a line from a node to itself, or a force that is not finite"
+    )]
+    Follower {
+        /// Which one.
+        index: usize,
+    },
 }

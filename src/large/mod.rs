@@ -21,8 +21,10 @@
 //! | `turn` | the mean rotation of a body, by which a factor is turned |
 //! | `stepper` | [`LargeStepper`]: a step, in halves where it is not found |
 //! | `equilibrium` | [`LoadStepper`]: equilibrium under loads that grow, in smaller increments where it is not found |
+//! | `continuation` | [`PathStepper`]: equilibrium along a path, past limit points |
 //! | `error` | [`LargeError`] |
 
+mod continuation;
 mod equation;
 mod equilibrium;
 mod error;
@@ -32,6 +34,9 @@ mod settings;
 mod stepper;
 mod turn;
 
+pub use continuation::{
+    FollowerForce, LimitPoint, PathCase, PathEnd, PathPoint, PathReport, PathSettings, PathStepper,
+};
 pub(crate) use equation::{Equation, Evaluation, Inertia};
 pub use equilibrium::{LoadCase, LoadReport, LoadStepper};
 pub use error::LargeError;

@@ -1,9 +1,10 @@
 //! Equilibria with known answers.
 
+use super::frame::frame;
 use super::support::{KINDS, describe, laws, nodes_where, plate};
 use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
 use foil2d::fe::material::hyperelastic::Corotated;
-use foil2d::fe::mesh::{CellKind, Mesh};
+use foil2d::fe::mesh::CellKind;
 use foil2d::large::{LargeError, LargeSettings, LoadCase, LoadStepper};
 use std::sync::Arc;
 
@@ -216,50 +217,6 @@ fn a_buckled_column_bears_the_load_of_the_elastica() {
     }
 }
 
-/// A frame of two legs 120 long and `thick` thick, their centre lines meeting at (0, 120): Tri6, one cell across.
-fn frame(thick: f64) -> Mesh {
-    let half = 0.5 * thick;
-    // Sections along a leg, from its hinge to the edge of the corner.
-    let along: Vec<f64> = (0..60)
-        .map(|k| 2.0 * f64::from(k))
-        .chain([120.0 - half])
-        .collect();
-    let upright = along.iter().map(|&y| [[half, y], [-half, y]]);
-    let level = along
-        .iter()
-        .rev()
-        .map(|&s| [[120.0 - s, 120.0 - half], [120.0 - s, 120.0 + half]]);
-    let nodes: Vec<[f64; 2]> = upright
-        .chain(level)
-        .flatten()
-        .chain([[-half, 120.0 + half]])
-        .collect();
-    let n = along.len();
-    let mut cells = Vec::new();
-    let mut add = |[a, b, c, d]: [usize; 4]| cells.extend([[a, b, c], [a, c, d]]);
-    for k in 0..n - 1 {
-        // Upright: right and left below, left and right above; level: lower and upper, to the right of both.
-        add([2 * k + 1, 2 * k, 2 * k + 2, 2 * k + 3]);
-        let at = 2 * (n + k);
-        add([at, at + 2, at + 3, at + 1]);
-    }
-    // The corner's lower right node is that of both legs.
-    let (right, left, upper) = (2 * n - 2, 2 * n - 1, 2 * n + 1);
-    add([left, right, upper, 4 * n]);
-    let merged = |node: usize| {
-        if node == 2 * n {
-            right
-        } else {
-            node - usize::from(node > 2 * n)
-        }
-    };
-    let cells: Vec<[usize; 3]> = cells.into_iter().map(|cell| cell.map(merged)).collect();
-    let mut nodes = nodes;
-    nodes.remove(2 * n);
-    let mesh = Mesh::from_cells(nodes, CellKind::Tri3, &cells).expect("the frame is a mesh");
-    mesh.to_tri6().expect("all cells are Tri3")
-}
-
 /// Benchmark B44, Lee's frame: pushed down at 24 from its corner until it snaps.
 ///
 /// ```text
@@ -273,7 +230,7 @@ fn frame(thick: f64) -> Mesh {
 fn lees_frame_bears_its_limit_load() {
     let thick: f64 = 0.2;
     let law = Corotated::plane_strain(12.0 * 1440.0 / thick.powi(3), 0.0);
-    let description = FiniteStrainDescription::new(frame(thick), law, 1.0);
+    let description = FiniteStrainDescription::new(frame(thick).expect("a frame"), law, 1.0);
     let model = Arc::new(FiniteStrainModel::assemble(description).expect("the frame is a body"));
     let at = |x: f64, y: f64| {
         let is_there = |[a, b]: [f64; 2]| (a - x).abs() < 1e-9 && (b - y).abs() < 1e-9;
