@@ -13,6 +13,7 @@ fn model(mesh: Mesh, poisson: f64, mass_kind: MassKind, massless: Vec<bool>) -> 
         mesh: Arc::new(mesh),
         elements: Vec::new(),
         material: Arc::new(LinearElastic::plane_stress(YOUNG, poisson).density(DENSITY)),
+        regions: Vec::new(),
         thickness: 0.1,
         mass_kind,
         massless,

@@ -19,8 +19,7 @@ impl FlexBodyBuilder {
     pub fn build(self) -> Result<FlexBody, BuildError> {
         self.check_numbers()?;
         let mesh = self.mesh.clone()?;
-        let material = self.material.clone().ok_or(BuildError::NoMaterial)?;
-        material.validate()?;
+        let (material, regions) = self.materials.clone().resolve(&mesh)?;
         let n_nodes = mesh.n_nodes();
         let is_fixed = self.fixed_dofs(n_nodes)?;
         let turn = rotation(self.rotation);
@@ -33,7 +32,7 @@ impl FlexBodyBuilder {
             })
             .collect();
         check_places(&rest)?;
-        let large = self.large_description(&mesh, &rest, &material)?;
+        let large = self.large_description(&mesh, &rest, &material, &regions)?;
         let frame = frame_of(&rest, &is_fixed, large.is_some()).ok_or(BuildError::RotatingPins)?;
         let massless = match large {
             // What the two ends of a step share of its stress lets nodes without mass swing for ever.
@@ -45,6 +44,7 @@ impl FlexBodyBuilder {
             mesh,
             elements: self.elements.clone(),
             material,
+            regions,
             thickness: self.thickness,
             mass_kind: self.mass_kind,
             massless,
@@ -75,18 +75,22 @@ impl FlexBodyBuilder {
         mesh: &Arc<Mesh>,
         rest: &[f64],
         material: &Arc<dyn Material>,
+        regions: &[(u32, Arc<dyn Material>)],
     ) -> Result<Option<FiniteStrainDescription>, BuildError> {
         if self.is_large == Some(false) {
             return Ok(None);
         }
-        let is_asked = self.is_large == Some(true) || material.hyperelastic().is_some();
+        let mut materials = regions.iter().map(|(_, own)| own).chain([material]);
+        let is_asked =
+            self.is_large == Some(true) || materials.any(|own| own.hyperelastic().is_some());
         let description = FiniteStrainDescription::of_material(
             Arc::clone(mesh),
             rest.to_vec(),
             &self.elements,
             material.as_ref(),
             self.thickness,
-        );
+        )
+        .and_then(|description| description.with_region_materials(regions));
         let outcome = match (self.mass_kind, &self.contact_inertia, description) {
             (MassKind::Consistent, ..) => Err(BuildError::LargeConsistent),
             (_, ContactInertia::RedistributedAt(_), _) => Err(BuildError::LargeMassless),

@@ -1,6 +1,7 @@
 //! The description of a flexible body.
 
 use super::contact_settings::ContactSettings;
+use super::materials::{Materials, Region};
 use super::pin::Pin;
 use crate::fe::element::Element;
 use crate::fe::material::Material;
@@ -45,7 +46,7 @@ pub enum ContactInertia {
 pub struct FlexBodyBuilder {
     pub(super) mesh: Result<Arc<Mesh>, MeshError>,
     pub(super) elements: Vec<Arc<dyn Element>>,
-    pub(super) material: Option<Arc<dyn Material>>,
+    pub(super) materials: Materials,
     /// Whether the body is one of large strain, if the user has said so.
     pub(super) is_large: Option<bool>,
     pub(super) thickness: f64,
@@ -110,7 +111,7 @@ impl FlexBodyBuilder {
         Self {
             mesh,
             elements: Vec::new(),
-            material: None,
+            materials: Materials::default(),
             is_large: None,
             thickness: 1.0,
             mass_kind: MassKind::default(),
@@ -131,9 +132,39 @@ impl FlexBodyBuilder {
         }
     }
 
-    /// The constitutive law; required.
+    /// The constitutive law, with the density; required, unless every region of the mesh has its own.
     pub fn material(mut self, material: impl Material + 'static) -> Self {
-        self.material = Some(Arc::new(material));
+        self.materials.main = Some(Arc::new(material));
+        self
+    }
+
+    /// The material of a region of the mesh, by its number or its name; all regions must be damped alike.
+    ///
+    /// ```
+    /// use foil2d::prelude::*;
+    /// let strip = FlexBodyBuilder::rectangle([4.0, 0.2], [40, 2])
+    ///     .regions_by(|[_, y]| u32::from(y > 0.1))
+    ///     .region_material(0, LinearElastic::plane_stress(2.1e11, 0.3).density(7800.0))
+    ///     .region_material(1, LinearElastic::plane_stress(0.7e11, 0.3).density(2700.0))
+    ///     .build()?;
+    /// assert!((strip.mass() - 0.4 * (7800.0 + 2700.0)).abs() < 1e-9);
+    /// # Ok::<(), foil2d::body::BuildError>(())
+    /// ```
+    pub fn region_material(
+        mut self,
+        region: impl Into<Region>,
+        material: impl Material + 'static,
+    ) -> Self {
+        let regions = &mut self.materials.regions;
+        regions.push((region.into(), Arc::new(material)));
+        self
+    }
+
+    /// Puts every cell into a region, chosen by the mean of its corners in mesh coordinates (m).
+    pub fn regions_by(mut self, choose: impl Fn([f64; 2]) -> u32) -> Self {
+        let regions =
+            |mesh: Arc<Mesh>| Arc::new(Arc::unwrap_or_clone(mesh).with_regions_by(choose));
+        self.mesh = self.mesh.map(regions);
         self
     }
 

@@ -1,6 +1,7 @@
 //! What can be wrong with the description of a body, or with the handle that names it.
 
 use super::handle::FlexBodyHandle;
+use super::materials::Region;
 use crate::fe::finite_strain::FiniteStrainError;
 use crate::fe::material::MaterialError;
 use crate::fe::mesh::MeshError;
@@ -43,6 +44,24 @@ pub enum BuildError {
         "the body has no material: call `.material(LinearElastic::plane_stress(E, nu).density(rho))`"
     )]
     NoMaterial,
+    /// A material was given to a region that the mesh has not.
+    #[error(
+        "a material is for region {region}, and the mesh has the regions {known:?}: name one of them, or put cells into it by `Mesh::with_regions`"
+    )]
+    NoRegion {
+        /// The region named.
+        region: Region,
+        /// Those of the mesh.
+        known: Vec<u32>,
+    },
+    /// Some regions have a material, and this one has none.
+    #[error(
+        "region {region} has no material: call `.region_material({region}, ...)`, or `.material(...)` for all that have none of their own"
+    )]
+    RegionWithoutMaterial {
+        /// The region.
+        region: u32,
+    },
     /// A number is not finite or out of its range.
     #[error("{name} is {value}: {cure}")]
     Number {

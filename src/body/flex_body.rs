@@ -6,8 +6,7 @@ use super::state::{BodyEnergy, FlexState};
 use super::stillness::Stillness;
 use crate::fe::finite_strain::FiniteStrainModel;
 use crate::fe::mesh::Mesh;
-use crate::fe::model::{Model, ModelError};
-use crate::fe::recovery::Stress;
+use crate::fe::model::Model;
 use crate::math::{Vec2, cross, node_vec, perp, set_node_vec};
 use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
 use std::borrow::Cow;
@@ -270,38 +269,6 @@ impl FlexBody {
                 None => self.model.elastic_energy(self.local_displacements()),
             },
         }
-    }
-
-    /// Strains `[e_xx, e_yy, g_xy]` (-) and stresses (Pa) at the quadrature points of a cell, in the body's frame.
-    ///
-    /// # Errors
-    /// If the element cannot evaluate its strain.
-    ///
-    /// # Panics
-    /// If the cell does not exist.
-    pub fn cell_stress(&self, cell: usize) -> Result<Vec<([f64; 3], Stress)>, ModelError> {
-        self.model.cell_stress(cell, self.local_displacements())
-    }
-
-    /// Smoothed stress at every node, in the body's frame (Pa); of a body of large strain Cauchy's, in the world's axes.
-    ///
-    /// # Errors
-    /// If an element cannot evaluate its strain.
-    pub fn stress(&self) -> Result<Vec<Stress>, ModelError> {
-        match &self.large {
-            Some(large) => self
-                .model
-                .smooth(|cell| Ok(large.cell_stress(cell, &self.state.position))),
-            None => self.model.nodal_stress(self.local_displacements()),
-        }
-    }
-
-    /// Smoothed von Mises stress at every node (Pa).
-    ///
-    /// # Errors
-    /// If an element cannot evaluate its strain.
-    pub fn von_mises(&self) -> Result<Vec<f64>, ModelError> {
-        Ok(self.stress()?.iter().map(Stress::von_mises).collect())
     }
 
     /// Force of contacts and attachments on a node in the last step (N).

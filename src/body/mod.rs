@@ -3,7 +3,6 @@
 mod attachment;
 mod build;
 mod builder;
-mod contact_offset;
 mod contact_settings;
 mod critical;
 mod error;
@@ -11,7 +10,7 @@ mod flex_body;
 mod frame;
 mod handle;
 mod kept_motion;
-mod pick;
+mod materials;
 mod pin;
 #[cfg(feature = "serde-serialize")]
 mod record;
@@ -20,6 +19,8 @@ mod small_strain;
 mod state;
 mod steering;
 mod stillness;
+mod stress;
+mod surface;
 
 pub(crate) use attachment::{Anchor, Choice, Plan, Shift};
 pub use attachment::{
@@ -27,16 +28,17 @@ pub use attachment::{
     AttachmentTarget,
 };
 pub use builder::{ContactInertia, FlexBodyBuilder};
-pub(crate) use contact_offset::contact_offset;
 pub use contact_settings::ContactSettings;
 pub use error::{BuildError, FlexBodyError};
 pub use flex_body::FlexBody;
 pub use frame::{Arms, Frame, frame_of};
 pub use handle::FlexBodyHandle;
 pub(crate) use kept_motion::KeptMotion;
-pub use pick::SurfacePick;
+pub use materials::Region;
 pub use pin::Pin;
 #[cfg(feature = "serde-serialize")]
 pub(crate) use record::{SetRecord, SetRecordError};
 pub use set::FlexBodySet;
 pub use state::{AppliedLoad, BodyEnergy, FlexState, FrameMotion, KnownLoads};
+pub use surface::SurfacePick;
+pub(crate) use surface::contact_offset;

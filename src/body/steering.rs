@@ -4,10 +4,12 @@ use super::build::check_range;
 use super::error::{BuildError, FlexBodyError, check_finite, check_held};
 use super::flex_body::FlexBody;
 use super::frame::Arms;
+use super::materials::Region;
 use super::state::FlexState;
 use super::stillness::Stillness;
 use crate::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
 use crate::fe::material::Material;
+use crate::fe::model::ModelDescription;
 use crate::math::{Vec2, node_vec, perp, rotation, set_node_vec};
 use std::sync::{Arc, OnceLock};
 
@@ -169,15 +171,35 @@ impl FlexBody {
         Ok(())
     }
 
-    /// Makes the body of another material, its damping included; places and velocities stay. A deformed body has another elastic energy from
-    /// then on, and one of another density another momentum.
+    /// Makes the whole body of another material, its damping included; places and velocities stay. A deformed body has another elastic energy
+    /// from then on, and one of another density another momentum.
     ///
     /// # Errors
     /// If the material is out of range, has no law for a body of large strain, or makes the body one that cannot be computed; nothing is then
     /// changed.
     pub fn set_material(&mut self, material: impl Material + 'static) -> Result<(), BuildError> {
         material.validate()?;
-        self.remake(Arc::new(material), self.model.thickness())
+        self.remake(|description| {
+            description.material = Arc::new(material);
+            description.regions.clear();
+        })
+    }
+
+    /// Makes a region of the body of another material, as [`set_material`](Self::set_material) does all of it.
+    ///
+    /// # Errors
+    /// As there, and if the mesh has no such region, or the material is damped in another way than the rest of the body.
+    pub fn set_region_material(
+        &mut self,
+        region: impl Into<Region>,
+        material: impl Material + 'static,
+    ) -> Result<(), BuildError> {
+        material.validate()?;
+        let region = region.into().number_in(self.mesh())?;
+        self.remake(|description| {
+            description.regions.retain(|(own, _)| *own != region);
+            description.regions.push((region, Arc::new(material)));
+        })
     }
 
     /// Makes the body as thick (m); places and velocities stay.
@@ -185,11 +207,11 @@ impl FlexBody {
     /// # Errors
     /// If the thickness is not positive, or makes the body one that cannot be computed; nothing is then changed.
     pub fn set_thickness(&mut self, thickness: f64) -> Result<(), BuildError> {
-        self.remake(Arc::clone(self.model.shared_material()), thickness)
+        self.remake(|description| description.thickness = thickness)
     }
 
-    fn remake(&mut self, material: Arc<dyn Material>, thickness: f64) -> Result<(), BuildError> {
-        let model = self.model.remade(material, thickness)?;
+    fn remake(&mut self, change: impl FnOnce(&mut ModelDescription)) -> Result<(), BuildError> {
+        let model = self.model.remade(change)?;
         check_range(&model)?;
         let large = match self.large {
             None => None,

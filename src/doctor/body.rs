@@ -2,6 +2,7 @@
 
 use super::finding::Finding;
 use crate::body::{FlexBody, FlexBodyHandle};
+use crate::fe::material::Material;
 use crate::fe::mesh::{CellKind, Mesh};
 use crate::integrator::Beta2;
 use crate::math::{Vec2, node_vec};
@@ -71,27 +72,39 @@ impl Patient<'_> {
                 slenderness,
             });
         }
-        let [[xx, xy, _], _, [_, _, shear]] = self.body.model().material().tangent([0.0; 3]);
-        let ratio = 0.5 * (xx + xy) / shear;
+        let ratios = self.materials().map(|material| {
+            let [[xx, xy, _], _, [_, _, shear]] = material.tangent([0.0; 3]);
+            0.5 * (xx + xy) / shear
+        });
+        let ratio = ratios.fold(0.0, f64::max);
         if ratio > LOCKS {
             findings.push(Finding::Locking { body, ratio });
         }
     }
 
     fn look_at_material(&self, findings: &mut Vec<Finding>) {
-        let (body, material) = (self.handle, self.body.model().material());
-        let density = material.density();
-        if !(DENSITIES[0]..=DENSITIES[1]).contains(&density) {
-            findings.push(Finding::Density { body, density });
-        }
-        let [_, _, [_, _, shear]] = material.tangent([0.0; 3]);
+        let body = self.handle;
         let [low, high] = extent(self.body);
-        let weight = density * self.gravity * self.body.gravity_scale().abs() * (high - low).y;
+        let pull = self.gravity * self.body.gravity_scale().abs() * (high - low).y;
+        let mut ratio: f64 = 0.0;
+        for material in self.materials() {
+            let density = material.density();
+            if !(DENSITIES[0]..=DENSITIES[1]).contains(&density) {
+                findings.push(Finding::Density { body, density });
+            }
+            let [_, _, [_, _, shear]] = material.tangent([0.0; 3]);
+            ratio = ratio.max(density * pull / shear);
+        }
         let is_held = self.body.fixed_dofs().contains(&true);
-        if !is_held && weight > shear {
-            let ratio = weight / shear;
+        if !is_held && ratio > 1.0 {
             findings.push(Finding::Crushed { body, ratio });
         }
+    }
+
+    /// The materials of all regions.
+    fn materials(&self) -> impl Iterator<Item = &dyn Material> {
+        let regions = self.body.mesh().regions().into_iter();
+        regions.map(|region| self.body.model().material_of(region))
     }
 
     fn look_at_modes(&self, findings: &mut Vec<Finding>) {
@@ -105,7 +118,7 @@ impl Patient<'_> {
         let Some(frequency) = frequencies.find(|&frequency| frequency > 0.0) else {
             return;
         };
-        let ratio = model.material().rayleigh().ratio(frequency);
+        let ratio = model.rayleigh().ratio(frequency);
         let time = 2.0 * ratio / frequency;
         if ratio > 1.0 && time > CREEPS * self.dt {
             findings.push(Finding::Overdamped {

@@ -40,6 +40,11 @@ pub enum ModelError {
     /// Thickness is not positive.
     #[error("the thickness is {0} m: give a finite positive one")]
     Thickness(f64),
+    /// A region is damped in another way than the rest of the body.
+    #[error(
+        "the material of region {0} has another Rayleigh damping than the rest of the body, which is damped as one: give all of them the same"
+    )]
+    RegionDamping(u32),
 }
 
 /// What a model is assembled from.
@@ -51,8 +56,10 @@ pub struct ModelDescription {
     pub rest_positions: Vec<f64>,
     /// Elements that replace the default ones of their node count.
     pub elements: Vec<Arc<dyn Element>>,
-    /// The constitutive law.
+    /// The constitutive law, but for the regions that follow.
     pub material: Arc<dyn Material>,
+    /// Materials of regions of the mesh that have their own, damped as the others are; a later one of the same region counts.
+    pub regions: Vec<(u32, Arc<dyn Material>)>,
     /// Thickness out of the plane (m).
     pub thickness: f64,
     /// Representation of the mass.
@@ -61,6 +68,23 @@ pub struct ModelDescription {
     pub massless: Vec<bool>,
     /// Nodes that cannot move, and so cannot carry another node's mass; empty for none.
     pub held: Vec<bool>,
+}
+
+impl ModelDescription {
+    /// The material of a region.
+    pub fn material_of(&self, region: u32) -> &Arc<dyn Material> {
+        let own = self.regions.iter().rev().find(|(own, _)| *own == region);
+        own.map_or(&self.material, |(_, material)| material)
+    }
+
+    fn check_damping(&self) -> Result<(), ModelError> {
+        let damping = self.material.rayleigh();
+        let other = |(_, own): &&(u32, Arc<dyn Material>)| own.rayleigh() != damping;
+        match self.regions.iter().find(other) {
+            Some((region, _)) => Err(ModelError::RegionDamping(*region)),
+            None => Ok(()),
+        }
+    }
 }
 
 /// The assembled, immutable finite-element model of one body.
@@ -87,6 +111,7 @@ impl Model {
         if !(thickness.is_finite() && thickness > 0.0) {
             return Err(ModelError::Thickness(thickness));
         }
+        description.check_damping()?;
         let mesh = Arc::clone(&description.mesh);
         let n_nodes = mesh.n_nodes();
         let mut stiffness = BlockMatrix::from_cells(
@@ -135,16 +160,14 @@ impl Model {
         })
     }
 
-    /// The same body of another material and thickness (m).
+    /// The same body with its description changed: another material, in all of it or some regions, or thickness.
     ///
     /// # Errors
     /// As [`Model::assemble`].
-    pub fn remade(&self, material: Arc<dyn Material>, thickness: f64) -> Result<Self, ModelError> {
-        Self::assemble(ModelDescription {
-            material,
-            thickness,
-            ..self.description.clone()
-        })
+    pub fn remade(&self, change: impl FnOnce(&mut ModelDescription)) -> Result<Self, ModelError> {
+        let mut description = self.description.clone();
+        change(&mut description);
+        Self::assemble(description)
     }
 
     /// The mesh, in its own coordinates.
@@ -202,14 +225,14 @@ impl Model {
         self.description.material.rayleigh()
     }
 
-    /// The constitutive law, to be shared.
-    pub(crate) fn shared_material(&self) -> &Arc<dyn Material> {
-        &self.description.material
-    }
-
-    /// The constitutive law.
+    /// The constitutive law, but for regions that have one of their own.
     pub fn material(&self) -> &dyn Material {
         self.description.material.as_ref()
+    }
+
+    /// The constitutive law of a region.
+    pub fn material_of(&self, region: u32) -> &dyn Material {
+        self.description.material_of(region).as_ref()
     }
 
     /// Thickness (m).
@@ -272,18 +295,14 @@ impl Model {
         for (slot, &node) in nodes.nodes.iter().enumerate() {
             local[2 * slot..2 * slot + 2].copy_from_slice(&u[2 * node..2 * node + 2]);
         }
+        let material = self.material_of(nodes.region);
         let mut strains = vec![[0.0; 3]; element.quadrature().len()];
         element
-            .point_strains(
-                &corners[..n],
-                self.material(),
-                &local[..2 * n],
-                &mut strains,
-            )
+            .point_strains(&corners[..n], material, &local[..2 * n], &mut strains)
             .map_err(wrap)?;
         Ok(strains
             .into_iter()
-            .map(|strain| (strain, Stress::of(self.material(), strain)))
+            .map(|strain| (strain, Stress::of(material, strain)))
             .collect())
     }
 
@@ -294,21 +313,24 @@ impl Model {
     /// # Errors
     /// If an element cannot evaluate its strain.
     pub fn nodal_stress(&self, u: &[f64]) -> Result<Vec<Stress>, ModelError> {
-        self.smooth(|cell| {
+        self.smooth(None, |cell| {
             let found = self.cell_stress(cell, u)?;
             Ok(found.into_iter().map(|(_, stress)| stress).collect())
         })
     }
 
-    /// Smooths stresses (Pa) that are given at the quadrature points of every cell.
+    /// Smooths stresses (Pa) that are given at the quadrature points of every cell, or of those in a region; zero at nodes of no such cell.
     pub(crate) fn smooth(
         &self,
+        region: Option<u32>,
         stresses_of: impl Fn(usize) -> Result<Vec<Stress>, ModelError>,
     ) -> Result<Vec<Stress>, ModelError> {
         let mut elements = Vec::with_capacity(self.mesh().n_cells());
         let mut stresses = Vec::new();
         let mut spans = Vec::new();
-        for (index, cell) in self.mesh().cells().enumerate() {
+        let is_in = |cell: &Cell<'_>| region.is_none_or(|region| cell.region == region);
+        let all = self.mesh().cells();
+        for (index, cell) in all.clone().enumerate().filter(|(_, cell)| is_in(cell)) {
             let element = element_of(&self.description.elements, index, &cell)?;
             let corners = placed_nodes(&self.description.rest_positions, &cell);
             let area = element.area(&corners[..cell.nodes.len()]);
@@ -320,7 +342,7 @@ impl Model {
             stresses.extend(stresses_of(index)?);
             elements.push(element);
         }
-        let cells = self.mesh().cells().zip(&elements).zip(&spans).map(
+        let cells = all.filter(is_in).zip(&elements).zip(&spans).map(
             |((cell, element), &(first, weight))| {
                 let last = first + element.quadrature().len();
                 CellStress {
@@ -345,9 +367,10 @@ fn for_each_cell(
 ) -> Result<(), ModelError> {
     let mut stiffness = [0.0; 4 * MAX_NODES * MAX_NODES];
     let mut mass = [0.0; MAX_NODES * MAX_NODES];
-    let (material, thickness) = (description.material.as_ref(), description.thickness);
-    let density = material.density();
+    let thickness = description.thickness;
     for (index, cell) in description.mesh.cells().enumerate() {
+        let material = description.material_of(cell.region).as_ref();
+        let density = material.density();
         let wrap = |source| ModelError::Element {
             cell: index,
             source,

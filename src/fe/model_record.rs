@@ -2,6 +2,7 @@
 //! compared.
 
 use super::mass_matrix::{MassKind, MassMatrix};
+use super::material::Material;
 use super::mesh::{CellKind, Mesh, MeshError};
 use super::model::{Model, ModelDescription, ModelError};
 use super::record::{ElementRecord, KnownLaws, MaterialRecord};
@@ -54,6 +55,10 @@ pub(crate) struct ModelRecord {
     rest_positions: Vec<f64>,
     elements: Vec<ElementRecord>,
     material: MaterialRecord,
+    /// Region of every cell, names of regions, and their materials.
+    cell_regions: Vec<u32>,
+    region_names: Vec<(u32, String)>,
+    regions: Vec<(u32, MaterialRecord)>,
     thickness: f64,
     mass_kind: MassKind,
     massless: Vec<bool>,
@@ -69,11 +74,9 @@ impl ModelRecord {
     pub fn of(model: &Model) -> Result<Self, ModelRecordError> {
         let description = &model.description;
         let mesh = &description.mesh;
-        let material = description.material.record();
-        if material == MaterialRecord::Unknown {
-            let text = format!("{:?}", description.material);
-            return Err(ModelRecordError::UnnamedMaterial(text));
-        }
+        let regions = description.regions.iter();
+        let regions = regions.map(|(region, own)| Ok((*region, record_of(own)?)));
+        let names = mesh.region_names();
         let named = |element: &Arc<dyn super::element::Element>| match element.record() {
             ElementRecord::Unknown => Err(ModelRecordError::UnnamedElement(element.name())),
             record => Ok(record),
@@ -87,7 +90,10 @@ impl ModelRecord {
                 .collect(),
             rest_positions: description.rest_positions.clone(),
             elements: elements?,
-            material,
+            material: record_of(&description.material)?,
+            cell_regions: mesh.cells().map(|cell| cell.region).collect(),
+            region_names: names.map(|(at, name)| (at, name.to_owned())).collect(),
+            regions: regions.collect::<Result<_, ModelRecordError>>()?,
             thickness: description.thickness,
             mass_kind: description.mass_kind,
             massless: description.massless.clone(),
@@ -102,6 +108,10 @@ impl ModelRecord {
     /// If a law is not known, or the model is not what was saved.
     pub fn build(self, laws: &KnownLaws) -> Result<Model, ModelRecordError> {
         let mesh = Mesh::from_mixed_cells(self.nodes, &self.cells)?;
+        let mut mesh = mesh.with_regions(self.cell_regions)?;
+        for (region, name) in self.region_names {
+            mesh = mesh.with_region_name(region, name)?;
+        }
         let n_nodes = mesh.n_nodes();
         if self.rest_positions.len() != 2 * n_nodes {
             return Err(ModelRecordError::Length("rest positions"));
@@ -109,8 +119,13 @@ impl ModelRecord {
         if [&self.massless, &self.held].map(Vec::len) != [n_nodes; 2] {
             return Err(ModelRecordError::Length("flags"));
         }
-        let material = laws.find_material(&self.material);
-        let material = material.ok_or(ModelRecordError::UnknownMaterial(self.material))?;
+        let found = |record: MaterialRecord| {
+            let material = laws.find_material(&record);
+            material.ok_or(ModelRecordError::UnknownMaterial(record))
+        };
+        let material = found(self.material)?;
+        let regions = self.regions.into_iter();
+        let regions = regions.map(|(region, record)| Ok((region, found(record)?)));
         let known = |record: ElementRecord| {
             let found = laws.find_element(&record);
             found.ok_or(ModelRecordError::UnknownElement(record))
@@ -121,6 +136,7 @@ impl ModelRecord {
             rest_positions: self.rest_positions,
             elements: elements?,
             material,
+            regions: regions.collect::<Result<_, ModelRecordError>>()?,
             thickness: self.thickness,
             mass_kind: self.mass_kind,
             massless: self.massless,
@@ -131,6 +147,14 @@ impl ModelRecord {
         } else {
             Err(ModelRecordError::Differs)
         }
+    }
+}
+
+/// The record of a material, if it has one.
+fn record_of(material: &Arc<dyn Material>) -> Result<MaterialRecord, ModelRecordError> {
+    match material.record() {
+        MaterialRecord::Unknown => Err(ModelRecordError::UnnamedMaterial(format!("{material:?}"))),
+        record => Ok(record),
     }
 }
 

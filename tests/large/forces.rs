@@ -244,6 +244,7 @@ fn a_quadrilateral_at_rest_answers_as_with_its_inner_modes() {
             rest_positions: description.rest_positions.clone(),
             elements: Vec::new(),
             material: Arc::new(constants.linear(1000.0)),
+            regions: Vec::new(),
             thickness: 1.0,
             mass_kind: MassKind::Lumped,
             massless: Vec::new(),

@@ -182,3 +182,32 @@ fn unknown_or_changed_laws_are_refused_when_they_are_restored() {
     let changed = softer.element("triangle", OwnTriangle(Some("triangle")));
     assert_eq!(refused(changed), ModelRecordError::Differs);
 }
+
+#[test]
+fn regions_with_their_names_and_materials_resume_bit_for_bit() {
+    for is_large in [true, false] {
+        let mesh = foil2d::fe::mesh::generate::rectangle([0.5, 0.5], [4, 4], CellKind::Tri3)
+            .expect("a square")
+            .with_regions_by(|[x, _]| 2 * u32::from(x > 0.2))
+            .with_region_name(2, "heavy")
+            .expect("it has cells");
+        let body = FlexBodyBuilder::mesh(mesh)
+            .material(LinearElastic::plane_stress(1e6, 0.3).density(1000.0))
+            .region_material(
+                "heavy",
+                LinearElastic::plane_stress(2e6, 0.3).density(2000.0),
+            )
+            .translation([0.0, 0.01]);
+        let mut straight = Run::new();
+        let handle = straight.flexible(match is_large {
+            true => body.large_strain(),
+            false => body.small_strain(),
+        });
+        (0..20).for_each(|_| straight.step(&Recorder::default()));
+        let mut resumed = straight.resumed();
+        let restored = &resumed.flex_bodies[handle];
+        assert_eq!(restored.mesh(), straight.flex_bodies[handle].mesh());
+        assert_eq!(restored.mesh().region_named("heavy"), Some(2));
+        compare(&mut straight, &mut resumed, 60);
+    }
+}

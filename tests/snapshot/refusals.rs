@@ -4,7 +4,7 @@ use super::support::*;
 use foil2d::pipeline::{Snapshot, SnapshotError};
 
 const MAGIC: u64 = 0x0000_666f_696c_3264;
-const FORMAT: u32 = 9;
+const FORMAT: u32 = 10;
 
 fn small() -> Run {
     let log = Recorder::default();
@@ -33,7 +33,7 @@ fn another_format_is_refused_before_its_data_is_read() {
         postcard::to_stdvec(&(MAGIC, FORMAT + 1, 32_u8, "data of tomorrow")).expect("is written");
     let error = refusal(&bytes).expect("it is refused");
     assert_eq!(error, SnapshotError::Format(FORMAT + 1));
-    assert!(error.to_string().contains("format 9"), "{error}");
+    assert!(error.to_string().contains("format 10"), "{error}");
 }
 
 #[test]
@@ -49,9 +49,10 @@ fn another_precision_is_refused() {
 
 #[test]
 fn a_text_of_another_format_is_refused_too() {
-    let text = format!("[{MAGIC}, 10, 32, {{\"world\": null}}, 0]");
+    let other = FORMAT + 1;
+    let text = format!("[{MAGIC}, {other}, 32, {{\"world\": null}}, 0]");
     let snapshot: Snapshot = serde_json::from_str(&text).expect("its header is read");
-    assert_eq!(snapshot.restore().err(), Some(SnapshotError::Format(10)));
+    assert_eq!(snapshot.restore().err(), Some(SnapshotError::Format(other)));
 }
 
 #[test]

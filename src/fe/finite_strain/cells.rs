@@ -5,14 +5,16 @@ use super::guard::Guards;
 use super::hourglass::{Hourglass, Shape};
 use super::linearization::Linearization;
 use super::point::{self, Form};
+use super::solid::Solid;
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::linalg::block_matrix::BlockMatrix;
 
-/// Cells with the same number of nodes and of quadrature points.
+/// Cells of one material with the same number of nodes and of quadrature points.
 #[derive(Clone, Debug)]
 pub(super) struct CellGroup {
     pub(super) n_nodes: usize,
     pub(super) n_points: usize,
+    pub(super) solid: Solid,
     /// Number of each cell in the mesh.
     pub(super) cells: Vec<usize>,
     /// Shape `(n_cells, n_nodes)`.
@@ -80,6 +82,40 @@ macro_rules! with_node_count {
 }
 
 impl CellGroup {
+    /// The group of so many nodes and points a cell, of cells with hourglass modes or without, and of this material; an empty one if there is
+    /// none yet.
+    pub(super) fn find<'a>(
+        groups: &'a mut Vec<Self>,
+        [n_nodes, n_points]: [usize; 2],
+        is_stiffened: bool,
+        solid: &Solid,
+    ) -> &'a mut Self {
+        let is_it = |group: &Self| {
+            group.n_nodes == n_nodes
+                && group.n_points == n_points
+                && group.hourglass.is_empty() != is_stiffened
+                && group.solid.is_same(solid)
+        };
+        let at = groups.iter().position(is_it).unwrap_or(groups.len());
+        if at == groups.len() {
+            groups.push(Self {
+                n_nodes,
+                n_points,
+                solid: solid.clone(),
+                cells: Vec::new(),
+                nodes: Vec::new(),
+                gradients: Vec::new(),
+                volumes: Vec::new(),
+                places: Vec::new(),
+                first_point: 0,
+                hourglass: Vec::new(),
+                guards: Guards::default(),
+                first_guard: 0,
+            });
+        }
+        &mut groups[at]
+    }
+
     /// The points of this group among those of the body.
     pub(super) fn points(&self) -> std::ops::Range<usize> {
         self.first_point..self.first_point + self.volumes.len()

@@ -20,6 +20,7 @@
 //! | `hourglass` | the modes that the one point of a four-node cell does not see |
 //! | `linearization` | which matrix stands for the derivative of the forces |
 //! | `model` | the assembled body |
+//! | `solid` | law and density of a region |
 //! | `stress` | Cauchy's stress |
 //!
 //! Tri3 and Tri6 take their usual fields, so does an element of the user's own. [`Quad4`](crate::fe::element::Quad4) takes its mean gradient, and its hourglass
@@ -31,11 +32,13 @@ mod hourglass;
 mod linearization;
 mod model;
 mod point;
+mod solid;
 mod stress;
 
 pub use linearization::Linearization;
 pub use model::{Deformation, FiniteStrainDescription, FiniteStrainError, FiniteStrainModel};
 pub use point::Form;
+pub use solid::Solid;
 
 #[cfg(doc)]
 use crate::fe::material::hyperelastic::Hyperelastic;

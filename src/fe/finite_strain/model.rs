@@ -2,10 +2,10 @@
 
 use super::Inadmissible;
 use super::cells::{CellGroup, Deformed};
-use super::guard::Guards;
 use super::hourglass::Hourglass;
 use super::linearization::Linearization;
 use super::point::Form;
+use super::solid::Solid;
 use crate::fe::element::quadrature::SQUARE_1;
 use crate::fe::element::{Element, ElementError, MAX_NODES, kinematics::physical_gradient};
 use crate::fe::material::hyperelastic::Hyperelastic;
@@ -55,6 +55,8 @@ pub struct FiniteStrainDescription {
     pub thickness: f64,
     /// What the stress out of the plane is told by; the law knows the plane alone.
     pub plane: Plane,
+    /// Regions of the mesh that are made of something else; a later one of the same region counts.
+    pub regions: Vec<(u32, Solid)>,
 }
 
 impl FiniteStrainDescription {
@@ -62,6 +64,7 @@ impl FiniteStrainDescription {
     pub fn new(mesh: Mesh, law: impl Hyperelastic + 'static, density: f64) -> Self {
         Self {
             plane: Plane::Strain,
+            regions: Vec::new(),
             rest_positions: mesh.nodes().iter().flatten().copied().collect(),
             mesh: Arc::new(mesh),
             elements: Vec::new(),
@@ -80,40 +83,64 @@ impl FiniteStrainDescription {
         material: &dyn Material,
         thickness: f64,
     ) -> Option<Self> {
-        let is_free = material.out_of_plane_stress([1.0, 1.0, 0.0]) == 0.0;
+        let Solid {
+            law,
+            density,
+            plane,
+        } = Solid::of_material(material)?;
         Some(Self {
-            plane: if is_free {
-                Plane::Stress
-            } else {
-                Plane::Strain
-            },
-            law: material.large_law()?,
             mesh,
             rest_positions,
             elements: elements.to_vec(),
-            density: material.density(),
+            law,
+            density,
             damping: material.rayleigh(),
             thickness,
+            plane,
+            regions: Vec::new(),
         })
     }
 
-    /// The body that a model is at rest; `None` if its material has no law for large strains.
+    /// The body that a model is at rest; `None` if one of its materials has no law for large strains.
     pub fn of_model(model: &Model) -> Option<Self> {
         let description = &model.description;
-        Self::of_material(
+        let own = Self::of_material(
             Arc::clone(&description.mesh),
             description.rest_positions.clone(),
             &description.elements,
             description.material.as_ref(),
             description.thickness,
-        )
+        )?;
+        own.with_region_materials(&description.regions)
+    }
+
+    /// The same body with these materials in some regions, damped as the others are; `None` if one of them has no law for large strains.
+    pub fn with_region_materials(mut self, regions: &[(u32, Arc<dyn Material>)]) -> Option<Self> {
+        for (region, material) in regions {
+            let solid = Solid::of_material(material.as_ref())?;
+            self.regions.push((*region, solid));
+        }
+        Some(self)
+    }
+
+    /// What the cells of a region are made of.
+    fn solid_of(&self, region: u32) -> Solid {
+        let own = self.regions.iter().rev().find(|(own, _)| *own == region);
+        own.map_or_else(|| self.solid(), |(_, solid)| solid.clone())
+    }
+
+    fn solid(&self) -> Solid {
+        Solid {
+            law: Arc::clone(&self.law),
+            density: self.density,
+            plane: self.plane,
+        }
     }
 
     fn validate(&self) -> Result<(), FiniteStrainError> {
-        self.law.validate()?;
-        if !(self.density > 0.0 && self.density.is_finite()) {
-            let value = self.density;
-            return Err(MaterialError::Density { value }.into());
+        self.solid().validate()?;
+        for (_, solid) in &self.regions {
+            solid.validate()?;
         }
         let is_damping = |value: f64| value >= 0.0 && value.is_finite();
         let Rayleigh { mass, stiffness } = self.damping;
@@ -235,9 +262,10 @@ impl FiniteStrainModel {
         let n = cell.nodes.len();
         let corners = placed_nodes(&description.rest_positions, cell);
         let (corners, thickness) = (&corners[..n], description.thickness);
+        let solid = description.solid_of(cell.region);
         let mut lumped = [0.0; MAX_NODES];
         element
-            .lumped_mass(corners, description.density, thickness, &mut lumped[..n])
+            .lumped_mass(corners, solid.density, thickness, &mut lumped[..n])
             .map_err(wrap)?;
         for (&node, mass) in cell.nodes.iter().zip(lumped) {
             self.masses[node] += mass;
@@ -248,7 +276,8 @@ impl FiniteStrainModel {
             true => &SQUARE_1,
             false => element.quadrature(),
         };
-        let group = group_of(&mut self.groups, [n, quadrature.len()], is_stiffened);
+        let sizes = [n, quadrature.len()];
+        let group = CellGroup::find(&mut self.groups, sizes, is_stiffened, &solid);
         group.cells.push(index);
         for point in quadrature {
             let mut gradient = [[0.0; 2]; MAX_NODES];
@@ -258,13 +287,13 @@ impl FiniteStrainModel {
             group.gradients.extend_from_slice(gradient);
             group.volumes.push(determinant * point.weight * thickness);
             if is_stiffened {
-                let at_rest = description.law.constants().linear(description.density);
+                let at_rest = solid.law.constants().linear(solid.density);
                 let hourglass = Hourglass::new(element, corners, gradient, &at_rest, thickness);
                 group.hourglass.push(hourglass.map_err(wrap)?);
             }
         }
         let guards = &mut group.guards;
-        guards.add(element, corners, description.law.as_ref(), thickness);
+        guards.add(element, corners, solid.law.as_ref(), thickness);
         for &row in cell.nodes {
             // The pattern was built from these cells; numbers of nodes fit into 32 bits.
             group.nodes.push(row as u32);
@@ -297,7 +326,7 @@ impl FiniteStrainModel {
         &self.description.rest_positions
     }
 
-    /// The constitutive law.
+    /// The constitutive law, but for regions that have one of their own.
     pub fn law(&self) -> &dyn Hyperelastic {
         self.description.law.as_ref()
     }
@@ -362,9 +391,9 @@ impl FiniteStrainModel {
     ) -> Result<(), Inadmissible> {
         self.assert_length(positions);
         self.assert_length(residual);
-        let law = self.law();
         for group in &self.groups {
             let pair = (&deformation.start, &mut deformation.end);
+            let law = group.solid.law.as_ref();
             group.subtract_force(law, form, positions, pair, residual)?;
         }
         Ok(())
@@ -385,9 +414,9 @@ impl FiniteStrainModel {
             matrix.has_pattern_of(&self.pattern),
             "the tangent of a body fits only its own matrices: make them with `new_matrix`"
         );
-        let law = self.law();
         for group in &self.groups {
             let pair = (&deformation.start, &deformation.end);
+            let law = group.solid.law.as_ref();
             group.add_tangent(law, (form, kind), pair, matrix);
         }
     }
@@ -398,9 +427,8 @@ impl FiniteStrainModel {
     /// If there is not one entry per dof.
     pub fn elastic_energy(&self, positions: &[f64]) -> f64 {
         self.assert_length(positions);
-        let law = self.law();
-        let energies = self.groups.iter().map(|group| group.energy(law, positions));
-        energies.sum()
+        let energy = |group: &CellGroup| group.energy(group.solid.law.as_ref(), positions);
+        self.groups.iter().map(energy).sum()
     }
 
     pub(super) fn assert_length(&self, dofs: &[f64]) {
@@ -411,33 +439,4 @@ impl FiniteStrainModel {
             self.n_dofs()
         );
     }
-}
-
-fn group_of(
-    groups: &mut Vec<CellGroup>,
-    [n_nodes, n_points]: [usize; 2],
-    is_stiffened: bool,
-) -> &mut CellGroup {
-    let is_it = |group: &CellGroup| {
-        group.n_nodes == n_nodes
-            && group.n_points == n_points
-            && group.hourglass.is_empty() != is_stiffened
-    };
-    let at = groups.iter().position(is_it).unwrap_or(groups.len());
-    if at == groups.len() {
-        groups.push(CellGroup {
-            n_nodes,
-            n_points,
-            cells: Vec::new(),
-            nodes: Vec::new(),
-            gradients: Vec::new(),
-            volumes: Vec::new(),
-            places: Vec::new(),
-            first_point: 0,
-            hourglass: Vec::new(),
-            guards: Guards::default(),
-            first_guard: 0,
-        });
-    }
-    &mut groups[at]
 }

@@ -2,6 +2,7 @@
 
 use super::hourglass::{PATTERN, Shape};
 use super::model::FiniteStrainModel;
+use super::solid::Solid;
 use crate::fe::material::Plane;
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::fe::model::{element_of, placed_nodes};
@@ -16,14 +17,15 @@ impl FiniteStrainModel {
     /// If there is not one entry per dof, or no such cell.
     pub fn cell_stress(&self, cell: usize, positions: &[f64]) -> Vec<Stress> {
         self.assert_length(positions);
-        let law = self.law();
         for group in &self.groups {
             if let Ok(place) = group.cells.binary_search(&cell) {
+                let solid = &group.solid;
+                let law = solid.law.as_ref();
                 let gradients = match group.hourglass.is_empty() {
                     true => group.gradients_of(place, positions),
-                    false => self.bent(cell, &group.shape(place, positions)),
+                    false => self.bent(cell, solid, &group.shape(place, positions)),
                 };
-                let lateral = match self.description.plane {
+                let lateral = match solid.plane {
                     Plane::Stress => 0.0,
                     Plane::Strain => law.constants().poisson(),
                 };
@@ -36,7 +38,7 @@ impl FiniteStrainModel {
 
     /// `F` at the quadrature points of a cell with hourglass modes: the mean one, after the strains that the element with inner modes has
     /// when it is bent by as much.
-    fn bent(&self, cell: usize, shape: &Shape) -> Vec<[f64; 4]> {
+    fn bent(&self, cell: usize, solid: &Solid, shape: &Shape) -> Vec<[f64; 4]> {
         let description = &self.description;
         let [xx, xy, yx, yy] = shape.gradient;
         let cells = description.mesh.cells().nth(cell);
@@ -50,7 +52,7 @@ impl FiniteStrainModel {
                 .iter()
                 .flat_map(|sign| own.map(|amplitude| sign * amplitude))
                 .collect();
-            let at_rest = description.law.constants().linear(description.density);
+            let at_rest = solid.law.constants().linear(solid.density);
             let mut strains = vec![[0.0; 3]; element.quadrature().len()];
             let corners = &corners[..cell.nodes.len()];
             let outcome = element.point_strains(corners, &at_rest, &bent, &mut strains);

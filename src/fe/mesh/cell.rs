@@ -85,6 +85,8 @@ pub struct Cell<'a> {
     pub kind: CellKind,
     /// Indices of its nodes in the mesh, in the order of [`CellKind`].
     pub nodes: &'a [usize],
+    /// What it is made of: its region, 0 unless [said](super::Mesh::with_regions) otherwise.
+    pub region: u32,
 }
 
 impl<'a> Cell<'a> {

@@ -296,4 +296,26 @@ pub enum MeshError {
         /// What the triangulator said.
         reason: String,
     },
+    /// There is not one region per cell.
+    #[error("{found} regions were given for {expected} cells: give one per cell")]
+    RegionCount {
+        /// Numbers given.
+        found: usize,
+        /// Cells of the mesh.
+        expected: usize,
+    },
+    /// A region without cells was named.
+    #[error("no cell is in region {region}: put some into it by `with_regions` first")]
+    NoRegion {
+        /// The region.
+        region: u32,
+    },
+    /// Two regions were given one name.
+    #[error("regions {} and {} are both named `{name}`: give each its own name", .regions[0], .regions[1])]
+    RegionName {
+        /// The name.
+        name: String,
+        /// The region that has it, and the one that was to get it.
+        regions: [u32; 2],
+    },
 }

@@ -13,6 +13,7 @@ pub mod generate;
 mod geometry;
 mod quadratic;
 mod quality;
+mod regions;
 mod validate;
 
 use crate::math::hypot;
@@ -38,6 +39,8 @@ pub struct Mesh {
     nodes: Vec<[f64; 2]>,
     cells: Cells,
     boundary: Boundary,
+    /// Of regions that have some, ascending.
+    region_names: Vec<(u32, String)>,
 }
 
 /// Flat connectivity: cell `c` has the nodes `connectivity[offsets[c]..offsets[c + 1]]`.
@@ -46,6 +49,8 @@ struct Cells {
     kinds: Vec<CellKind>,
     offsets: Vec<usize>,
     connectivity: Vec<usize>,
+    /// The region of each, or nothing where all are in region 0.
+    regions: Vec<u32>,
 }
 
 impl Cells {
@@ -54,6 +59,7 @@ impl Cells {
             kinds: Vec::new(),
             offsets: vec![0],
             connectivity: Vec::new(),
+            regions: Vec::new(),
         };
         for (cell, (kind, nodes)) in cells.enumerate() {
             if nodes.len() != kind.n_nodes() {
@@ -79,10 +85,11 @@ impl Cells {
         Cell {
             kind: self.kinds[cell],
             nodes: &self.connectivity[self.offsets[cell]..self.offsets[cell + 1]],
+            region: self.regions.get(cell).copied().unwrap_or(0),
         }
     }
 
-    fn iter(&self) -> impl ExactSizeIterator<Item = Cell<'_>> {
+    fn iter(&self) -> impl ExactSizeIterator<Item = Cell<'_>> + Clone {
         (0..self.len()).map(|cell| self.get(cell))
     }
 }
@@ -132,6 +139,7 @@ impl Mesh {
             nodes,
             cells,
             boundary,
+            region_names: Vec::new(),
         })
     }
 
@@ -159,7 +167,7 @@ impl Mesh {
     }
 
     /// All cells in order.
-    pub fn cells(&self) -> impl ExactSizeIterator<Item = Cell<'_>> {
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = Cell<'_>> + Clone {
         self.cells.iter()
     }
 
@@ -171,7 +179,7 @@ impl Mesh {
     /// All edges of cells, each once; one with a midside node in two pieces.
     pub fn edges(&self) -> Vec<[usize; 2]> {
         let mut pieces: Vec<[usize; 2]> = Vec::new();
-        for cell in (0..self.n_cells()).map(|cell| self.cell(cell)) {
+        for cell in self.cells() {
             for edge in cell.kind.edges() {
                 let [from, to] = [edge.from, edge.to].map(|corner| cell.nodes[corner]);
                 match edge.midside.map(|midside| cell.nodes[midside]) {

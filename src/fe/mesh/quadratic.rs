@@ -6,7 +6,7 @@ use super::{CellKind, Cells, Mesh, MeshError};
 impl Mesh {
     /// Gives every edge of a mesh of [`CellKind::Tri3`] a midside node in its middle.
     ///
-    /// Old nodes and cells keep their numbers; the new nodes follow in the order in which the sides
+    /// Old nodes and cells keep their numbers, and cells their regions; the new nodes follow in the order in which the sides
     /// 0-1, 1-2, 2-0 of the cells first name their edge.
     ///
     /// # Errors
@@ -48,6 +48,9 @@ impl Mesh {
             nodes.push(midside(a, b));
         }
         let cells = cells.iter().map(|cell| (CellKind::Tri6, cell.as_slice()));
-        Self::from_parts(nodes, Cells::new(cells)?)
+        let mut mesh = Self::from_parts(nodes, Cells::new(cells)?)?;
+        mesh.cells.regions.clone_from(&self.cells.regions);
+        mesh.region_names.clone_from(&self.region_names);
+        Ok(mesh)
     }
 }
