@@ -216,6 +216,18 @@ fn crossing(one: ColliderHandle, other: ColliderHandle, sets: ReadSets<'_>) -> f
         return 0.0;
     }
     let poses = [one, other].map(|collider| pose_of(collider, sets));
+    if let (Some(surface), Some(half_space)) =
+        (one.shape().as_polyline(), other.shape().as_halfspace())
+    {
+        // Parry 0.31 takes a half-space beside a polyline for its image in the origin.
+        let normal = poses[1].rotation * half_space.normal;
+        let at = |vertex: &Vector| poses[0] * *vertex - poses[1].translation;
+        let heights = surface
+            .vertices()
+            .iter()
+            .map(|vertex| at(vertex).dot(normal));
+        return heights.fold(0.0, |deepest, height| deepest.max(f64::from(-height)));
+    }
     let found = query::contact(&poses[0], one.shape(), &poses[1], other.shape(), 0.0);
     let contact = found.ok().flatten();
     contact.map_or(0.0, |contact| f64::from(-contact.dist).max(0.0))

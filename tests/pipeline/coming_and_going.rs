@@ -187,6 +187,41 @@ fn overlaps_and_pins_that_choose_nothing_are_told_in_the_first_step() -> Outcome
     Ok(())
 }
 
+/// A half-space is where its body puts it, below the body or not: parry tells another depth of its own.
+#[test]
+fn a_half_space_anywhere_is_overlapped_by_what_is_in_it() -> Outcome {
+    for (turn, at) in [(0.0, [0.0, -0.7]), (0.0, [3.0, 5.0]), (0.6, [-2.0, 1.0])] {
+        for depth in [-0.3, -0.001, 0.05, 0.2] {
+            let mut scene = Scene::without_gravity();
+            let (sin, cos) = f64::sin_cos(turn);
+            let body = RigidBodyBuilder::fixed()
+                .translation(vec2(at[0], at[1]))
+                .rotation(turn as Real);
+            let plane = ColliderBuilder::new(SharedShape::halfspace(vec2(0.0, 1.0)));
+            scene.world.insert(body, plane);
+            // The lower left corner goes below the plane, two metres along it.
+            let corner = [2.0, -depth];
+            let [x, y] = [
+                cos * corner[0] - sin * corner[1],
+                sin * corner[0] + cos * corner[1],
+            ];
+            let block = square().rotation(turn).translation([at[0] + x, at[1] + y]);
+            scene.insert(block)?;
+            let report = scene.step()?;
+            let is_told = !report.insertion_notes().is_empty();
+            assert_eq!(
+                is_told,
+                depth > 0.0,
+                "turned {turn}, at {at:?}, {depth} m deep"
+            );
+            let told = report.gap_violation();
+            assert!(told <= depth.max(0.0) + 1e-6, "{told} m of {depth} m");
+            assert!(depth < 0.0 || told > 0.5 * depth, "{told} m of {depth} m");
+        }
+    }
+    Ok(())
+}
+
 /// Rapier stops a body that is disabled, and nothing meets it: so it is for a flexible one by its carrier, and it goes on as it was when it is enabled.
 #[test]
 fn a_body_whose_carrier_is_disabled_stops_and_goes_on_when_it_is_enabled() -> Outcome {
