@@ -100,6 +100,8 @@ fn stand(ratio: f64, options: &Options) -> Result<Outcome, Box<dyn Error>> {
     let n_steps = options.n_steps(N_STEPS);
     let n_measured = N_MEASURED.min(n_steps);
     let (mut force, mut squared_speed, mut max_penetration_m) = (0.0, 0.0, 0.0f64);
+    let title = format!("A box {ratio} times heavier than its beam");
+    let mut recorder = options.recorder_of(&ratio.to_string(), &title);
     for step in 0..n_steps {
         let report = pipeline.step(&mut world, &mut flex_bodies)?;
         max_penetration_m = max_penetration_m.max(report.gap_violation());
@@ -107,7 +109,9 @@ fn stand(ratio: f64, options: &Options) -> Result<Outcome, Box<dyn Error>> {
             force += report.force_on(Participant::Rigid(box_collider))[1];
             squared_speed += f64::from(world.bodies[box_body].linvel().length_squared());
         }
+        recorder.record((step + 1) as f64 * DT, &world, &flex_bodies, &pipeline)?;
     }
+    recorder.write()?;
     let beam = &flex_bodies[beam_handle];
     let middle = node(DIVISIONS[0] / 2, DIVISIONS[1] / 2);
     let sag_m = -beam.displacement(middle)[1];

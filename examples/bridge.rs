@@ -321,6 +321,7 @@ fn print_summary(run: &Run) {
 #[allow(dead_code, reason = "tests call `run` instead")]
 fn main() -> Result<(), Failure> {
     let arguments = Arguments::parse();
+    arguments.options.refuse_replay()?;
     let setup = full()?;
     let n_steps = arguments
         .options

@@ -230,6 +230,7 @@ impl Scene {
 #[allow(dead_code, reason = "tests call `run`")]
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
+    options.refuse_replay()?;
     let outcome = run(&options)?;
     println!("cantilever 1 x 0.1 m, 20 x 2 cells, against the converged plane solution");
     println!("                     static tip    first frequency");

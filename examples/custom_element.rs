@@ -139,6 +139,7 @@ fn tip(element: impl Element + 'static, options: &Options) -> Result<f64, Box<dy
 #[allow(dead_code, reason = "tests call `run`")]
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
+    options.refuse_replay()?;
     let outcome = run(&options)?;
     println!("BilinearQuad passes the conformance suite");
     println!(

@@ -152,6 +152,7 @@ pub fn impact(
 #[allow(dead_code, reason = "tests call `run`")]
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
+    options.refuse_replay()?;
     let outcomes = run(&options)?;
     println!("                   dt     overlap  energy: gain     loss   rebound  contact time");
     for outcome in &outcomes {

@@ -79,6 +79,7 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
     let spring = flex_bodies.attach(spring, &world.bodies)?;
     let mut outcome = Outcome::default();
     let n_steps = options.n_steps(LIFT + HOLD + CARRY + FALL);
+    let mut recorder = options.recorder("A block is grabbed, carried and dropped");
     for step in 0..n_steps {
         if step < LIFT + HOLD + CARRY {
             let offset = cursor_at(step + 1);
@@ -89,6 +90,7 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
             flex_bodies.detach(spring)?;
         }
         flex.step(&mut world, &mut flex_bodies)?;
+        recorder.record((step + 1) as f64 * DT, &world, &flex_bodies, &flex)?;
         if step + 1 == LIFT + HOLD {
             let [x, y] = flex_bodies.attachment(spring)?.force();
             outcome.force_over_weight = x.hypot(y) / weight;
@@ -96,6 +98,7 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
             outcome.stretch_ratio = below * STIFFNESS / weight;
         }
     }
+    recorder.write()?;
     let block = &flex_bodies[block];
     outcome.floor_over_weight = block.total_contact_force()[1] / weight;
     outcome.rest_height_m = block.centre_of_mass()[1];

@@ -73,12 +73,15 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
     }
     let mut flex = FlexPipeline::new();
     doctor::require_sound(&world, &flex_bodies, &flex)?;
+    let mut recorder = options.recorder("Two flexible fingers lift a part");
     for step in 0..options.n_steps(CLOSE + LIFT + HOLD) {
         let rises = (CLOSE..CLOSE + LIFT).contains(&step);
         let speed = if rises { SPEED } else { 0.0 };
         world.bodies[hand].set_linvel(at(0.0, speed), true);
         flex.step(&mut world, &mut flex_bodies)?;
+        recorder.record((step + 1) as f64 * DT, &world, &flex_bodies, &flex)?;
     }
+    recorder.write()?;
     let mut outcome = Outcome::default();
     let mut lift = 0.0;
     for contact in flex.report().contacts() {

@@ -184,6 +184,7 @@ pub fn run(options: &Options, mut film: Option<&mut Film>) -> Result<Outcome, Bo
     let mut most = begin;
     let (mut turned, mut last) = (0.0f64, None::<f64>);
     let every = (outcome.steps / 8).max(1);
+    let mut recorder = options.recorder("A rope swings around a peg");
     for step in 0..outcome.steps {
         let report = scene
             .pipeline
@@ -195,6 +196,8 @@ pub fn run(options: &Options, mut film: Option<&mut Film>) -> Result<Outcome, Bo
         if touches {
             outcome.peg_force_n = outcome.peg_force_n.max(force[0].hypot(force[1]));
         }
+        let time = (step + 1) as f64 * DT;
+        recorder.record(time, &scene.world, &scene.flex_bodies, &scene.pipeline)?;
         most = most.max(scene.energy());
         outcome.longest = outcome.longest.max(scene.length() / LENGTH);
         let [x, y] = scene.ball_at();
@@ -213,6 +216,7 @@ pub fn run(options: &Options, mut film: Option<&mut Film>) -> Result<Outcome, Bo
             scene.draw(film, (step + 1) as f64 * DT)?;
         }
     }
+    recorder.write()?;
     outcome.energy_gained = (most - begin) / brought;
     Ok(outcome)
 }

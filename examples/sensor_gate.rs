@@ -93,10 +93,12 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
     let surface = flex_bodies[block].collider_handle();
     let start = flex_bodies[block].centre_of_mass()[1];
     let n_steps = options.n_steps((END / DT).round() as usize);
+    let mut recorder = options.recorder("Light gates");
     for step in 0..n_steps {
         pipeline.step_with_events(&mut world, &mut flex_bodies, &(), &events)?;
         // Rapier looks at the beginning of a step.
         let time = step as f64 * DT;
+        recorder.record(time + DT, &world, &flex_bodies, &pipeline)?;
         for event in collisions.try_iter() {
             let pair = [event.collider1(), event.collider2()];
             if pair.contains(&sheet) {
@@ -111,6 +113,7 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
             }
         }
     }
+    recorder.write()?;
     outcome.n_forces = forces.try_iter().count();
     let time = n_steps as f64 * DT;
     let fallen = start - flex_bodies[block].centre_of_mass()[1];

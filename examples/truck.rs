@@ -83,6 +83,7 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
     let mut flex = FlexPipeline::new();
     doctor::require_sound(&world, &flex_bodies, &flex)?;
     let mut outcome = Outcome::default();
+    let mut recorder = options.recorder("A truck on a flexible deck");
     for step in 0..options.n_steps(STAND + DRIVE) {
         if step == STAND {
             outcome.compression_ratios = wheels.map(|(wheel, _)| {
@@ -98,9 +99,11 @@ pub fn run(options: &Options) -> Result<Outcome, Box<dyn Error>> {
             }
         }
         flex.step(&mut world, &mut flex_bodies)?;
+        recorder.record((step + 1) as f64 * DT, &world, &flex_bodies, &flex)?;
         let sag = -flex_bodies[deck].displacement(middle)[1];
         outcome.deepest_sag_m = outcome.deepest_sag_m.max(sag);
     }
+    recorder.write()?;
     let body = &world.bodies[chassis];
     outcome.speed_ratio = f64::from(body.linvel().x) / SPEED;
     outcome.reached_m = f64::from(body.translation().x);

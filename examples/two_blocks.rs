@@ -248,6 +248,7 @@ fn collision(options: &Options) -> Result<Collision, Box<dyn Error>> {
 #[allow(dead_code, reason = "tests call `run`")]
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
+    options.refuse_replay()?;
     let outcome = run(&options)?;
     let Outcome { stack, collision } = &outcome;
     println!("two blocks, non-matching meshes");

@@ -73,6 +73,7 @@ impl Arguments {
 #[allow(dead_code, reason = "tests run the book themselves")]
 fn main() -> Result<ExitCode, Box<dyn Error>> {
     let arguments = Arguments::parse();
+    arguments.common.refuse_replay()?;
     let cases = arguments.cases()?;
     if arguments.list {
         for case in &cases {

@@ -214,15 +214,51 @@ fn light_gates_measure_gravity_and_push_nothing() -> Outcome {
 #[test]
 fn every_example_runs_shortened() -> Outcome {
     let steps = Some(3);
-    cantilever::run(&cantilever::cli::Options { json: true, steps })?;
-    falling_block::run(&falling_block::cli::Options { json: true, steps })?;
-    box_on_beam::run(&box_on_beam::cli::Options { json: true, steps })?;
-    two_blocks::run(&two_blocks::cli::Options { json: true, steps })?;
-    custom_element::run(&custom_element::cli::Options { json: true, steps })?;
-    grab::run(&grab::cli::Options { json: true, steps })?;
-    gripper::run(&gripper::cli::Options { json: true, steps })?;
-    truck::run(&truck::cli::Options { json: true, steps })?;
-    sensor_gate::run(&sensor_gate::cli::Options { json: true, steps })?;
+    cantilever::run(&cantilever::cli::Options {
+        json: true,
+        steps,
+        ..Default::default()
+    })?;
+    falling_block::run(&falling_block::cli::Options {
+        json: true,
+        steps,
+        ..Default::default()
+    })?;
+    box_on_beam::run(&box_on_beam::cli::Options {
+        json: true,
+        steps,
+        ..Default::default()
+    })?;
+    two_blocks::run(&two_blocks::cli::Options {
+        json: true,
+        steps,
+        ..Default::default()
+    })?;
+    custom_element::run(&custom_element::cli::Options {
+        json: true,
+        steps,
+        ..Default::default()
+    })?;
+    grab::run(&grab::cli::Options {
+        json: true,
+        steps,
+        ..Default::default()
+    })?;
+    gripper::run(&gripper::cli::Options {
+        json: true,
+        steps,
+        ..Default::default()
+    })?;
+    truck::run(&truck::cli::Options {
+        json: true,
+        steps,
+        ..Default::default()
+    })?;
+    sensor_gate::run(&sensor_gate::cli::Options {
+        json: true,
+        steps,
+        ..Default::default()
+    })?;
     Ok(())
 }
 

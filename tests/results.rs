@@ -2,5 +2,7 @@
 
 #[path = "results/grid.rs"]
 mod grid;
+#[path = "results/replay.rs"]
+mod replay;
 #[path = "results/vtu.rs"]
 mod vtu;

@@ -2,12 +2,14 @@
 //!
 //! - [`MshMesh`] reads meshes of gmsh, with their physical groups.
 //! - [`VtuSeries`] and [`write_vtu`] write results for ParaView, [`History`] tables of chosen numbers.
+//! - [`Replay`] writes a page that plays a run in a browser.
 
 mod base64;
 mod history;
 mod msh;
-mod outline;
 mod output;
+mod replay;
+mod rigid_lines;
 mod scene;
 mod stress;
 mod vtu;
@@ -15,5 +17,6 @@ mod vtu;
 pub use history::{History, HistoryError};
 pub use msh::{MshError, MshMesh, MshPlace, NamedCells, NamedNodes};
 pub use output::OutputError;
+pub use replay::Replay;
 pub use scene::Scene;
 pub use vtu::{VtuEncoding, VtuSeries, write_vtu};

@@ -1,8 +1,8 @@
 //! What is written of a step: the bodies, and what the step told.
 
-use super::outline::{RigidLine, lines_of};
+use super::rigid_lines::{RigidLine, lines_of};
 use crate::body::FlexBodySet;
-use crate::math::{Vec2, from_rapier};
+use crate::math::{Vec2, atan2, from_rapier};
 use crate::pipeline::{Participant, StepReport};
 use crate::rapier::prelude::{ColliderHandle, ColliderSet, PhysicsWorld, RigidBodySet};
 
@@ -92,6 +92,12 @@ pub(super) struct RigidShape {
 }
 
 impl RigidShape {
+    /// Angle of the collider (rad).
+    pub(super) fn angle(&self) -> f64 {
+        let [cos, sin] = self.rotation;
+        atan2(sin, cos)
+    }
+
     /// A point of the collider in the world (m).
     pub(super) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.rotation;
