@@ -1,12 +1,14 @@
 //! Into the library and out of it: meshes of other programs, results for them.
 //!
 //! - [`MshMesh`] reads meshes of gmsh, with their physical groups.
+//! - [`Outline`]s are read of GeoJSON (feature `json`) and of SVG (feature `svg`), to be meshed.
 //! - [`VtuSeries`] and [`write_vtu`] write results for ParaView, [`History`] tables of chosen numbers.
 //! - [`Replay`] writes a page that plays a run in a browser.
 
 mod base64;
 mod history;
 mod msh;
+mod outline;
 mod output;
 mod replay;
 mod rigid_lines;
@@ -16,6 +18,11 @@ mod vtu;
 
 pub use history::{History, HistoryError};
 pub use msh::{MshError, MshMesh, MshPlace, NamedCells, NamedNodes};
+#[cfg(feature = "json")]
+pub use outline::outlines_from_json;
+pub use outline::{Outline, OutlineError};
+#[cfg(feature = "svg")]
+pub use outline::{SvgOptions, outlines_from_svg};
 pub use output::OutputError;
 pub use replay::Replay;
 pub use scene::Scene;

@@ -1,0 +1,106 @@
+//! From the closed curves of a path to outlines with holes, by the rule that fills it.
+//!
+//! A ring bounds what is filled if one of its sides is filled and the other is not. The winding number just outside is the sum of the directions of
+//! all rings around it; just inside its own direction is added.
+
+use super::Outline;
+
+/// What is filled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FillRule {
+    /// What any rings go around in sum.
+    NonZero,
+    /// What an odd number of rings goes around.
+    EvenOdd,
+}
+
+impl FillRule {
+    fn fills(self, winding: i64, depth: usize) -> bool {
+        match self {
+            Self::NonZero => winding != 0,
+            Self::EvenOdd => depth % 2 == 1,
+        }
+    }
+}
+
+/// The outlines of rings that neither cross nor touch; if they do, meshing them says so.
+pub(super) fn outlines_of(
+    rings: Vec<Vec<[f64; 2]>>,
+    rule: FillRule,
+    name: Option<&str>,
+) -> Vec<Outline> {
+    let rings: Vec<_> = rings
+        .into_iter()
+        .filter(|ring| ring.len() > 2 && area(ring) != 0.0)
+        .collect();
+    let boxes: Vec<_> = rings.iter().map(|ring| bounds(ring)).collect();
+    let around: Vec<Vec<usize>> = (0..rings.len())
+        .map(|inner| {
+            let at = rings[inner][0];
+            let goes_around = |outer: &usize| {
+                let [low, high] = boxes[*outer];
+                let is_near = (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
+                *outer != inner && is_near && contains(&rings[*outer], at)
+            };
+            (0..rings.len()).filter(goes_around).collect()
+        })
+        .collect();
+    let direction = |ring: usize| area(&rings[ring]).signum() as i64;
+    // Whether it is filled outside and inside of each ring.
+    let fills: Vec<[bool; 2]> = (0..rings.len())
+        .map(|ring| {
+            let depth = around[ring].len();
+            let winding: i64 = around[ring].iter().map(|&outer| direction(outer)).sum();
+            let inside = winding + direction(ring);
+            [rule.fills(winding, depth), rule.fills(inside, depth + 1)]
+        })
+        .collect();
+    let mut outlines: Vec<Outline> = Vec::new();
+    let mut outline_of = vec![usize::MAX; rings.len()];
+    for ring in (0..rings.len()).filter(|&ring| fills[ring] == [false, true]) {
+        outline_of[ring] = outlines.len();
+        outlines.push(Outline {
+            name: name.map(str::to_owned),
+            outer: rings[ring].clone(),
+            holes: Vec::new(),
+        });
+    }
+    for ring in (0..rings.len()).filter(|&ring| fills[ring] == [true, false]) {
+        // The deepest outline around the hole is the one it is in.
+        let outer = around[ring]
+            .iter()
+            .filter(|&&outer| outline_of[outer] != usize::MAX);
+        if let Some(&outer) = outer.max_by_key(|&&outer| around[outer].len()) {
+            outlines[outline_of[outer]].holes.push(rings[ring].clone());
+        }
+    }
+    outlines
+}
+
+fn bounds(ring: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    ring.iter().fold([ring[0]; 2], |[low, high], &[x, y]| {
+        [
+            [low[0].min(x), low[1].min(y)],
+            [high[0].max(x), high[1].max(y)],
+        ]
+    })
+}
+
+fn area(ring: &[[f64; 2]]) -> f64 {
+    let n = ring.len();
+    let [x0, y0] = ring[0];
+    let cross = |i: usize| {
+        let ([ax, ay], [bx, by]) = (ring[i], ring[(i + 1) % n]);
+        (ax - x0) * (by - y0) - (bx - x0) * (ay - y0)
+    };
+    0.5 * (0..n).map(cross).sum::<f64>()
+}
+
+fn contains(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let n = ring.len();
+    let crossings = (0..n).filter(|&i| {
+        let ([ax, ay], [bx, by]) = (ring[i], ring[(i + 1) % n]);
+        (ay > y) != (by > y) && ax + (y - ay) / (by - ay) * (bx - ax) > x
+    });
+    crossings.count() % 2 == 1
+}
