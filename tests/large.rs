@@ -12,5 +12,7 @@ mod paths;
 mod robustness;
 #[path = "large/statics.rs"]
 mod statics;
+#[path = "large/stress.rs"]
+mod stress;
 #[path = "large/support.rs"]
 mod support;

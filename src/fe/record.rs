@@ -8,7 +8,8 @@ pub use super::model_record::ModelRecordError;
 
 use super::element::{Element, Quad4, Tri3, Tri6};
 use super::material::hyperelastic::{
-    Corotated, Hyperelastic, HyperelasticSolid, NeoHookean, StVenantKirchhoff, StableNeoHookean,
+    Corotated, Gent, Hyperelastic, HyperelasticSolid, MooneyRivlin, MooneyRivlinSheet, NeoHookean,
+    NeoHookeanSheet, StVenantKirchhoff, StableNeoHookean,
 };
 use super::material::{LinearElastic, Material, Rayleigh};
 use std::sync::Arc;
@@ -61,6 +62,14 @@ pub enum LawRecord {
     StVenantKirchhoff(StVenantKirchhoff),
     /// [`StableNeoHookean`].
     StableNeoHookean(StableNeoHookean),
+    /// [`NeoHookeanSheet`].
+    NeoHookeanSheet(NeoHookeanSheet),
+    /// [`MooneyRivlin`].
+    MooneyRivlin(MooneyRivlin),
+    /// [`MooneyRivlinSheet`].
+    MooneyRivlinSheet(MooneyRivlinSheet),
+    /// [`Gent`].
+    Gent(Gent),
 }
 
 impl LawRecord {
@@ -72,6 +81,10 @@ impl LawRecord {
             Self::NeoHookean(law) => Arc::new(*law),
             Self::StVenantKirchhoff(law) => Arc::new(*law),
             Self::StableNeoHookean(law) => Arc::new(*law),
+            Self::NeoHookeanSheet(law) => Arc::new(*law),
+            Self::MooneyRivlin(law) => Arc::new(*law),
+            Self::MooneyRivlinSheet(law) => Arc::new(*law),
+            Self::Gent(law) => Arc::new(*law),
         })
     }
 }

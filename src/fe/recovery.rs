@@ -5,7 +5,7 @@
 
 use super::element::{Element, ElementError, MAX_NODES, MAX_POINTS};
 use super::material::Material;
-use crate::math::{atan2, hypot};
+use crate::math::{atan2, hypot, sin_cos};
 
 /// The stress at a point (Pa).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -46,6 +46,19 @@ impl Stress {
         (mean + radius, mean - radius, 0.5 * atan2(self.xy, half))
     }
 
+    /// The same stress where its axes have turned by an angle (rad).
+    pub fn turned(&self, angle: f64) -> Self {
+        let (sin, cos) = sin_cos(angle);
+        let shear = 2.0 * sin * cos * self.xy;
+        let (cos_2, sin_2) = (cos * cos, sin * sin);
+        Self {
+            xx: cos_2 * self.xx + sin_2 * self.yy - shear,
+            yy: sin_2 * self.xx + cos_2 * self.yy + shear,
+            xy: sin * cos * (self.xx - self.yy) + (cos_2 - sin_2) * self.xy,
+            zz: self.zz,
+        }
+    }
+
     fn components(&self) -> [f64; 4] {
         [self.xx, self.yy, self.xy, self.zz]
     }
@@ -56,6 +69,77 @@ impl Stress {
         self.xy += factor * xy;
         self.zz += factor * zz;
     }
+}
+
+/// How far a point is stretched along the axes: the left stretch tensor `V` of `F = V R`, in the world's axes, and the thickness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// `V_xx` (-), one at rest.
+    pub xx: f64,
+    /// `V_yy` (-).
+    pub yy: f64,
+    /// `V_xy` (-).
+    pub xy: f64,
+    /// Stretch of the thickness (-): one in plane strain.
+    pub thickness: f64,
+}
+
+impl Stretch {
+    /// That of a gradient of deformation `[F_xx, F_xy, F_yx, F_yy]` (-), with a stretch of the thickness (-).
+    ///
+    /// With `b = F Fᵀ` it is `V = (b + |J| I)/√(tr b + 2 |J|)`; of a point that is turned inside out that of its mirror image.
+    pub fn of_gradient([xx, xy, yx, yy]: [f64; 4], thickness: f64) -> Self {
+        let area = (xx * yy - xy * yx).abs();
+        let (b_xx, b_yy) = (xx * xx + xy * xy, yx * yx + yy * yy);
+        let scale = (b_xx + b_yy + 2.0 * area).sqrt().max(f64::MIN_POSITIVE);
+        Self {
+            xx: (b_xx + area) / scale,
+            yy: (b_yy + area) / scale,
+            xy: (xx * yx + xy * yy) / scale,
+            thickness,
+        }
+    }
+
+    /// The principal stretches in the plane `(l1, l2, angle)`: l1 >= l2 (-), and the angle (rad) from x to l1, in (-pi/2, pi/2].
+    pub fn principal(&self) -> (f64, f64, f64) {
+        self.as_stress().principal()
+    }
+
+    /// Volume over that at rest (-).
+    pub fn volume(&self) -> f64 {
+        (self.xx * self.yy - self.xy * self.xy) * self.thickness
+    }
+
+    /// The same components, as smoothing takes them.
+    pub(crate) fn as_stress(&self) -> Stress {
+        Stress {
+            xx: self.xx,
+            yy: self.yy,
+            xy: self.xy,
+            zz: self.thickness,
+        }
+    }
+
+    pub(crate) fn from_stress(Stress { xx, yy, xy, zz }: Stress) -> Self {
+        Self {
+            xx,
+            yy,
+            xy,
+            thickness: zz,
+        }
+    }
+}
+
+/// What a quadrature point of a body bears.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointState {
+    /// The gradient of deformation `[F_xx, F_xy, F_yx, F_yy]` (-); the first index is of the world as it is, the second of the undeformed
+    /// body where it was built.
+    pub gradient: [f64; 4],
+    /// How far it is stretched.
+    pub stretch: Stretch,
+    /// Cauchy's stress (Pa), in the world's axes.
+    pub stress: Stress,
 }
 
 /// Writes the stresses (Pa) at the element's stiffness quadrature points, shape `(n_points)`.

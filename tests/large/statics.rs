@@ -335,7 +335,7 @@ fn a_neo_hookean_block_has_the_digits_of_homogeneous_strain() {
 }
 
 /// The nominal stress of a unit block of this stretch along x, and its stretch along y.
-fn pull(model: FiniteStrainModel, stretch: f64) -> (f64, f64) {
+pub fn pull(model: FiniteStrainModel, stretch: f64) -> (f64, f64) {
     let left = nodes_where(&model, |[x, _]| x == 0.0);
     let right = nodes_where(&model, |[x, _]| x == 1.0);
     let lower = nodes_where(&model, |[_, y]| y == 0.0);

@@ -2,8 +2,12 @@
 
 use super::support::*;
 use foil2d::fe::element::{Element, QuadraturePoint, Tri3};
+use foil2d::fe::material::hyperelastic::{
+    Gent, Hyperelastic, MooneyRivlin, MooneyRivlinSheet, NeoHookeanSheet,
+};
 use foil2d::fe::record::{ElementRecord, KnownLaws, MaterialRecord, ModelRecordError};
 use foil2d::pipeline::{Snapshot, SnapshotError};
+use std::sync::Arc;
 
 /// Hooke's law under another name, or none.
 #[derive(Debug)]
@@ -209,5 +213,32 @@ fn regions_with_their_names_and_materials_resume_bit_for_bit() {
         assert_eq!(restored.mesh(), straight.flex_bodies[handle].mesh());
         assert_eq!(restored.mesh().region_named("heavy"), Some(2));
         compare(&mut straight, &mut resumed, 60);
+    }
+}
+
+#[test]
+fn laws_of_rubber_and_sheets_are_saved_with_their_parameters() {
+    let solid = |law: Arc<dyn Hyperelastic>| HyperelasticSolid::of(law).with_density(1000.0);
+    let laws: [Arc<dyn Hyperelastic>; 4] = [
+        Arc::new(NeoHookeanSheet::plane_stress(1e5, 0.5)),
+        Arc::new(MooneyRivlin::plane_strain(2e4, 3e3, 0.45)),
+        Arc::new(MooneyRivlinSheet::plane_stress(2e4, 3e3)),
+        Arc::new(Gent::plane_strain(1e5, 0.45, 30.0)),
+    ];
+    for law in laws {
+        let mut straight = Run::new();
+        let body = FlexBodyBuilder::rectangle_of([0.5, 0.5], [2, 2], CellKind::Tri6)
+            .material(solid(Arc::clone(&law)))
+            .translation([0.0, 0.01]);
+        straight.flexible(body);
+        (0..10).for_each(|_| straight.step(&Recorder::default()));
+        let mut resumed = straight.resumed();
+        compare(&mut straight, &mut resumed, 30);
+        let energy = straight
+            .flex_bodies
+            .iter()
+            .next()
+            .map(|(_, body)| body.energy().elastic);
+        assert!(energy.is_some_and(|energy| energy > 0.0), "{}", law.name());
     }
 }

@@ -21,7 +21,7 @@
 //! | `linearization` | which matrix stands for the derivative of the forces |
 //! | `model` | the assembled body |
 //! | `solid` | law and density of a region |
-//! | `stress` | Cauchy's stress |
+//! | `stress` | Cauchy's stress and stretches |
 //!
 //! Tri3 and Tri6 take their usual fields, so does an element of the user's own. [`Quad4`](crate::fe::element::Quad4) takes its mean gradient, and its hourglass
 //! modes resist as its inner modes let them at small strain.

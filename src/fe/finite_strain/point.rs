@@ -215,19 +215,24 @@ fn definite_hessian([tt, tj, jj]: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
     use crate::fe::material::hyperelastic::{
-        Corotated, NeoHookean, StVenantKirchhoff, StableNeoHookean,
+        Corotated, Gent, MooneyRivlin, MooneyRivlinSheet, NeoHookean, NeoHookeanSheet,
+        StVenantKirchhoff, StableNeoHookean,
     };
     use crate::math::sin_cos;
 
     const START: [f64; 4] = [1.1, 0.2, -0.1, 0.9];
     const END: [f64; 4] = [0.8, 0.5, 0.3, 1.4];
 
-    fn laws() -> [Box<dyn Hyperelastic>; 4] {
+    fn laws() -> [Box<dyn Hyperelastic>; 8] {
         [
             Box::new(Corotated::plane_strain(1e5, 0.3)),
             Box::new(StVenantKirchhoff::plane_strain(1e5, 0.3)),
             Box::new(NeoHookean::plane_strain(1e5, 0.3)),
             Box::new(StableNeoHookean::plane_strain(1e5, 0.3)),
+            Box::new(NeoHookeanSheet::plane_stress(1e5, 0.4)),
+            Box::new(MooneyRivlin::plane_strain(1.2e4, 5e3, 0.4)),
+            Box::new(MooneyRivlinSheet::plane_stress(1.2e4, 5e3)),
+            Box::new(Gent::plane_strain(1e5, 0.3, 20.0)),
         ]
     }
 

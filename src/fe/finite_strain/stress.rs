@@ -1,36 +1,42 @@
-//! Cauchy's stress at the quadrature points of the elements.
+//! Deformation and Cauchy's stress at the quadrature points of the elements.
 
 use super::hourglass::{PATTERN, Shape};
 use super::model::FiniteStrainModel;
 use super::solid::Solid;
 use crate::fe::material::Plane;
-use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
+use crate::fe::material::hyperelastic::Invariants;
 use crate::fe::model::{element_of, placed_nodes};
-use crate::fe::recovery::Stress;
+use crate::fe::recovery::{PointState, Stress, Stretch};
 
 impl FiniteStrainModel {
     /// Cauchy's stress (Pa) at the quadrature points of a cell at `positions` (m), in the world's axes.
     ///
-    /// `σ = P Fᵀ / J`; of a point that is turned inside out it is that of the area it covers, `|J|`.
+    /// `σ = P Fᵀ/(J z)`, `z` the stretch of the thickness; of a point that is turned inside out it is that of the area it covers, `|J|`.
     ///
     /// # Panics
     /// If there is not one entry per dof, or no such cell.
     pub fn cell_stress(&self, cell: usize, positions: &[f64]) -> Vec<Stress> {
+        let states = self.cell_states(cell, positions).into_iter();
+        states.map(|state| state.stress).collect()
+    }
+
+    /// Deformation and Cauchy's stress at the quadrature points of a cell at `positions` (m), in the world's axes.
+    ///
+    /// # Panics
+    /// If there is not one entry per dof, or no such cell.
+    pub fn cell_states(&self, cell: usize, positions: &[f64]) -> Vec<PointState> {
         self.assert_length(positions);
         for group in &self.groups {
             if let Ok(place) = group.cells.binary_search(&cell) {
                 let solid = &group.solid;
-                let law = solid.law.as_ref();
                 let gradients = match group.hourglass.is_empty() {
                     true => group.gradients_of(place, positions),
                     false => self.bent(cell, solid, &group.shape(place, positions)),
                 };
-                let lateral = match solid.plane {
-                    Plane::Stress => 0.0,
-                    Plane::Strain => law.constants().poisson(),
-                };
-                let stresses = gradients.into_iter().map(|at| cauchy(law, lateral, at));
-                return stresses.collect();
+                return gradients
+                    .into_iter()
+                    .map(|at| state_of(solid, at))
+                    .collect();
             }
         }
         panic!("there is no cell {cell}")
@@ -73,22 +79,27 @@ impl FiniteStrainModel {
     }
 }
 
-/// Cauchy's stress of a gradient of deformation (Pa). `σ_zz` is the share `lateral` of the sum in the plane, as in Hooke's law: exact at small strains.
-fn cauchy(law: &dyn Hyperelastic, lateral: f64, gradient: [f64; 4]) -> Stress {
+fn state_of(solid: &Solid, gradient: [f64; 4]) -> PointState {
+    let law = solid.law.as_ref();
     let [xx, xy, yx, yy] = gradient;
     let at = Invariants::of(gradient);
     let [by_t, by_j] = law.gradient(at);
-    let area = at.j.abs().max(f64::MIN_POSITIVE);
+    let thickness = law.thickness_stretch(at);
+    let volume = (at.j.abs() * thickness).max(f64::MIN_POSITIVE);
     // P Fᵀ = 2 W_t F Fᵀ + W_J J I.
     let spherical = by_j * at.j;
-    let (sxx, syy) = (
-        (2.0 * by_t * (xx * xx + xy * xy) + spherical) / area,
-        (2.0 * by_t * (yx * yx + yy * yy) + spherical) / area,
-    );
-    Stress {
-        xx: sxx,
-        yy: syy,
-        xy: 2.0 * by_t * (xx * yx + xy * yy) / area,
-        zz: lateral * (sxx + syy),
+    let stress = Stress {
+        xx: (2.0 * by_t * (xx * xx + xy * xy) + spherical) / volume,
+        yy: (2.0 * by_t * (yx * yx + yy * yy) + spherical) / volume,
+        xy: 2.0 * by_t * (xx * yx + xy * yy) / volume,
+        zz: match solid.plane {
+            Plane::Stress => 0.0,
+            Plane::Strain => law.out_of_plane_stress(at),
+        },
+    };
+    PointState {
+        gradient,
+        stretch: Stretch::of_gradient(gradient, thickness),
+        stress,
     }
 }

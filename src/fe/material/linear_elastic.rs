@@ -166,6 +166,14 @@ impl Material for LinearElastic {
         }
     }
 
+    /// `-ν/(1 - ν) (e_xx + e_yy)` in plane stress.
+    fn thickness_strain(&self, strain: [f64; 3]) -> f64 {
+        match self.plane {
+            Plane::Stress => -self.poisson / (1.0 - self.poisson) * (strain[0] + strain[1]),
+            Plane::Strain => 0.0,
+        }
+    }
+
     fn wave_speed(&self) -> f64 {
         let (normal, _, shear) = self.moduli();
         // Auxetic materials (nu < -1/3 or so) carry shear faster than pressure.

@@ -38,6 +38,12 @@ pub trait Material: Send + Sync + Debug {
     /// The stress `s_zz` (Pa) normal to the plane: zero in plane stress.
     fn out_of_plane_stress(&self, strain: [f64; 3]) -> f64;
 
+    /// The strain `e_zz` (-) normal to the plane: zero in plane strain, and unless overridden.
+    fn thickness_strain(&self, strain: [f64; 3]) -> f64 {
+        let _ = strain;
+        0.0
+    }
+
     /// The largest speed (m/s) at which a small in-plane disturbance travels at rest.
     ///
     /// It bounds the stable step of explicit integration.
@@ -123,5 +129,15 @@ pub enum MaterialError {
     DampingStiffness {
         /// The value given (s).
         value: f64,
+    },
+    /// A parameter of a law is out of its range.
+    #[error("{name} is {value}: {cure}")]
+    Parameter {
+        /// Which parameter.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What to do.
+        cure: &'static str,
     },
 }

@@ -95,6 +95,12 @@ impl Hyperelastic for Corotated {
         let along = 2.0 * self.root / (end * (u + end) * (u + end));
         [along, 2.0 * along, 4.0 * along]
     }
+
+    /// `λ (tr U - 2)/|J|`.
+    fn out_of_plane_stress(&self, at: Invariants) -> f64 {
+        let stretched = (at.t + 2.0 * at.j).max(0.0).sqrt() - 2.0;
+        self.constants.lambda() * stretched / at.j.abs().max(f64::MIN_POSITIVE)
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Isotropic laws for large strains in the plane: `W(t, J)` with `t = |F|²` and `J = det F`.
 //!
-//! `F = dx/dX` is the gradient of deformation in the plane; out of it nothing stretches (plane strain). Every isotropic
+//! `F = dx/dX` is the gradient of deformation in the plane; out of it nothing stretches (plane strain), or the thickness `z` of a sheet
+//! is the one of least energy, `σ_zz = 0` (plane stress), which makes it a law of the plane again. Every isotropic
 //! law is a function of these two invariants, and its stress is
 //!
 //! ```text
@@ -27,6 +28,10 @@
 //! | [`StableNeoHookean`] | what is soft or crushed: recovers from being turned inside out |
 //! | [`Corotated`] | what is stiff and bends far |
 //! | [`NeoHookean`] | where `J > 0` must hold: the energy has a barrier there |
+//! | [`MooneyRivlin`] | rubber, by two constants measured in two ways of pulling it |
+//! | [`Gent`] | rubber that is pulled until its chains are straight |
+//! | [`NeoHookeanSheet`] | thin sheets, free to change their thickness; `ν = 0.5` is allowed |
+//! | [`MooneyRivlinSheet`] | thin sheets of rubber that keep their volume |
 //! | [`StVenantKirchhoff`] | comparisons: it softens when compressed below `1/√3` and stays inverted |
 //!
 //! Implementers are tested by [`conformance::check_law`].
@@ -34,7 +39,10 @@
 pub mod conformance;
 mod constants;
 mod corotated;
+mod gent;
+mod mooney_rivlin;
 mod neo_hookean;
+mod neo_hookean_sheet;
 mod quotient;
 mod solid;
 mod st_venant_kirchhoff;
@@ -42,12 +50,15 @@ mod stable_neo_hookean;
 
 pub use constants::ElasticConstants;
 pub use corotated::Corotated;
+pub use gent::Gent;
+pub use mooney_rivlin::{MooneyRivlin, MooneyRivlinSheet};
 pub use neo_hookean::NeoHookean;
+pub use neo_hookean_sheet::NeoHookeanSheet;
 pub use solid::HyperelasticSolid;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use stable_neo_hookean::StableNeoHookean;
 
-use super::MaterialError;
+use super::{MaterialError, Plane};
 use crate::fe::record::LawRecord;
 use std::fmt::Debug;
 
@@ -84,12 +95,12 @@ impl Invariants {
     }
 }
 
-/// An isotropic law of stored energy `W(t, J)` in plane strain.
+/// An isotropic law of stored energy `W(t, J)`, in plane strain unless it says otherwise.
 pub trait Hyperelastic: Send + Sync + Debug {
     /// The name used in messages.
     fn name(&self) -> &'static str;
 
-    /// The elastic constants at rest, which are those of linear elasticity.
+    /// The elastic constants at rest, which are those of linear elasticity in plane strain: of a sheet those with its moduli in the plane.
     fn constants(&self) -> ElasticConstants;
 
     /// The stored energy `W` per undeformed volume (J/m^3), zero at rest.
@@ -115,6 +126,27 @@ pub trait Hyperelastic: Send + Sync + Debug {
     fn admits(&self, at: Invariants) -> bool {
         let _ = at;
         true
+    }
+
+    /// What happens normal to the plane: nothing stretches unless overridden.
+    fn plane(&self) -> Plane {
+        Plane::Strain
+    }
+
+    /// The stretch of the thickness (-): one in plane strain.
+    fn thickness_stretch(&self, at: Invariants) -> f64 {
+        let _ = at;
+        1.0
+    }
+
+    /// Cauchy's stress `σ_zz` (Pa) normal to the plane, zero in plane stress.
+    ///
+    /// Unless overridden it is Hooke's share `ν` of the sum in the plane, exact at small strains; of material that is turned inside out that of
+    /// the area it covers, `|J|`.
+    fn out_of_plane_stress(&self, at: Invariants) -> f64 {
+        let [a, b] = self.gradient(at);
+        let area = at.j.abs().max(f64::MIN_POSITIVE);
+        self.constants().poisson() * 2.0 * (a * at.t + b * at.j) / area
     }
 
     /// What a snapshot writes of the law; bodies of one that is [`LawRecord::Unknown`] cannot be saved.

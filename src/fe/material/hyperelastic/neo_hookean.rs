@@ -88,6 +88,11 @@ impl Hyperelastic for NeoHookean {
     fn admits(&self, at: Invariants) -> bool {
         at.j > 0.0
     }
+
+    /// `λ ln J/J`.
+    fn out_of_plane_stress(&self, at: Invariants) -> f64 {
+        self.constants.lambda() * ln(at.j) / at.j
+    }
 }
 
 #[cfg(test)]

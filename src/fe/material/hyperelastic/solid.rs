@@ -1,11 +1,11 @@
 //! A law for large strains with a density and a damping: what a body that bends and stretches far is made of.
 
-use super::Hyperelastic;
-use crate::fe::material::{LinearElastic, Material, MaterialError, Rayleigh};
+use super::{Hyperelastic, Invariants};
+use crate::fe::material::{LinearElastic, Material, MaterialError, Plane, Rayleigh};
 use crate::fe::record::MaterialRecord;
 use std::sync::Arc;
 
-/// A material of large strain, in plane strain.
+/// A material of large strain, in plane strain or, of a law for sheets, in plane stress.
 ///
 /// A body of it is a large-strain body: it may bend, stretch and turn as far as it likes. As a [`Material`] it is Hooke's law with the
 /// same constants at rest, by which critical steps and frequencies are estimated.
@@ -74,7 +74,15 @@ impl Material for HyperelasticSolid {
     }
 
     fn out_of_plane_stress(&self, strain: [f64; 3]) -> f64 {
-        self.at_rest.out_of_plane_stress(strain)
+        match self.law.plane() {
+            Plane::Stress => 0.0,
+            Plane::Strain => self.at_rest.out_of_plane_stress(strain),
+        }
+    }
+
+    fn thickness_strain(&self, [xx, yy, xy]: [f64; 3]) -> f64 {
+        let at = Invariants::of([1.0 + xx, 0.5 * xy, 0.5 * xy, 1.0 + yy]);
+        self.law.thickness_stretch(at) - 1.0
     }
 
     fn wave_speed(&self) -> f64 {

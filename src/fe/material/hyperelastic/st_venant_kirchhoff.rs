@@ -64,6 +64,11 @@ impl Hyperelastic for StVenantKirchhoff {
     fn conserving_hessian(&self, _from: Invariants, to: Invariants) -> [f64; 3] {
         self.hessian(to)
     }
+
+    /// `λ tr E/|J|`.
+    fn out_of_plane_stress(&self, Invariants { t, j }: Invariants) -> f64 {
+        0.5 * self.constants.lambda() * (t - 2.0) / j.abs().max(f64::MIN_POSITIVE)
+    }
 }
 
 #[cfg(test)]
