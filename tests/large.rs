@@ -8,6 +8,8 @@ mod forces;
 mod frame;
 #[path = "large/paths.rs"]
 mod paths;
+#[path = "large/locking.rs"]
+mod locking;
 #[path = "large/robustness.rs"]
 mod robustness;
 #[path = "large/statics.rs"]

@@ -7,6 +7,7 @@ use crate::fe::material::Plane;
 use crate::fe::material::hyperelastic::Invariants;
 use crate::fe::model::{element_of, placed_nodes};
 use crate::fe::recovery::{PointState, Stress, Stretch};
+use crate::math::exp;
 
 impl FiniteStrainModel {
     /// Cauchy's stress (Pa) at the quadrature points of a cell at `positions` (m), in the world's axes.
@@ -68,6 +69,14 @@ impl FiniteStrainModel {
         strains
             .map(|[along, across, shear]| {
                 let [a, b, c] = [1.0 + along, 0.5 * shear, 1.0 + across];
+                // The volume is that of the strains: what their squares bring is none, and stiff to volumes it would be a large pressure.
+                let (volume, kept) = (a * c - b * b, exp(along + across));
+                let scale = if volume > 0.0 {
+                    (kept / volume).sqrt()
+                } else {
+                    1.0
+                };
+                let [a, b, c] = [a, b, c].map(|part| scale * part);
                 [
                     xx * a + xy * b,
                     xx * b + xy * c,
