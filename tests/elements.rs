@@ -6,7 +6,7 @@ mod support;
 use foil2d::fe::element::conformance::check_element;
 use foil2d::fe::element::kinematics::physical_gradient;
 use foil2d::fe::element::{
-    Element, ElementError, Quad4, QuadraturePoint, Tri3, Tri6, default_element,
+    Element, ElementError, Quad4, Quad8, QuadraturePoint, Tri3, Tri6, default_element,
 };
 use foil2d::fe::material::{LinearElastic, Material};
 use foil2d::fe::recovery::{CellStress, Stress, point_stresses, smooth_to_nodes};
@@ -18,11 +18,12 @@ fn every_element_passes_the_conformance_suite() {
     assert_eq!(check_element(&Tri3), Ok(()));
     assert_eq!(check_element(&Tri6), Ok(()));
     assert_eq!(check_element(&Quad4), Ok(()));
+    assert_eq!(check_element(&Quad8), Ok(()));
 }
 
 #[test]
 fn the_default_elements_have_the_nodes_asked_for() {
-    for n_nodes in [3, 4, 6] {
+    for n_nodes in [3, 4, 6, 8] {
         let element = default_element(n_nodes).unwrap();
         assert_eq!(element.n_nodes(), n_nodes);
     }

@@ -6,7 +6,7 @@
 #[cfg(feature = "serde-serialize")]
 pub use super::model_record::ModelRecordError;
 
-use super::element::{Element, Quad4, Tri3, Tri6};
+use super::element::{Element, Quad4, Quad8, Tri3, Tri6};
 use super::material::hyperelastic::{
     Corotated, Gent, Hyperelastic, HyperelasticSolid, MooneyRivlin, MooneyRivlinSheet, NeoHookean,
     NeoHookeanSheet, StVenantKirchhoff, StableNeoHookean,
@@ -108,6 +108,8 @@ pub enum ElementRecord {
     Quad4,
     /// The name of an element in [`KnownLaws`].
     Named(String),
+    /// [`Quad8`].
+    Quad8,
 }
 
 /// Elements and materials of your own, by the names that their records give.
@@ -157,6 +159,7 @@ impl KnownLaws {
             ElementRecord::Tri3 => Some(Arc::new(Tri3)),
             ElementRecord::Tri6 => Some(Arc::new(Tri6)),
             ElementRecord::Quad4 => Some(Arc::new(Quad4)),
+            ElementRecord::Quad8 => Some(Arc::new(Quad8)),
             ElementRecord::Named(name) => find(&self.elements, name),
         }
     }

@@ -7,7 +7,12 @@ use foil2d::fe::material::hyperelastic::{
 use foil2d::fe::mesh::{CellKind, generate::rectangle};
 use std::sync::Arc;
 
-pub const KINDS: [CellKind; 3] = [CellKind::Tri3, CellKind::Tri6, CellKind::Quad4];
+pub const KINDS: [CellKind; 4] = [
+    CellKind::Tri3,
+    CellKind::Tri6,
+    CellKind::Quad4,
+    CellKind::Quad8,
+];
 
 /// The four laws of one Young's modulus (Pa) and Poisson's ratio.
 pub fn laws(young: f64, poisson: f64) -> [Arc<dyn Hyperelastic>; 4] {

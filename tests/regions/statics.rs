@@ -5,7 +5,12 @@ use foil2d::fe::material::hyperelastic::principal_stress;
 use foil2d::large::{LargeSettings, LoadCase, LoadStepper};
 use foil2d::linalg::cholesky::BlockCholesky;
 
-const KINDS: [CellKind; 3] = [CellKind::Tri3, CellKind::Tri6, CellKind::Quad4];
+const KINDS: [CellKind; 4] = [
+    CellKind::Tri3,
+    CellKind::Tri6,
+    CellKind::Quad4,
+    CellKind::Quad8,
+];
 
 /// Displacements of a body of small strain under nodal loads (N), with some dofs held at zero.
 fn deflect(body: &FlexBody, load: &[f64], is_held: &[bool]) -> Vec<f64> {
@@ -38,7 +43,7 @@ fn pull(body: &FlexBody, length: f64, traction: impl Fn(f64, bool) -> f64) -> Ve
         .collect();
     ends.sort_by(|&a, &b| mesh.nodes()[a][1].total_cmp(&mesh.nodes()[b][1]));
     let y = |node: usize| mesh.nodes()[node][1];
-    let is_quadratic = mesh.cell(0).kind == CellKind::Tri6;
+    let is_quadratic = mesh.cell(0).kind.is_quadratic();
     let stride = if is_quadratic { 2 } else { 1 };
     for edge in ends.windows(stride + 1).step_by(stride) {
         let (low, high) = (edge[0], edge[stride]);

@@ -227,7 +227,7 @@ fn laws_of_rubber_and_sheets_are_saved_with_their_parameters() {
     ];
     for law in laws {
         let mut straight = Run::new();
-        let body = FlexBodyBuilder::rectangle_of([0.5, 0.5], [2, 2], CellKind::Tri6)
+        let body = FlexBodyBuilder::rectangle_of([0.5, 0.5], [2, 2], CellKind::Quad8)
             .material(solid(Arc::clone(&law)))
             .translation([0.0, 0.01]);
         straight.flexible(body);

@@ -10,11 +10,13 @@
 pub mod conformance;
 pub mod kinematics;
 mod quad4;
+mod quad8;
 pub mod quadrature;
 mod tri3;
 mod tri6;
 
 pub use quad4::Quad4;
+pub use quad8::Quad8;
 pub use quadrature::QuadraturePoint;
 pub use tri3::Tri3;
 pub use tri6::Tri6;
@@ -212,12 +214,13 @@ pub trait Element: Send + Sync + Debug {
     }
 }
 
-/// The element the library uses for cells of `n_nodes` nodes: 3, 4 or 6.
+/// The element the library uses for cells of `n_nodes` nodes: 3, 4, 6 or 8.
 pub fn default_element(n_nodes: usize) -> Option<Arc<dyn Element>> {
     match n_nodes {
         3 => Some(Arc::new(Tri3)),
         4 => Some(Arc::new(Quad4)),
         6 => Some(Arc::new(Tri6)),
+        8 => Some(Arc::new(Quad8)),
         _ => None,
     }
 }

@@ -60,6 +60,24 @@ pub const SQUARE_4: [QuadraturePoint; 4] = [
     point(-GAUSS, GAUSS, 1.0),
 ];
 
+// The points of Gauss on a line, 0 and √(3/5), with weights 8/9 and 5/9.
+const OUTER: f64 = 0.774_596_669_241_483_4;
+const MIDDLE_WEIGHT: f64 = 8.0 / 9.0;
+const OUTER_WEIGHT: f64 = 5.0 / 9.0;
+
+/// Three by three Gauss points of the square, nearest to corners and midsides, and the centre: exact to degree 5 in each direction.
+pub const SQUARE_9: [QuadraturePoint; 9] = [
+    point(-OUTER, -OUTER, OUTER_WEIGHT * OUTER_WEIGHT),
+    point(OUTER, -OUTER, OUTER_WEIGHT * OUTER_WEIGHT),
+    point(OUTER, OUTER, OUTER_WEIGHT * OUTER_WEIGHT),
+    point(-OUTER, OUTER, OUTER_WEIGHT * OUTER_WEIGHT),
+    point(0.0, -OUTER, MIDDLE_WEIGHT * OUTER_WEIGHT),
+    point(OUTER, 0.0, OUTER_WEIGHT * MIDDLE_WEIGHT),
+    point(0.0, OUTER, MIDDLE_WEIGHT * OUTER_WEIGHT),
+    point(-OUTER, 0.0, OUTER_WEIGHT * MIDDLE_WEIGHT),
+    point(0.0, 0.0, MIDDLE_WEIGHT * MIDDLE_WEIGHT),
+];
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn the_square_rule_is_exact_to_degree_three_in_each_direction() {
+    fn the_square_rules_are_exact_to_degrees_three_and_five_in_each_direction() {
         let line = |k: u64| {
             if k.is_multiple_of(2) {
                 2.0 / (k as f64 + 1.0)
@@ -103,10 +121,13 @@ mod tests {
                 0.0
             }
         };
-        for i in 0..=3 {
-            for j in 0..=3 {
-                let error = apply(&SQUARE_4, i, j) - line(i) * line(j);
-                assert!(error.abs() < 1e-15, "x^{i} y^{j}: {error:e}");
+        let rules: [(&[QuadraturePoint], u64); 2] = [(&SQUARE_4, 3), (&SQUARE_9, 5)];
+        for (rule, degree) in rules {
+            for i in 0..=degree {
+                for j in 0..=degree {
+                    let error = apply(rule, i, j) - line(i) * line(j);
+                    assert!(error.abs() < 2e-15, "x^{i} y^{j}: {error:e}");
+                }
             }
         }
     }

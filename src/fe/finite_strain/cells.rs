@@ -75,6 +75,7 @@ macro_rules! with_node_count {
             3 => $group.$kernel::<3>($($argument),*),
             4 => $group.$kernel::<4>($($argument),*),
             6 => $group.$kernel::<6>($($argument),*),
+            8 => $group.$kernel::<8>($($argument),*),
             // The kinds of cells of a mesh have no other count.
             n => unreachable!("cells of {n} nodes"),
         }

@@ -31,11 +31,16 @@ const SMALL: f64 = 1e-4;
 /// A gradient that turns what it deforms inside out.
 const TURNED: [f64; 4] = [1.0, 0.0, 0.0, -1.0];
 
-/// Places that are guarded in a cell of so many nodes: its nodes, and what is between the corners of six.
+/// Places that are guarded in a cell of so many nodes: its nodes, and what is between the corners of six, or at each corner of the straight cell
+/// of eight.
 ///
 /// Six determinants above zero leave room for a side that bends around the corner opposite.
 const fn n_guarded(n_nodes: usize) -> usize {
-    if n_nodes == 6 { 7 } else { n_nodes }
+    match n_nodes {
+        6 => 7,
+        8 => 12,
+        n => n,
+    }
 }
 
 /// The guarded places of a group of cells: those of all of them, or none.
@@ -78,7 +83,21 @@ impl Guards {
             let found = physical_gradient(element, corners, at, &mut gradient[..nodes.len()]);
             push(&gradient, found.unwrap_or(0.0));
         }
-        if n_guarded(nodes.len()) > nodes.len() {
+        if nodes.len() == 8 {
+            for corner in 0..4 {
+                let local = [corner, (corner + 1) % 4, (corner + 3) % 4];
+                let mut own = [[0.0; 2]; 3];
+                let places = local.map(|node| corners[node]);
+                let found = physical_gradient(&Tri3, &places, [0.0; 2], &mut own);
+                let mut gradient = [[0.0; 2]; MAX_NODES];
+                for (node, own) in local.into_iter().zip(own) {
+                    gradient[node] = own;
+                }
+                // The unit square of the triangle's determinant is a quarter of the natural square.
+                push(&gradient, 0.25 * found.unwrap_or(0.0));
+            }
+        }
+        if nodes.len() == 6 {
             let mut gradient = [[0.0; 2]; MAX_NODES];
             let found = physical_gradient(&Tri3, &corners[..3], [0.0; 2], &mut gradient[..3]);
             push(&gradient, found.unwrap_or(0.0));

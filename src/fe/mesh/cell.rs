@@ -12,6 +12,12 @@ use super::geometry;
 ///            /   \                    5   4                  |           |
 ///           /     \                  /     \                 |           |
 ///          0-------1                0---3---1                0-----------1
+///
+///  Quad8   3-----6-----2
+///          |           |
+///          7           5
+///          |           |
+///          0-----4-----1
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(
@@ -25,6 +31,8 @@ pub enum CellKind {
     Tri6,
     /// Convex quadrilateral with its four corners.
     Quad4,
+    /// Quadrilateral with corners 0 to 3 and midside nodes 4 (on 0-1), 5 (on 1-2), 6 (on 2-3), 7 (on 3-0).
+    Quad8,
 }
 
 /// Side of a cell in local node numbers, the cell on its left.
@@ -42,6 +50,7 @@ impl CellKind {
             Self::Tri3 => 3,
             Self::Quad4 => 4,
             Self::Tri6 => 6,
+            Self::Quad8 => 8,
         }
     }
 
@@ -49,8 +58,13 @@ impl CellKind {
     pub const fn n_corners(self) -> usize {
         match self {
             Self::Tri3 | Self::Tri6 => 3,
-            Self::Quad4 => 4,
+            Self::Quad4 | Self::Quad8 => 4,
         }
+    }
+
+    /// Whether its sides have midside nodes.
+    pub const fn is_quadratic(self) -> bool {
+        matches!(self, Self::Tri6 | Self::Quad8)
     }
 
     /// Name as written in the code, such as `Tri3`.
@@ -59,6 +73,7 @@ impl CellKind {
             Self::Tri3 => "Tri3",
             Self::Tri6 => "Tri6",
             Self::Quad4 => "Quad4",
+            Self::Quad8 => "Quad8",
         }
     }
 
@@ -67,7 +82,7 @@ impl CellKind {
         (0..n).map(move |from| LocalEdge {
             from,
             to: (from + 1) % n,
-            midside: matches!(self, Self::Tri6).then_some(n + from),
+            midside: self.is_quadratic().then_some(n + from),
         })
     }
 }
@@ -96,8 +111,8 @@ impl<'a> Cell<'a> {
     }
 
     /// Coordinates of its nodes (m); only the first `kind.n_nodes()` entries are used.
-    pub(super) fn points(&self, nodes: &[[f64; 2]]) -> [[f64; 2]; 6] {
-        let mut points = [[0.0; 2]; 6];
+    pub(super) fn points(&self, nodes: &[[f64; 2]]) -> [[f64; 2]; 8] {
+        let mut points = [[0.0; 2]; 8];
         for (point, &node) in points.iter_mut().zip(self.nodes) {
             *point = nodes[node];
         }

@@ -197,7 +197,15 @@ pub enum MeshError {
         /// A node of another one.
         second: usize,
     },
-    /// Only meshes of 3-node triangles can be given midside nodes.
+    /// Cells with midside nodes cannot be given any.
+    #[error("cell {cell} is a {kind}: only Tri3 and Quad4 cells can be given midside nodes")]
+    NotLinear {
+        /// Index of the cell.
+        cell: usize,
+        /// Its kind.
+        kind: CellKind,
+    },
+    /// Only meshes of 3-node triangles can be turned into 6-node ones.
     #[error("cell {cell} is a {kind}: only meshes of Tri3 cells can be turned into Tri6")]
     NotTri3 {
         /// Index of the cell.

@@ -120,8 +120,8 @@ const GAUSS_3: [(f64, f64); 3] = [
 ///
 /// Natural coordinates run over the unit triangle, or over the unit square for a quadrilateral, so
 /// that an undistorted cell has twice, respectively once, its area everywhere.
-pub(super) fn nodal_jacobians(kind: CellKind, points: &[[f64; 2]]) -> [f64; 6] {
-    let mut jacobians = [0.0; 6];
+pub(super) fn nodal_jacobians(kind: CellKind, points: &[[f64; 2]]) -> [f64; 8] {
+    let mut jacobians = [0.0; 8];
     match kind {
         CellKind::Tri3 | CellKind::Quad4 => {
             let n = kind.n_corners();
@@ -136,6 +136,11 @@ pub(super) fn nodal_jacobians(kind: CellKind, points: &[[f64; 2]]) -> [f64; 6] {
                 *jacobian = tri6_jacobian(points, xi, eta);
             }
         }
+        CellKind::Quad8 => {
+            for (jacobian, at) in jacobians.iter_mut().zip(QUAD8_NATURAL) {
+                *jacobian = quad8_jacobian(points, at);
+            }
+        }
     }
     jacobians
 }
@@ -148,6 +153,43 @@ const TRI6_NATURAL: [[f64; 2]; 6] = [
     [0.5, 0.5],
     [0.0, 0.5],
 ];
+
+const QUAD8_NATURAL: [[f64; 2]; 8] = [
+    [-1.0, -1.0],
+    [1.0, -1.0],
+    [1.0, 1.0],
+    [-1.0, 1.0],
+    [0.0, -1.0],
+    [1.0, 0.0],
+    [0.0, 1.0],
+    [-1.0, 0.0],
+];
+
+fn quad8_jacobian(points: &[[f64; 2]], [xi, eta]: [f64; 2]) -> f64 {
+    let mut x_xi = [0.0; 2];
+    let mut x_eta = [0.0; 2];
+    for (point, [a, b]) in points.iter().zip(QUAD8_NATURAL) {
+        let (along, across) = (1.0 + xi * a, 1.0 + eta * b);
+        let [by_xi, by_eta] = if a == 0.0 {
+            [-xi * across, 0.5 * b * (1.0 - xi * xi)]
+        } else if b == 0.0 {
+            [0.5 * a * (1.0 - eta * eta), -eta * along]
+        } else {
+            [
+                0.25 * a * across * (2.0 * xi * a + eta * b),
+                0.25 * b * along * (xi * a + 2.0 * eta * b),
+            ]
+        };
+        for axis in 0..2 {
+            // differences to the first node keep small cells far from the origin accurate
+            let x = point[axis] - points[0][axis];
+            x_xi[axis] += by_xi * x;
+            x_eta[axis] += by_eta * x;
+        }
+    }
+    // the natural square has four times the area of the unit square
+    4.0 * cross(x_xi, x_eta)
+}
 
 fn tri6_jacobian(points: &[[f64; 2]], xi: f64, eta: f64) -> f64 {
     let rest = 1.0 - xi - eta;

@@ -196,12 +196,12 @@ impl Mesh {
         pieces
     }
 
-    /// Area (m^2), with curved sides of [`CellKind::Tri6`] integrated exactly.
+    /// Area (m^2), with curved sides of quadratic cells integrated exactly.
     pub fn area(&self) -> f64 {
         self.cells().map(|cell| cell.moments(&self.nodes).0).sum()
     }
 
-    /// Centroid of the area (m), with curved sides of [`CellKind::Tri6`] integrated exactly.
+    /// Centroid of the area (m), with curved sides of quadratic cells integrated exactly.
     pub fn centroid(&self) -> [f64; 2] {
         // moments about a node of the mesh, for accuracy far from the origin
         let origin = self.nodes[0];

@@ -1,6 +1,6 @@
 //! Shape of the cells: a perfect cell has aspect 1 and scaled Jacobian 1.
 
-use super::geometry::{cross, distance, dot, nodal_jacobians, polygon_area, sub};
+use super::geometry::{cross, distance, dot, lerp, nodal_jacobians, polygon_area, sub};
 use super::{Cell, CellKind, Mesh};
 
 /// Measures of the shape of the cells of a mesh.
@@ -8,7 +8,8 @@ use super::{Cell, CellKind, Mesh};
 /// Angles, aspect and edges are those of the straight-sided cell between the corners. The definitions
 /// are those of the Verdict library (Stimpson et al., SAND2007-1751), with this addition for
 /// [`CellKind::Tri6`]: the scaled Jacobian is multiplied by the ratio of the least to the largest
-/// Jacobian at its nodes, which is 1 for straight sides with the nodes in the middle.
+/// Jacobian at its nodes, which is 1 for straight sides with the nodes in the middle; that of
+/// [`CellKind::Quad8`] by the same of their ratios to those of the straight-sided cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quality {
     /// Smallest angle at any corner (deg).
@@ -45,7 +46,7 @@ impl Quality {
     }
 
     /// Takes in one cell, summing its scaled Jacobian.
-    fn add(&mut self, cell: Cell<'_>, points: &[[f64; 2]; 6]) {
+    fn add(&mut self, cell: Cell<'_>, points: &[[f64; 2]; 8]) {
         let n = cell.kind.n_corners();
         let corners = &points[..n];
         let (mut perimeter, mut longest, mut scaled) = (0.0, 0.0_f64, f64::INFINITY);
@@ -70,9 +71,22 @@ impl Quality {
         }
         if cell.kind == CellKind::Tri6 {
             let jacobians = nodal_jacobians(cell.kind, points);
+            let jacobians = &jacobians[..cell.kind.n_nodes()];
             let least = jacobians.iter().copied().fold(f64::INFINITY, f64::min);
             let largest = jacobians.iter().copied().fold(0.0, f64::max);
             scaled *= least / largest;
+        }
+        if cell.kind == CellKind::Quad8 {
+            let mut straight = *points;
+            for side in cell.kind.edges() {
+                if let Some(midside) = side.midside {
+                    straight[midside] = lerp(points[side.from], points[side.to], 0.5);
+                }
+            }
+            let [own, flat] = [points, &straight].map(|at| nodal_jacobians(cell.kind, at));
+            let ratios = own.iter().zip(flat).map(|(own, flat)| own / flat);
+            let least = ratios.clone().fold(f64::INFINITY, f64::min);
+            scaled *= least / ratios.fold(0.0, f64::max);
         }
         self.min_scaled_jacobian = self.min_scaled_jacobian.min(scaled);
         self.mean_scaled_jacobian += scaled;

@@ -32,7 +32,7 @@ pub fn annulus(
 /// Node `l n + p`, with `n` the divisions around, lies at the angle `2 pi p / n` on layer `l`, the
 /// inner circle being layer 0. Quadrilateral `l n + p` reaches from that node outward and on;
 /// triangles halve the quadrilaterals by alternating diagonals. Corners lie on the circles; so do the
-/// midside nodes of [`CellKind::Tri6`] between neighbours on a circle, and its other midside nodes
+/// midside nodes of [`CellKind::Tri6`] and [`CellKind::Quad8`] between neighbours on a circle, and its other midside nodes
 /// lie half-way in polar coordinates.
 ///
 /// - `inner`, `outer`: radii (m).
@@ -68,18 +68,18 @@ pub fn annulus_divided(
             )
         })
     });
-    if kind == CellKind::Quad4 {
+    let mesh = if kind.n_corners() == 4 {
         let cells: Vec<[usize; 4]> = quads.map(|(quad, _)| quad).collect();
-        return Mesh::from_cells(nodes, kind, &cells);
-    }
-    let cells: Vec<[usize; 3]> = quads
-        .flat_map(|(quad, flipped)| split(quad, flipped))
-        .collect();
-    let mesh = Mesh::from_cells(nodes, CellKind::Tri3, &cells)?;
-    if kind == CellKind::Tri3 {
+        Mesh::from_cells(nodes, CellKind::Quad4, &cells)?
+    } else {
+        let cells = quads.flat_map(|(quad, flipped)| split(quad, flipped));
+        let cells: Vec<[usize; 3]> = cells.collect();
+        Mesh::from_cells(nodes, CellKind::Tri3, &cells)?
+    };
+    if !kind.is_quadratic() {
         return Ok(mesh);
     }
-    mesh.to_tri6_with(|a, b| polar_midpoint(mesh.nodes()[a], mesh.nodes()[b]))
+    mesh.to_quadratic_with(|a, b| polar_midpoint(mesh.nodes()[a], mesh.nodes()[b]))
 }
 
 fn check_radii(inner: f64, outer: f64) -> Result<(), MeshError> {

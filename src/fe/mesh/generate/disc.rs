@@ -24,8 +24,19 @@ pub fn disc(radius: f64, target_edge: f64, kind: CellKind) -> Result<Mesh, MeshE
     check_positive("disc target edge", target_edge)?;
     let n = (radius / target_edge).round().max(1.0);
     check_size(3.0 * n * (n + 1.0) + 1.0, NODE_LIMIT)?;
-    if kind == CellKind::Quad4 {
-        return o_grid(radius, target_edge);
+    if kind.n_corners() == 4 {
+        let mesh = o_grid(radius, target_edge)?;
+        if kind == CellKind::Quad4 {
+            return Ok(mesh);
+        }
+        let (nodes, boundary) = (mesh.nodes(), mesh.boundary());
+        return mesh.to_quadratic_with(|a, b| {
+            if boundary.is_boundary(a) && boundary.is_boundary(b) {
+                polar_midpoint(nodes[a], nodes[b])
+            } else {
+                lerp(nodes[a], nodes[b], 0.5)
+            }
+        });
     }
     let n = n as usize;
     let mesh = rings(radius, n)?;
@@ -34,7 +45,7 @@ pub fn disc(radius: f64, target_edge: f64, kind: CellKind) -> Result<Mesh, MeshE
     }
     let first_on_circle = ring_start(n);
     let nodes = mesh.nodes();
-    mesh.to_tri6_with(|a, b| {
+    mesh.to_quadratic_with(|a, b| {
         if a >= first_on_circle {
             polar_midpoint(nodes[a], nodes[b])
         } else {

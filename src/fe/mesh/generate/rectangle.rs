@@ -6,7 +6,7 @@ use crate::fe::mesh::{CellKind, Mesh, MeshError};
 /// Meshes a rectangle with its lower left corner at the origin.
 ///
 /// Node `j (n_x + 1) + i` lies at `(i w / n_x, j h / n_y)`; the midside nodes of [`CellKind::Tri6`]
-/// follow as [`Mesh::to_tri6`] numbers them. Quadrilateral `j n_x + i` has node `(i, j)` at its
+/// and [`CellKind::Quad8`] follow as [`Mesh::to_quadratic`] numbers them. Quadrilateral `j n_x + i` has node `(i, j)` at its
 /// lower left; triangles halve the quadrilaterals, two in the place of each, by diagonals that
 /// alternate like the colours of a chessboard. With even divisions no triangle has all its corners
 /// on the boundary.
@@ -56,9 +56,13 @@ pub fn rectangle(size: [f64; 2], divisions: [usize; 2], kind: CellKind) -> Resul
             )
         })
     });
-    if kind == CellKind::Quad4 {
+    if kind.n_corners() == 4 {
         let cells: Vec<[usize; 4]> = quads.map(|(quad, _)| quad).collect();
-        return Mesh::from_cells(nodes, kind, &cells);
+        let mesh = Mesh::from_cells(nodes, CellKind::Quad4, &cells)?;
+        return match kind {
+            CellKind::Quad8 => mesh.to_quadratic(),
+            _ => Ok(mesh),
+        };
     }
     let cells: Vec<[usize; 3]> = quads
         .flat_map(|(quad, flipped)| split(quad, flipped))
