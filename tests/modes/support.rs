@@ -28,6 +28,7 @@ pub fn describe(
         mesh: Arc::new(mesh),
         elements: Vec::new(),
         material: Arc::new(material),
+        regions: Vec::new(),
         thickness: 0.1,
         mass_kind,
         massless,
