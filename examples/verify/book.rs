@@ -17,15 +17,26 @@ mod b2;
 mod b22;
 mod b24;
 mod b25;
+mod b27;
 mod b29;
 mod b3;
 mod b31;
 mod b32;
+mod b40;
+mod b41;
+mod b42;
+mod b43;
+mod b44;
+mod b45;
+mod b46;
 mod b8;
 mod b9;
 mod bars;
+mod frame;
+mod modes;
 mod orders;
 mod plain;
+mod rods;
 mod schemes;
 mod statics;
 
@@ -130,6 +141,11 @@ pub const CASES: &[Case] = &[
         run: b25::run,
     },
     Case {
+        id: "B27",
+        title: "a rod bent to a circle",
+        run: b27::run,
+    },
+    Case {
         id: "B29",
         title: "MacNeal and Harder's straight beam",
         run: b29::run,
@@ -143,6 +159,46 @@ pub const CASES: &[Case] = &[
         id: "B32",
         title: "pendulum",
         run: b32::run,
+    },
+    Case {
+        id: "B40",
+        title: "elastica under a load at its end",
+        run: b40::run,
+    },
+    Case {
+        id: "B41",
+        title: "elastica under its own weight",
+        run: b41::run,
+    },
+    Case {
+        id: "B42",
+        title: "a force that turns with the end",
+        run: b42::run,
+    },
+    Case {
+        id: "B43",
+        title: "column between hinges",
+        run: b43::run,
+    },
+    Case {
+        id: "B44",
+        title: "Lee's frame, past its limit loads",
+        run: b44::run,
+    },
+    Case {
+        id: "B45",
+        title: "homogeneous large strain",
+        run: b45::run,
+    },
+    Case {
+        id: "B46",
+        title: "free spinning plate",
+        run: b46::run,
+    },
+    Case {
+        id: "modes",
+        title: "natural modes",
+        run: modes::run,
     },
     Case {
         id: "orders",

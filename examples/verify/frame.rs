@@ -2,12 +2,18 @@
 
 use foil2d::fe::mesh::{CellKind, Mesh, MeshError};
 
-/// A frame of two legs 120 long and `thick` thick, their centre lines from (0, 0) and (120, 120) meeting at (0, 120), of triangles one cell across.
-pub fn frame(thick: f64) -> Result<Mesh, MeshError> {
+/// A frame of two legs 120 long and `thick` thick, their centre lines from (0, 0) and (120, 120) meeting at (0, 120): six-node triangles, one
+/// cell across and so many along each leg.
+///
+/// A multiple of five puts a node at 24 from the corner.
+///
+/// # Errors
+/// If there is no such mesh.
+pub fn frame(thick: f64, n_sections: u32) -> Result<Mesh, MeshError> {
     let half = 0.5 * thick;
     // Sections along a leg, from its hinge to the edge of the corner.
-    let along: Vec<f64> = (0..60)
-        .map(|k| 2.0 * f64::from(k))
+    let along: Vec<f64> = (0..n_sections)
+        .map(|k| 120.0 * f64::from(k) / f64::from(n_sections))
         .chain([120.0 - half])
         .collect();
     let upright = along.iter().map(|&y| [[half, y], [-half, y]]);

@@ -102,7 +102,7 @@ struct Lee {
 
 fn lee(unit: f64, renumber: bool) -> Lee {
     let thick: f64 = 0.2;
-    let mut mesh = frame(thick).expect("a frame");
+    let mut mesh = frame(thick, 60).expect("a frame");
     if renumber {
         mesh = reversed(&mesh);
     }

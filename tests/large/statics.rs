@@ -230,7 +230,7 @@ fn a_buckled_column_bears_the_load_of_the_elastica() {
 fn lees_frame_bears_its_limit_load() {
     let thick: f64 = 0.2;
     let law = Corotated::plane_strain(12.0 * 1440.0 / thick.powi(3), 0.0);
-    let description = FiniteStrainDescription::new(frame(thick).expect("a frame"), law, 1.0);
+    let description = FiniteStrainDescription::new(frame(thick, 60).expect("a frame"), law, 1.0);
     let model = Arc::new(FiniteStrainModel::assemble(description).expect("the frame is a body"));
     let at = |x: f64, y: f64| {
         let is_there = |[a, b]: [f64; 2]| (a - x).abs() < 1e-9 && (b - y).abs() < 1e-9;
