@@ -37,6 +37,7 @@ pub mod prelude {
         Attachment, AttachmentBuilder, AttachmentHandle, ContactInertia, FlexBody, FlexBodyBuilder,
         FlexBodyHandle, FlexBodySet, Pin,
     };
+    pub use crate::fe::finite_strain::InnerPressure;
     pub use crate::fe::material::hyperelastic::{
         Corotated, HyperelasticSolid, NeoHookean, StableNeoHookean,
     };

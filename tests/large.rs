@@ -6,10 +6,10 @@ mod dynamics;
 mod forces;
 #[path = "../examples/verify/frame.rs"]
 mod frame;
-#[path = "large/paths.rs"]
-mod paths;
 #[path = "large/locking.rs"]
 mod locking;
+#[path = "large/paths.rs"]
+mod paths;
 #[path = "large/robustness.rs"]
 mod robustness;
 #[path = "large/statics.rs"]

@@ -35,7 +35,7 @@ fn a_soft_body_becomes_a_body_of_its_particles_cells_and_mass() {
         assert!((body.mass() / 750.0 - 1.0).abs() < 1e-6);
         assert_eq!(body.n_nodes(), soft.positions.len());
         for (node, at) in soft.positions.iter().enumerate() {
-            assert_eq!(body.position(node), [at.x.into(), at.y.into()]);
+            assert_eq!(body.position(node), [f64::from(at.x), f64::from(at.y)]);
         }
         assert_eq!(body.mesh().n_cells(), soft.cells.len());
         for (cell, soft) in body.mesh().cells().zip(&soft.cells) {

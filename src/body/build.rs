@@ -4,7 +4,9 @@ use super::builder::{ContactInertia, FlexBodyBuilder};
 use super::error::BuildError;
 use super::flex_body::FlexBody;
 use super::frame::{Frame, frame_of};
-use crate::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+use crate::fe::finite_strain::{
+    FiniteStrainDescription, FiniteStrainError, FiniteStrainModel, InnerPressure,
+};
 use crate::fe::material::Material;
 use crate::fe::mesh::Mesh;
 use crate::fe::model::{MassKind, Model, ModelDescription};
@@ -77,20 +79,29 @@ impl FlexBodyBuilder {
         material: &Arc<dyn Material>,
         regions: &[(u32, Arc<dyn Material>)],
     ) -> Result<Option<FiniteStrainDescription>, BuildError> {
+        let pressures = self.pressures(mesh)?;
         if self.is_large == Some(false) {
-            return Ok(None);
+            return match pressures.is_empty() {
+                true => Ok(None),
+                false => Err(BuildError::PressureSmallStrain),
+            };
         }
         let mut materials = regions.iter().map(|(_, own)| own).chain([material]);
-        let is_asked =
-            self.is_large == Some(true) || materials.any(|own| own.hyperelastic().is_some());
+        let is_asked = self.is_large == Some(true)
+            || materials.any(|own| own.hyperelastic().is_some())
+            || !pressures.is_empty();
         let description = FiniteStrainDescription::of_material(
             Arc::clone(mesh),
             rest.to_vec(),
             &self.elements,
             material.as_ref(),
             self.thickness,
-        )
-        .and_then(|description| description.with_region_materials(regions));
+        );
+        let mut description =
+            description.and_then(|description| description.with_region_materials(regions));
+        if let Some(description) = &mut description {
+            description.pressures = pressures;
+        }
         let outcome = match (self.mass_kind, &self.contact_inertia, description) {
             (MassKind::Consistent, ..) => Err(BuildError::LargeConsistent),
             (_, ContactInertia::RedistributedAt(_), _) => Err(BuildError::LargeMassless),
@@ -100,6 +111,18 @@ impl FlexBodyBuilder {
         match outcome {
             Err(_) if !is_asked => Ok(None),
             outcome => outcome,
+        }
+    }
+
+    /// Pressures in the holes of the mesh, if there is to be one.
+    fn pressures(&self, mesh: &Mesh) -> Result<Vec<InnerPressure>, BuildError> {
+        let Some(pressure) = self.inner_pressure else {
+            return Ok(Vec::new());
+        };
+        pressure.validate().map_err(FiniteStrainError::from)?;
+        match mesh.boundary().loops().len() {
+            0 | 1 => Err(BuildError::NoHole),
+            n_loops => Ok(vec![pressure; n_loops - 1]),
         }
     }
 

@@ -4,6 +4,7 @@ use super::contact_settings::ContactSettings;
 use super::materials::{Materials, Region};
 use super::pin::Pin;
 use crate::fe::element::Element;
+use crate::fe::finite_strain::InnerPressure;
 use crate::fe::material::Material;
 use crate::fe::mesh::generate::{self, PolygonOptions};
 use crate::fe::mesh::{CellKind, Mesh, MeshError};
@@ -49,6 +50,7 @@ pub struct FlexBodyBuilder {
     pub(super) materials: Materials,
     /// Whether the body is one of large strain, if the user has said so.
     pub(super) is_large: Option<bool>,
+    pub(super) inner_pressure: Option<InnerPressure>,
     pub(super) thickness: f64,
     pub(super) mass_kind: MassKind,
     pub(super) contact_inertia: ContactInertia,
@@ -113,6 +115,7 @@ impl FlexBodyBuilder {
             elements: Vec::new(),
             materials: Materials::default(),
             is_large: None,
+            inner_pressure: None,
             thickness: 1.0,
             mass_kind: MassKind::default(),
             contact_inertia: ContactInertia::default(),
@@ -184,6 +187,28 @@ impl FlexBodyBuilder {
     /// [`StepReport::overbent`](crate::pipeline::StepReport::overbent) tells where it is taken beyond that.
     pub fn small_strain(mut self) -> Self {
         self.is_large = Some(false);
+        self
+    }
+
+    /// Puts a pressure into every hole of the body, each by itself: a tyre, a balloon, a cushion. The body is one of large strain.
+    ///
+    /// It acts on the edges of the hole, whatever else may be in there: a rim that a tyre is to press is part of the mesh, or is welded or pinned to it,
+    /// and a body that lies in the hole feels the walls alone. [`FlexBody::set_inner_pressure`](super::FlexBody::set_inner_pressure) changes it
+    /// hole by hole.
+    ///
+    /// ```
+    /// use foil2d::prelude::*;
+    /// let rubber = LinearElastic::plane_strain(2e6, 0.45).density(1100.0);
+    /// let tyre = FlexBodyBuilder::annulus(0.25, 0.3, 0.05)
+    ///     .material(rubber)
+    ///     .inner_pressure(InnerPressure::isothermal(2e4))
+    ///     .thickness(0.2)
+    ///     .build()?;
+    /// assert!((tyre.gas_pressure(0)? - 2e4).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn inner_pressure(mut self, pressure: InnerPressure) -> Self {
+        self.inner_pressure = Some(pressure);
         self
     }
 

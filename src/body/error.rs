@@ -39,6 +39,14 @@ pub enum BuildError {
         "the surface of a body of large strain carries its mass: leave `ContactInertia::RedistributedAt` out, or choose `.small_strain()`"
     )]
     LargeMassless,
+    /// A body of small strain with an inner pressure.
+    #[error("an inner pressure needs a body of large strain: leave `.small_strain()` out")]
+    PressureSmallStrain,
+    /// An inner pressure in a body without a hole.
+    #[error(
+        "the mesh has no hole for an inner pressure: take an annulus or a polygon with holes, or leave `.inner_pressure` out"
+    )]
+    NoHole,
     /// No material was given.
     #[error(
         "the body has no material: call `.material(LinearElastic::plane_stress(E, nu).density(rho))`"

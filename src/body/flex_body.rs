@@ -59,6 +59,7 @@ impl FlexBody {
     ) -> Self {
         let zeros = vec![0.0; model.n_dofs()];
         let arms = Arms::new(&model, frame);
+        let state = FlexState::at_rest(&model, large.as_deref(), arms.origin);
         Self {
             frame,
             is_fixed,
@@ -70,7 +71,7 @@ impl FlexBody {
             contact,
             carrier_contact: contact,
             user_data,
-            state: FlexState::at_rest(model.rest_positions(), arms.origin),
+            state,
             arms,
             is_started: false,
             contact_force: zeros.clone(),

@@ -9,7 +9,7 @@ use super::set::{FlexBodySet, Slot};
 use super::state::FlexState;
 use super::stillness::Stillness;
 use super::{Anchor, Attachment, AttachmentKind, AttachmentTarget};
-use crate::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+use crate::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel, InnerPressure};
 use crate::fe::model_record::{ModelRecord, ModelRecordError};
 use crate::fe::record::KnownLaws;
 use crate::math::Vec2;
@@ -44,6 +44,7 @@ struct BodyRecord {
     is_new: bool,
     n_idle_pins: usize,
     is_large: bool,
+    pressures: Vec<InnerPressure>,
 }
 
 impl BodyRecord {
@@ -73,6 +74,10 @@ impl BodyRecord {
             is_new: body.is_new,
             n_idle_pins: body.n_idle_pins,
             is_large: body.large.is_some(),
+            pressures: body
+                .large
+                .as_ref()
+                .map_or_else(Vec::new, |large| large.pressures().to_vec()),
         })
     }
 
@@ -97,7 +102,10 @@ impl BodyRecord {
         }
         let large = match self.is_large {
             true => {
-                let description = FiniteStrainDescription::of_model(&model);
+                let mut description = FiniteStrainDescription::of_model(&model);
+                if let Some(description) = &mut description {
+                    description.pressures = self.pressures;
+                }
                 let found = description.and_then(|one| FiniteStrainModel::assemble(one).ok());
                 Some(Arc::new(found.ok_or(ModelRecordError::Differs)?))
             }

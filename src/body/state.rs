@@ -4,6 +4,8 @@
 //! `Σ m u = 0` and `Σ m X × u = 0`, which makes the split unique.
 
 use super::frame::{Arms, Frame};
+use crate::fe::finite_strain::FiniteStrainModel;
+use crate::fe::model::Model;
 use crate::math::{Vec2, cross, node_vec, perp, rotation, set_node_vec};
 
 /// Rigid motion of a body's frame.
@@ -32,7 +34,7 @@ pub struct FrameMotion {
 pub struct BodyEnergy {
     /// Kinetic energy.
     pub kinetic: f64,
-    /// Elastic energy.
+    /// Elastic energy, and that of gases shut in holes: the work they can do until they are at the pressure outside.
     pub elastic: f64,
 }
 
@@ -104,8 +106,9 @@ pub struct FlexState {
 }
 
 impl FlexState {
-    /// A body at rest in its reference placement.
-    pub fn at_rest(rest: &[f64], centre: Vec2) -> Self {
+    /// A body at rest in its reference placement, where gases that are shut in have energy.
+    pub(super) fn at_rest(model: &Model, large: Option<&FiniteStrainModel>, centre: Vec2) -> Self {
+        let rest = model.rest_positions();
         let zeros = vec![0.0; rest.len()];
         Self {
             position: rest.to_vec(),
@@ -120,7 +123,7 @@ impl FlexState {
             loads: KnownLoads::default(),
             torque: 0.0,
             kinetic_energy: 0.0,
-            elastic_energy: 0.0,
+            elastic_energy: large.map_or(0.0, |large| large.rest_energy()),
         }
     }
 

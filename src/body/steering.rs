@@ -7,7 +7,9 @@ use super::frame::Arms;
 use super::materials::Region;
 use super::state::FlexState;
 use super::stillness::Stillness;
-use crate::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+use crate::fe::finite_strain::{
+    FiniteStrainDescription, FiniteStrainError, FiniteStrainModel, InnerPressure, PressureError,
+};
 use crate::fe::material::Material;
 use crate::fe::model::ModelDescription;
 use crate::math::{Vec2, node_vec, perp, rotation, set_node_vec};
@@ -210,14 +212,73 @@ impl FlexBody {
         self.remake(|description| description.thickness = thickness)
     }
 
+    /// Puts another pressure into a hole (holes are numbered from zero, by their lowest corner); returns the work of the pump (J): by how much
+    /// the stored energy rises. That of a constant pressure is none, it works in the steps to come.
+    ///
+    /// ```
+    /// use foil2d::prelude::*;
+    /// let mut tyre = FlexBodyBuilder::annulus(0.25, 0.3, 0.05)
+    ///     .material(LinearElastic::plane_strain(2e6, 0.45).density(1100.0))
+    ///     .build()?;
+    /// let work = tyre.set_inner_pressure(0, InnerPressure::isothermal(2e4))?;
+    /// assert!(work > 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the body is one of small strain, has no such hole, or a number is out of its range; nothing is then changed.
+    pub fn set_inner_pressure(
+        &mut self,
+        hole: usize,
+        pressure: InnerPressure,
+    ) -> Result<f64, BuildError> {
+        let large = self.large.as_ref();
+        let large = large.ok_or(BuildError::PressureSmallStrain)?;
+        let before = large.elastic_energy(&self.state.position);
+        let large = large.with_pressure(hole, pressure)?;
+        self.state.elastic_energy = large.elastic_energy(&self.state.position);
+        self.large = Some(Arc::new(large));
+        self.stillness = Stillness::default();
+        self.is_disturbed = true;
+        Ok(self.state.elastic_energy - before)
+    }
+
+    /// Area of a hole (m²), and of which pressure (Pa) above that outside its gas is there; the latter is none in a body of small strain.
+    fn hole(&self, hole: usize) -> Result<[f64; 2], BuildError> {
+        let at = &self.state.position;
+        let large = self.large.as_ref();
+        let large = large.ok_or(BuildError::PressureSmallStrain)?;
+        let found = large.hole_area(hole, at).zip(large.hole_pressure(hole, at));
+        let n_holes = large.n_holes();
+        let missing = FiniteStrainError::from(PressureError::Hole { hole, n_holes });
+        found.map(<[f64; 2]>::from).ok_or(missing.into())
+    }
+
+    /// Area of a hole of a body of large strain as it is deformed (m²).
+    ///
+    /// # Errors
+    /// If the body is one of small strain, or has no such hole.
+    pub fn inner_area(&self, hole: usize) -> Result<f64, BuildError> {
+        self.hole(hole).map(|[area, _]| area)
+    }
+
+    /// Pressure in a hole of a body of large strain above that outside (Pa), zero where there is none.
+    ///
+    /// # Errors
+    /// If the body is one of small strain, or has no such hole.
+    pub fn gas_pressure(&self, hole: usize) -> Result<f64, BuildError> {
+        self.hole(hole).map(|[_, pressure]| pressure)
+    }
+
     fn remake(&mut self, change: impl FnOnce(&mut ModelDescription)) -> Result<(), BuildError> {
         let model = self.model.remade(change)?;
         check_range(&model)?;
-        let large = match self.large {
+        let large = match &self.large {
             None => None,
-            Some(_) => {
+            Some(before) => {
                 let description = FiniteStrainDescription::of_model(&model);
-                let description = description.ok_or(BuildError::NoLargeLaw)?;
+                let mut description = description.ok_or(BuildError::NoLargeLaw)?;
+                description.pressures = before.pressures().to_vec();
                 Some(Arc::new(FiniteStrainModel::assemble(description)?))
             }
         };

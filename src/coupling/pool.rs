@@ -46,7 +46,9 @@ impl FlexPool {
         let fits = |block: &FlexBlock| {
             Arc::ptr_eq(block.model(), body.model()) && block.is_explicit() == is_explicit
         };
-        if let Some(block) = kept.filter(|block| fits(block)) {
+        if let Some(mut block) = kept.filter(|block| fits(block))
+            && block.take_large(body.large())
+        {
             return block;
         }
         let (model, fixed) = (Arc::clone(body.model()), body.fixed_dofs().to_vec());

@@ -33,6 +33,10 @@ functions! {
     exp(power) = exp;
     /// Natural logarithm.
     ln(value) = log;
+    /// `e` to a power, less one.
+    exp_m1(power) = expm1;
+    /// Natural logarithm of one and a value.
+    ln_1p(value) = log1p;
     /// `√(x² + y²)`.
     hypot(x, y) = hypot;
 }

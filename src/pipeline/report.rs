@@ -72,7 +72,7 @@ pub struct JointReport {
 pub struct EnergyReport {
     /// Kinetic energy.
     pub kinetic: f64,
-    /// Elastic energy.
+    /// Elastic energy, and that of gases shut in holes: the work they can do until they are at the pressure outside.
     pub elastic: f64,
     /// Potential energy of gravity, zero at the origin.
     pub potential: f64,
@@ -80,7 +80,7 @@ pub struct EnergyReport {
     /// integrators. `total() - swing` is constant where nothing dissipates, up to the step's limit of stability.
     pub swing: f64,
     /// What friction, damping, restitution and the integrator took since the pipeline was made: work done by applied
-    /// forces and prescribed motion less the gain of kinetic and elastic energy, over bodies while they were claimed.
+    /// forces, constant inner pressures and prescribed motion less the gain of kinetic and elastic energy, over bodies while they were claimed.
     pub dissipated: f64,
 }
 

@@ -287,13 +287,18 @@ impl FlexBlock {
         }
     }
 
-    /// Work of the applied forces over the step, `Σ f·(x' - x)`, and of the pins that move, by the mean of their reactions (J).
+    /// Work of the applied forces over the step, `Σ f·(x' - x)`, of constant inner pressures, and of the pins that move, by the mean of their
+    /// reactions (J).
     pub fn applied_work(&self) -> f64 {
         let arrays = [&self.force[..], &self.position, &self.start_position];
         let work = sum_over(arrays, |[force, end, start]| force * (end - start));
         let late = self.loads.late.iter().enumerate();
         let late = late.map(|(dof, f)| f * (self.position[dof] - self.start_position[dof]));
-        work + late.sum::<f64>() + self.pin_work()
+        let pressure = self.large.as_ref().map_or(0.0, |large| {
+            let model = &large.model;
+            model.pressure_work(&self.start_position, &self.position)
+        });
+        work + late.sum::<f64>() + self.pin_work() + pressure
     }
 
     fn pin_work(&self) -> f64 {

@@ -104,6 +104,19 @@ impl FlexBlock {
         block
     }
 
+    /// Takes over a body of large strain of the same model, whose inner pressures may have changed; `false` if its matrix couples other nodes.
+    pub fn take_large(&mut self, model: Option<&Arc<FiniteStrainModel>>) -> bool {
+        match (&mut self.large, model) {
+            (Some(large), Some(model)) if Arc::ptr_eq(&large.model, model) => true,
+            (Some(large), Some(model)) if large.model.has_layout_of(model) => {
+                large.model = Arc::clone(model);
+                true
+            }
+            (None, None) => true,
+            _ => false,
+        }
+    }
+
     /// Whether the body is one of large strain.
     pub fn is_large(&self) -> bool {
         self.large.is_some()

@@ -274,15 +274,37 @@ fn a_body_is_made_of_it_and_pinned_by_name() -> Result<(), Box<dyn std::error::E
 }
 
 #[test]
+fn quadrilaterals_of_eight_nodes_are_those_of_the_library() {
+    let msh = read("grid_quad8_41_ascii");
+    assert!(msh.mesh.cells().all(|cell| cell.kind == CellKind::Quad8));
+    let sum: f64 = (0..msh.mesh.n_cells()).map(|cell| area(&msh, cell)).sum();
+    assert!((sum - msh.mesh.area()).abs() < 1e-13);
+    // Midside nodes are in the middle of the sides that gmsh drew straight.
+    for cell in msh.mesh.cells() {
+        for side in 0..4 {
+            let at = |local: usize| msh.mesh.nodes()[cell.nodes[local]];
+            let [from, to, middle] = [at(side), at((side + 1) % 4), at(4 + side)];
+            for axis in 0..2 {
+                let mean = 0.5 * (from[axis] + to[axis]);
+                assert!((middle[axis] - mean).abs() < 1e-9, "side {side}");
+            }
+        }
+    }
+}
+
+#[test]
 fn what_is_no_cell_of_the_library_is_told_by_its_name_and_line() {
-    let error = MshMesh::read(path("grid_quad8_41_ascii")).expect_err("no cells of eight nodes");
+    let text = std::fs::read_to_string(path("grid_quad8_41_ascii")).expect("it is there");
+    // The block of cells, said to have a node in their middle too.
+    let text = text.replacen("\n2 1 16 ", "\n2 1 10 ", 1);
+    let error = MshMesh::from_bytes(text.as_bytes()).expect_err("no cells of nine nodes");
     let MshError::UnsupportedElement {
         place, name, kind, ..
     } = error
     else {
         panic!("{error}");
     };
-    assert_eq!((name, kind), ("8-node quadrilateral", 16));
+    assert_eq!((name, kind), ("9-node quadrilateral", 10));
     assert!(
         matches!(place, MshPlace::Line(line) if line > 70),
         "{place}"

@@ -4,6 +4,7 @@ use super::support::*;
 use foil2d::fe::material::hyperelastic::{HyperelasticSolid, StableNeoHookean};
 use foil2d::fe::mesh::CellKind;
 use foil2d::kkt::ConstraintFunction;
+use foil2d::pipeline::Snapshot;
 
 #[test]
 fn three_hundred_steps_saved_and_three_hundred_more_are_six_hundred() {
@@ -307,4 +308,51 @@ fn a_pile_restored_after_every_step_never_differs() {
         }
     }
     step_by_step(run, 120);
+}
+
+/// Gases and constant pressures, of which one is changed on the way, are saved with their bodies.
+#[test]
+fn inner_pressures_are_saved() {
+    let mut world = PhysicsWorld::new();
+    let floor = ColliderBuilder::cuboid(5.0, 0.5).translation(vec2(0.0, -0.5));
+    world.insert_collider(floor, None);
+    let mut flex_bodies = FlexBodySet::new();
+    let rubber = LinearElastic::plane_strain(1e6, 0.4).density(1000.0);
+    let mut tyres = Vec::new();
+    for (place, pressure) in [
+        InnerPressure::adiabatic(2e4, 1.4).outside(9e4),
+        InnerPressure::constant(1e4),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let tyre = FlexBodyBuilder::annulus(0.25, 0.3, 0.1)
+            .material(rubber)
+            .inner_pressure(pressure)
+            .linvel([0.3, 0.0])
+            .translation([place as f64, 0.4]);
+        let tyre = flex_bodies.insert(tyre, &mut world);
+        tyres.push(tyre.expect("the description is right"));
+    }
+    let mut flex = FlexPipeline::new();
+    for _ in 0..20 {
+        flex.step(&mut world, &mut flex_bodies).expect("a step");
+    }
+    let body = flex_bodies.get_mut(tyres[1]).expect("it is there");
+    body.set_inner_pressure(0, InnerPressure::isothermal(3e4))
+        .expect("a gas");
+    let saved = Snapshot::take(&world, &flex_bodies, &flex).expect("all laws are built in");
+    let (mut other_world, mut others, mut other_flex) = saved.restore().expect("a sound one");
+    for step in 0..40 {
+        flex.step(&mut world, &mut flex_bodies).expect("a step");
+        let outcome = other_flex.step(&mut other_world, &mut others);
+        outcome.expect("a step");
+        let same = motion_bits(&world, &flex_bodies) == motion_bits(&other_world, &others);
+        assert!(same, "step {step}");
+    }
+    for tyre in tyres {
+        let pressure = flex_bodies[tyre].gas_pressure(0).expect("a hole");
+        assert_eq!(others[tyre].gas_pressure(0), Ok(pressure));
+        assert!(pressure > 5e3);
+    }
 }

@@ -42,14 +42,17 @@ pub(super) struct Deformed {
     pub(super) amplitudes: Vec<[f64; 2]>,
     /// Gradients at the guarded places.
     pub(super) guarded: Vec<[f64; 4]>,
+    /// Positions around the holes under pressure, relative to one of each (m).
+    pub(super) around: Vec<f64>,
 }
 
 impl Deformed {
-    pub(super) fn new(n_points: usize, n_guarded: usize) -> Self {
+    pub(super) fn new(n_points: usize, n_guarded: usize, n_around: usize) -> Self {
         Self {
             gradients: vec![[0.0; 4]; n_points],
             amplitudes: vec![[0.0; 2]; n_points],
             guarded: vec![[0.0; 4]; n_guarded],
+            around: vec![0.0; n_around],
         }
     }
 

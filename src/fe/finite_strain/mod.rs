@@ -18,6 +18,9 @@
 //! | `point` | stress and moduli at one quadrature point |
 //! | `cells` | cells of one node count, and their kernels |
 //! | `hourglass` | the modes that the one point of a four-node cell does not see |
+//! | `description` | what a body is assembled from |
+//! | `pressure` | a constant pressure, a gas that is shut in |
+//! | `hole` | holes of the body under pressure |
 //! | `linearization` | which matrix stands for the derivative of the forces |
 //! | `model` | the assembled body |
 //! | `solid` | law and density of a region |
@@ -27,17 +30,22 @@
 //! modes resist as its inner modes let them at small strain.
 
 mod cells;
+mod description;
 mod guard;
+mod hole;
 mod hourglass;
 mod linearization;
 mod model;
 mod point;
+mod pressure;
 mod solid;
 mod stress;
 
+pub use description::{FiniteStrainDescription, FiniteStrainError};
 pub use linearization::Linearization;
-pub use model::{Deformation, FiniteStrainDescription, FiniteStrainError, FiniteStrainModel};
+pub use model::{Deformation, FiniteStrainModel};
 pub use point::Form;
+pub use pressure::{ATMOSPHERE, InnerPressure, PressureError};
 pub use solid::Solid;
 
 #[cfg(doc)]

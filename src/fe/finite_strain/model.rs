@@ -2,164 +2,20 @@
 
 use super::Inadmissible;
 use super::cells::{CellGroup, Deformed};
+use super::description::{FiniteStrainDescription, FiniteStrainError};
+use super::hole::Hole;
 use super::hourglass::Hourglass;
 use super::linearization::Linearization;
 use super::point::Form;
-use super::solid::Solid;
 use crate::fe::element::quadrature::SQUARE_1;
-use crate::fe::element::{Element, ElementError, MAX_NODES, kinematics::physical_gradient};
+use crate::fe::element::{ElementError, MAX_NODES, kinematics::physical_gradient};
+use crate::fe::material::Rayleigh;
 use crate::fe::material::hyperelastic::Hyperelastic;
-use crate::fe::material::{Material, MaterialError, Plane, Rayleigh};
 use crate::fe::mesh::{Cell, Mesh};
-use crate::fe::model::{Model, ModelError, element_of, placed_nodes};
+use crate::fe::model::{ModelError, element_of, placed_nodes};
 use crate::fe::record::ElementRecord;
 use crate::linalg::block_matrix::BlockMatrix;
 use std::sync::Arc;
-use thiserror::Error;
-
-/// Why a body of large strain cannot be assembled.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum FiniteStrainError {
-    /// A cell has no element, an element refuses it, or the thickness is not positive.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// A parameter of the law, the density or the damping is out of its range.
-    #[error(transparent)]
-    Material(#[from] MaterialError),
-    /// There is not one rest position per dof.
-    #[error("{found} rest positions were given for {expected} dofs: give x and y of every node")]
-    RestPositions {
-        /// Numbers given.
-        found: usize,
-        /// Numbers needed.
-        expected: usize,
-    },
-}
-
-/// What a body of large strain is assembled from.
-#[derive(Clone, Debug)]
-pub struct FiniteStrainDescription {
-    /// Nodes and cells.
-    pub mesh: Arc<Mesh>,
-    /// Undeformed positions in the world's axes, interleaved (m).
-    pub rest_positions: Vec<f64>,
-    /// Elements that replace the default ones of their node count; their quadrature and shape functions are used.
-    pub elements: Vec<Arc<dyn Element>>,
-    /// The constitutive law.
-    pub law: Arc<dyn Hyperelastic>,
-    /// Density of the undeformed material (kg/m^3).
-    pub density: f64,
-    /// Viscous damping; its stiffness part acts as decay `2 η / dt` of the energy–momentum form, its mass part drags all motion.
-    pub damping: Rayleigh,
-    /// Thickness out of the plane (m).
-    pub thickness: f64,
-    /// What the stress out of the plane is told by; the law knows the plane alone.
-    pub plane: Plane,
-    /// Regions of the mesh that are made of something else; a later one of the same region counts.
-    pub regions: Vec<(u32, Solid)>,
-}
-
-impl FiniteStrainDescription {
-    /// A body 1 m thick where its mesh is, of a density (kg/m^3), without damping.
-    pub fn new(mesh: Mesh, law: impl Hyperelastic + 'static, density: f64) -> Self {
-        Self {
-            plane: Plane::Strain,
-            regions: Vec::new(),
-            rest_positions: mesh.nodes().iter().flatten().copied().collect(),
-            mesh: Arc::new(mesh),
-            elements: Vec::new(),
-            law: Arc::new(law),
-            density,
-            damping: Rayleigh::NONE,
-            thickness: 1.0,
-        }
-    }
-
-    /// A body of a material, whose mesh is placed at `rest_positions` (m); `None` if the material has no law for large strains.
-    pub fn of_material(
-        mesh: Arc<Mesh>,
-        rest_positions: Vec<f64>,
-        elements: &[Arc<dyn Element>],
-        material: &dyn Material,
-        thickness: f64,
-    ) -> Option<Self> {
-        let Solid {
-            law,
-            density,
-            plane,
-        } = Solid::of_material(material)?;
-        Some(Self {
-            mesh,
-            rest_positions,
-            elements: elements.to_vec(),
-            law,
-            density,
-            damping: material.rayleigh(),
-            thickness,
-            plane,
-            regions: Vec::new(),
-        })
-    }
-
-    /// The body that a model is at rest; `None` if one of its materials has no law for large strains.
-    pub fn of_model(model: &Model) -> Option<Self> {
-        let description = &model.description;
-        let own = Self::of_material(
-            Arc::clone(&description.mesh),
-            description.rest_positions.clone(),
-            &description.elements,
-            description.material.as_ref(),
-            description.thickness,
-        )?;
-        own.with_region_materials(&description.regions)
-    }
-
-    /// The same body with these materials in some regions, damped as the others are; `None` if one of them has no law for large strains.
-    pub fn with_region_materials(mut self, regions: &[(u32, Arc<dyn Material>)]) -> Option<Self> {
-        for (region, material) in regions {
-            let solid = Solid::of_material(material.as_ref())?;
-            self.regions.push((*region, solid));
-        }
-        Some(self)
-    }
-
-    /// What the cells of a region are made of.
-    fn solid_of(&self, region: u32) -> Solid {
-        let own = self.regions.iter().rev().find(|(own, _)| *own == region);
-        own.map_or_else(|| self.solid(), |(_, solid)| solid.clone())
-    }
-
-    fn solid(&self) -> Solid {
-        Solid {
-            law: Arc::clone(&self.law),
-            density: self.density,
-            plane: self.plane,
-        }
-    }
-
-    fn validate(&self) -> Result<(), FiniteStrainError> {
-        self.solid().validate()?;
-        for (_, solid) in &self.regions {
-            solid.validate()?;
-        }
-        let is_damping = |value: f64| value >= 0.0 && value.is_finite();
-        let Rayleigh { mass, stiffness } = self.damping;
-        if !is_damping(mass) {
-            return Err(MaterialError::DampingMass { value: mass }.into());
-        }
-        if !is_damping(stiffness) {
-            return Err(MaterialError::DampingStiffness { value: stiffness }.into());
-        }
-        if !(self.thickness.is_finite() && self.thickness > 0.0) {
-            return Err(ModelError::Thickness(self.thickness).into());
-        }
-        let (found, expected) = (self.rest_positions.len(), 2 * self.mesh.n_nodes());
-        if found != expected {
-            return Err(FiniteStrainError::RestPositions { found, expected });
-        }
-        Ok(())
-    }
-}
 
 /// Gradients of deformation at the quadrature points: at the beginning of a step, and at the end last asked for.
 #[derive(Clone, Debug)]
@@ -208,6 +64,8 @@ pub struct FiniteStrainModel {
     n_points: usize,
     n_guarded: usize,
     masses: Vec<f64>,
+    /// All holes, if there is a pressure in one.
+    pub(super) holes: Vec<Hole>,
     /// The zero matrix with the pattern of the tangent.
     pattern: BlockMatrix,
 }
@@ -221,18 +79,19 @@ impl FiniteStrainModel {
         description.validate()?;
         let mesh = &description.mesh;
         let n_nodes = mesh.n_nodes();
-        let pattern = BlockMatrix::from_cells(
-            n_nodes,
-            mesh.cells()
-                .map(|cell| cell.nodes)
-                .collect::<Vec<_>>()
-                .into_iter(),
-        );
+        let mut holes = Hole::all(&description)?;
+        let coupled = mesh.cells().map(|cell| cell.nodes);
+        let coupled: Vec<_> = coupled
+            .chain(holes.iter().filter_map(Hole::coupled))
+            .collect();
+        let pattern = BlockMatrix::from_cells(n_nodes, coupled.into_iter());
+        holes.iter_mut().for_each(|hole| hole.place(&pattern));
         let mut model = Self {
             groups: Vec::new(),
             n_points: 0,
             n_guarded: 0,
             masses: vec![0.0; n_nodes],
+            holes,
             pattern,
             description,
         };
@@ -351,9 +210,11 @@ impl FiniteStrainModel {
     /// # Panics
     /// If there is not one entry per dof.
     pub fn deformation(&self, positions: &[f64]) -> Deformation {
+        let n_around = self.holes.last().map_or(0, |hole| hole.positions().end);
+        let deformed = Deformed::new(self.n_points, self.n_guarded, n_around);
         let mut deformation = Deformation {
-            start: Deformed::new(self.n_points, self.n_guarded),
-            end: Deformed::new(self.n_points, self.n_guarded),
+            start: deformed.clone(),
+            end: deformed,
         };
         self.begin(positions, &mut deformation);
         deformation
@@ -368,10 +229,14 @@ impl FiniteStrainModel {
         for group in &self.groups {
             group.deform(positions, &mut deformation.start);
         }
+        for hole in &self.holes {
+            hole.gather_into(positions, &mut deformation.start.around[hole.positions()]);
+        }
         let Deformation { start, end } = deformation;
         end.gradients.copy_from_slice(&start.gradients);
         end.amplitudes.copy_from_slice(&start.amplitudes);
         end.guarded.copy_from_slice(&start.guarded);
+        end.around.copy_from_slice(&start.around);
     }
 
     /// Subtracts the internal force (N) from `residual`, for a step that ends at `positions` (m), and keeps its deformation for
@@ -396,6 +261,12 @@ impl FiniteStrainModel {
             let law = group.solid.law.as_ref();
             group.subtract_force(law, form, positions, pair, residual)?;
         }
+        for hole in &self.holes {
+            let end = &mut deformation.end.around[hole.positions()];
+            hole.gather_into(positions, end);
+            let start = &deformation.start.around[hole.positions()];
+            hole.subtract_force(form, [start, end], residual);
+        }
         Ok(())
     }
 
@@ -419,16 +290,24 @@ impl FiniteStrainModel {
             let law = group.solid.law.as_ref();
             group.add_tangent(law, (form, kind), pair, matrix);
         }
+        for hole in &self.holes {
+            let pair = [&deformation.start, &deformation.end];
+            let pair = pair.map(|one| &one.around[hole.positions()]);
+            hole.add_tangent((form, kind), pair, matrix);
+        }
     }
 
-    /// Stored energy (J) at `positions` (m); not a number where the law has none.
+    /// Stored energy (J) at `positions` (m), that of gases in holes included; not a number where the law or a gas has none.
     ///
     /// # Panics
     /// If there is not one entry per dof.
     pub fn elastic_energy(&self, positions: &[f64]) -> f64 {
         self.assert_length(positions);
         let energy = |group: &CellGroup| group.energy(group.solid.law.as_ref(), positions);
-        self.groups.iter().map(energy).sum()
+        let elastic: f64 = self.groups.iter().map(energy).sum();
+        self.holes
+            .iter()
+            .fold(elastic, |sum, hole| sum + hole.energy(positions))
     }
 
     pub(super) fn assert_length(&self, dofs: &[f64]) {

@@ -16,7 +16,7 @@ pub(super) enum ElementKind {
 const VOLUME: &str = "a plane body has no volumes: mesh in two dimensions only (gmsh -2)";
 const ORDER: &str = "set Mesh.ElementOrder to 1 or 2";
 const INNER_NODE: &str =
-    "use elements of first order, or triangles of second (Mesh.ElementOrder, Mesh.RecombineAll)";
+    "use serendipity elements (Mesh.SecondOrderIncomplete), or those of first order";
 
 impl ElementKind {
     /// The element of gmsh's number `kind`.
@@ -37,8 +37,8 @@ impl ElementKind {
             2 => Self::Cell(CellKind::Tri3),
             3 => Self::Cell(CellKind::Quad4),
             9 => Self::Cell(CellKind::Tri6),
+            16 => Self::Cell(CellKind::Quad8),
             10 => Self::Other("9-node quadrilateral", INNER_NODE),
-            16 => Self::Other("8-node quadrilateral", INNER_NODE),
             4 | 11 | 29..=31 => Self::Other("tetrahedron", VOLUME),
             5 | 12 | 17 | 92 | 93 => Self::Other("hexahedron", VOLUME),
             6 | 13 | 18 | 90 | 91 => Self::Other("prism", VOLUME),

@@ -19,6 +19,7 @@ const fn vtk_type(kind: CellKind) -> u8 {
         CellKind::Tri3 => 5,
         CellKind::Quad4 => 9,
         CellKind::Tri6 => 22,
+        CellKind::Quad8 => 23,
     }
 }
 
