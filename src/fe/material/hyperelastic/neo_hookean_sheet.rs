@@ -67,15 +67,17 @@ impl NeoHookeanSheet {
         if d <= 0.0 {
             return squared;
         }
-        loop {
+        let next = |u: f64, squared: f64| {
             let residual = d * (squared - 1.0) + area + nu * u;
-            let next = u - residual / (d * squared + nu);
-            // Not a number ends it, too.
-            if !(next < u) {
-                return squared;
-            }
-            (u, squared) = (next, exp(next));
+            u - residual / (d * squared + nu)
+        };
+        let mut fallen = next(u, squared);
+        // What is not a number falls no more, either.
+        while fallen < u {
+            (u, squared) = (fallen, exp(fallen));
+            fallen = next(u, squared);
         }
+        squared
     }
 
     /// `-d ln z / d ln J`.
