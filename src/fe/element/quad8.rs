@@ -11,7 +11,7 @@ use crate::fe::record::ElementRecord;
 /// bends exactly where it is a parallelogram; other cells lose some of that.
 ///
 /// Nine points are more than its volumes can follow where the material all but keeps its volume: at `ν = .4999` a panel of Cook's on 4 × 4 cells
-/// misses an eighth of its deflection, and stresses at the points scatter. [`Tri6`](super::Tri6) and [`Quad4`](super::Quad4) do not.
+/// misses a seventh of its deflection, and stresses at the points scatter. [`Tri6`](super::Tri6) and [`Quad4`](super::Quad4) do not.
 ///
 /// ```text
 ///       eta
