@@ -8,8 +8,8 @@ pub use super::model_record::ModelRecordError;
 
 use super::element::{Element, Quad4, Quad8, Tri3, Tri6};
 use super::material::hyperelastic::{
-    Corotated, Gent, Hyperelastic, HyperelasticSolid, MooneyRivlin, MooneyRivlinSheet, NeoHookean,
-    NeoHookeanSheet, StVenantKirchhoff, StableNeoHookean,
+    Corotated, Gent, Hencky, Hyperelastic, HyperelasticSolid, J2Plasticity, MooneyRivlin,
+    MooneyRivlinSheet, NeoHookean, NeoHookeanSheet, StVenantKirchhoff, StableNeoHookean,
 };
 use super::material::{LinearElastic, Material, Rayleigh};
 use std::sync::Arc;
@@ -70,6 +70,10 @@ pub enum LawRecord {
     MooneyRivlinSheet(MooneyRivlinSheet),
     /// [`Gent`].
     Gent(Gent),
+    /// [`Hencky`].
+    Hencky(Hencky),
+    /// [`J2Plasticity`].
+    J2Plasticity(J2Plasticity),
 }
 
 impl LawRecord {
@@ -85,6 +89,8 @@ impl LawRecord {
             Self::MooneyRivlin(law) => Arc::new(*law),
             Self::MooneyRivlinSheet(law) => Arc::new(*law),
             Self::Gent(law) => Arc::new(*law),
+            Self::Hencky(law) => Arc::new(*law),
+            Self::J2Plasticity(law) => Arc::new(*law),
         })
     }
 }

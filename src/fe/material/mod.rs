@@ -108,6 +108,25 @@ pub enum MaterialError {
         /// The value given (-).
         value: f64,
     },
+    /// The yield stress is not a positive finite number.
+    #[error(
+        "the yield stress is {value} Pa: give a positive finite value, such as 2.5e8 for mild steel, or take an elastic law"
+    )]
+    YieldStress {
+        /// The value given (Pa).
+        value: f64,
+    },
+    /// A parameter of hardening is negative or not finite.
+    #[error(
+        "the {name} of hardening is {value}: give zero or a positive finite value, and a stress to saturate at that is no less than the yield \
+         stress; material that softens fails where its mesh is finest"
+    )]
+    Hardening {
+        /// Which parameter.
+        name: &'static str,
+        /// The value (Pa, of the rate -).
+        value: f64,
+    },
     /// The density is not a positive finite number.
     #[error("the density is {value} kg/m^3: set a positive finite value with `.density(rho)`")]
     Density {

@@ -32,6 +32,8 @@
 //! | [`Gent`] | rubber that is pulled until its chains are straight |
 //! | [`NeoHookeanSheet`] | thin sheets, free to change their thickness; `ν = 0.5` is allowed |
 //! | [`MooneyRivlinSheet`] | thin sheets of rubber that keep their volume |
+//! | [`Hencky`] | metals before they yield |
+//! | [`J2Plasticity`] | metals that yield: what has flowed stays, see there |
 //! | [`StVenantKirchhoff`] | comparisons: it softens when compressed below `1/√3` and stays inverted |
 //!
 //! Implementers are tested by [`conformance::check_law`].
@@ -40,6 +42,10 @@ pub mod conformance;
 mod constants;
 mod corotated;
 mod gent;
+mod hardening;
+mod hencky;
+mod j2;
+mod logarithmic;
 mod mooney_rivlin;
 mod neo_hookean;
 mod neo_hookean_sheet;
@@ -51,6 +57,9 @@ mod stable_neo_hookean;
 pub use constants::ElasticConstants;
 pub use corotated::Corotated;
 pub use gent::Gent;
+pub use hardening::Hardening;
+pub use hencky::Hencky;
+pub use j2::{J2Plasticity, PlasticState};
 pub use mooney_rivlin::{MooneyRivlin, MooneyRivlinSheet};
 pub use neo_hookean::NeoHookean;
 pub use neo_hookean_sheet::NeoHookeanSheet;
@@ -147,6 +156,11 @@ pub trait Hyperelastic: Send + Sync + Debug {
         let [a, b] = self.gradient(at);
         let area = at.j.abs().max(f64::MIN_POSITIVE);
         self.constants().poisson() * 2.0 * (a * at.t + b * at.j) / area
+    }
+
+    /// The plastic flow of a law that has one: its bodies keep what has flowed, and the functions here are those of material that never has.
+    fn plasticity(&self) -> Option<&J2Plasticity> {
+        None
     }
 
     /// What a snapshot writes of the law; bodies of one that is [`LawRecord::Unknown`] cannot be saved.

@@ -16,7 +16,7 @@ pub(super) fn slope_of_ln(a: f64, b: f64) -> f64 {
 
 /// `atanh(y)/y`.
 #[inline]
-fn quotient(y: f64) -> f64 {
+pub(super) fn quotient(y: f64) -> f64 {
     let squared = y * y;
     if squared < SERIES {
         let coefficients = [1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0, 1.0];
