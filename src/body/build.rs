@@ -81,9 +81,15 @@ impl FlexBodyBuilder {
     ) -> Result<Option<FiniteStrainDescription>, BuildError> {
         let pressures = self.pressures(mesh)?;
         if self.is_large == Some(false) {
-            return match pressures.is_empty() {
-                true => Ok(None),
-                false => Err(BuildError::PressureSmallStrain),
+            let mut all = regions.iter().map(|(_, own)| own).chain([material]);
+            let flowing = all.find_map(|one| {
+                let law = one.hyperelastic()?;
+                law.plasticity().is_some().then(|| law.name())
+            });
+            return match flowing {
+                Some(law) => Err(BuildError::FlowSmallStrain { law }),
+                None if pressures.is_empty() => Ok(None),
+                None => Err(BuildError::PressureSmallStrain),
             };
         }
         let mut materials = regions.iter().map(|(_, own)| own).chain([material]);

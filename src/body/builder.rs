@@ -184,7 +184,7 @@ impl FlexBodyBuilder {
 
     /// Makes a body that turns as far as it likes but bends and stretches little, by a hundredth of its lengths or so: the fastest, as one
     /// factorization serves for ever, and the only one of explicit steps, of a consistent mass and of surfaces without mass.
-    /// [`StepReport::overbent`](crate::pipeline::StepReport::overbent) tells where it is taken beyond that.
+    /// [`StepReport::overbent`](crate::pipeline::StepReport::overbent) tells where it is taken beyond that. What flows plastically is refused.
     pub fn small_strain(mut self) -> Self {
         self.is_large = Some(false);
         self

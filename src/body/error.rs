@@ -29,6 +29,19 @@ pub enum BuildError {
         "the material has no law for large strains: leave `.large_strain()` out, or take a `HyperelasticSolid` or `LinearElastic`"
     )]
     NoLargeLaw,
+    /// A material that flows in a body of small strain.
+    #[error(
+        "`.small_strain()` has no plastic flow, and the material flows by the law `{law}`: leave it out, or take a `LinearElastic` material"
+    )]
+    FlowSmallStrain {
+        /// Name of the law.
+        law: &'static str,
+    },
+    /// A body that flows is to be made of a material that flows by another law, or not at all.
+    #[error(
+        "what has flowed in a body belongs to its law: keep the plastic law, with another density or damping if you like, or build another body"
+    )]
+    FlowChanged,
     /// A body of large strain with a consistent mass.
     #[error(
         "the masses of a body of large strain are lumped: leave `.mass_kind` at `MassKind::Lumped`, or choose `.small_strain()`"

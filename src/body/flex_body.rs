@@ -71,7 +71,10 @@ impl FlexBody {
             contact,
             carrier_contact: contact,
             user_data,
-            state,
+            state: FlexState {
+                flowed: large.as_ref().map_or_else(Vec::new, |large| large.virgin()),
+                ..state
+            },
             arms,
             is_started: false,
             contact_force: zeros.clone(),
@@ -265,10 +268,7 @@ impl FlexBody {
                     .model
                     .mass()
                     .inner(&self.state.velocity, &self.state.velocity),
-            elastic: match &self.large {
-                Some(large) => large.elastic_energy(&self.state.position),
-                None => self.model.elastic_energy(self.local_displacements()),
-            },
+            elastic: self.elastic_energy(),
         }
     }
 

@@ -10,6 +10,7 @@ use super::state::FlexState;
 use super::stillness::Stillness;
 use super::{Anchor, Attachment, AttachmentKind, AttachmentTarget};
 use crate::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel, InnerPressure};
+use crate::fe::material::hyperelastic::PlasticState;
 use crate::fe::model_record::{ModelRecord, ModelRecordError};
 use crate::fe::record::KnownLaws;
 use crate::math::Vec2;
@@ -111,6 +112,10 @@ impl BodyRecord {
             }
             false => None,
         };
+        let n_flowing = large.as_ref().map_or(0, |large| large.virgin().len());
+        if state.flowed.len() != n_flowing || !state.flowed.iter().all(PlasticState::is_sound) {
+            return Err(ModelRecordError::Length("plastic strains"));
+        }
         let is_large = large.is_some();
         let frame: Option<Frame> = frame_of(model.rest_positions(), &self.is_fixed, is_large);
         let frame = frame.ok_or(ModelRecordError::Length("pins"))?;

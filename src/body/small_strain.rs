@@ -1,4 +1,4 @@
-//! How far the strains of a body are from small.
+//! How far the strains of a body are from small, and what of them stays.
 //!
 //! The strain of an edge `ΔX` whose ends move apart by `Δu` is
 //!
@@ -38,6 +38,41 @@ impl FlexBody {
             }
         }
         largest
+    }
+
+    pub(super) fn elastic_energy(&self) -> f64 {
+        let state = &self.state;
+        match &self.large {
+            Some(large) => large.energy_after(&state.position, &state.flowed).stored,
+            None => self.model.elastic_energy(self.local_displacements()),
+        }
+    }
+
+    /// Accumulated plastic strains `∫ √(2/3) |dp|` at the quadrature points of a cell (-), of a four-node cell at its middle; none of a material that
+    /// does not flow.
+    ///
+    /// # Panics
+    /// If the cell does not exist.
+    pub fn plastic_strains(&self, cell: usize) -> Vec<f64> {
+        let flowed = &self.state.flowed;
+        match &self.large {
+            Some(large) if !flowed.is_empty() => {
+                let points = flowed[large.points_of(cell)].iter();
+                points.map(|point| point.strain).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The largest accumulated plastic strain anywhere (-); zero of what has never flowed.
+    pub fn max_plastic_strain(&self) -> f64 {
+        let strains = self.state.flowed.iter().map(|point| point.strain);
+        strains.fold(0.0, f64::max)
+    }
+
+    /// What plastic flow has dissipated since the body was built (J).
+    pub fn plastic_dissipation(&self) -> f64 {
+        self.state.flow_energy
     }
 
     /// [`Self::neglected_strain`] where it is beyond `limit`: most bodies tell by their largest displacement that it is not.

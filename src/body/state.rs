@@ -5,6 +5,7 @@
 
 use super::frame::{Arms, Frame};
 use crate::fe::finite_strain::FiniteStrainModel;
+use crate::fe::material::hyperelastic::PlasticState;
 use crate::fe::model::Model;
 use crate::math::{Vec2, cross, node_vec, perp, rotation, set_node_vec};
 
@@ -103,6 +104,10 @@ pub struct FlexState {
     pub kinetic_energy: f64,
     /// Elastic energy (J).
     pub elastic_energy: f64,
+    /// What has flowed at the quadrature points; nothing of a body whose law does not flow.
+    pub flowed: Vec<PlasticState>,
+    /// What plastic flow has dissipated since the body was built (J).
+    pub flow_energy: f64,
 }
 
 impl FlexState {
@@ -124,6 +129,8 @@ impl FlexState {
             torque: 0.0,
             kinetic_energy: 0.0,
             elastic_energy: large.map_or(0.0, |large| large.rest_energy()),
+            flowed: Vec::new(),
+            flow_energy: 0.0,
         }
     }
 

@@ -177,8 +177,8 @@ impl FlexBody {
     /// from then on, and one of another density another momentum.
     ///
     /// # Errors
-    /// If the material is out of range, has no law for a body of large strain, or makes the body one that cannot be computed; nothing is then
-    /// changed.
+    /// If the material is out of range, has no law for a body of large strain, flows by another law than the body, or makes the body one that cannot
+    /// be computed; nothing is then changed.
     pub fn set_material(&mut self, material: impl Material + 'static) -> Result<(), BuildError> {
         material.validate()?;
         self.remake(|description| {
@@ -234,9 +234,13 @@ impl FlexBody {
     ) -> Result<f64, BuildError> {
         let large = self.large.as_ref();
         let large = large.ok_or(BuildError::PressureSmallStrain)?;
-        let before = large.elastic_energy(&self.state.position);
+        let stored = |large: &FiniteStrainModel| {
+            let state = &self.state;
+            large.energy_after(&state.position, &state.flowed).stored
+        };
+        let before = stored(large);
         let large = large.with_pressure(hole, pressure)?;
-        self.state.elastic_energy = large.elastic_energy(&self.state.position);
+        self.state.elastic_energy = stored(&large);
         self.large = Some(Arc::new(large));
         self.stillness = Stillness::default();
         self.is_disturbed = true;
@@ -282,6 +286,11 @@ impl FlexBody {
                 Some(Arc::new(FiniteStrainModel::assemble(description)?))
             }
         };
+        if let (Some(old), Some(new)) = (&self.large, &large)
+            && !new.flows_as(old)
+        {
+            return Err(BuildError::FlowChanged);
+        }
         let before = self.mass();
         self.arms = Arms::new(&model, self.frame);
         (self.model, self.large) = (Arc::new(model), large);

@@ -1,6 +1,7 @@
 //! What the material of a body bears: at quadrature points, and smoothed at nodes.
 
 use super::flex_body::FlexBody;
+use crate::fe::finite_strain::FiniteStrainModel;
 use crate::fe::model::ModelError;
 use crate::fe::recovery::{PointState, Stress, Stretch};
 use crate::math::sin_cos;
@@ -20,7 +21,7 @@ impl FlexBody {
         let Some(large) = &self.large else {
             return self.model.cell_stress(cell, self.local_displacements());
         };
-        let states = large.cell_states(cell, &self.state.position).into_iter();
+        let states = self.large_states(large, cell).into_iter();
         let pair = |state: PointState| {
             let [xx, xy, yx, yy] = state.gradient;
             let strain = [
@@ -55,7 +56,7 @@ impl FlexBody {
     /// If the cell does not exist.
     pub fn point_states(&self, cell: usize) -> Result<Vec<PointState>, ModelError> {
         if let Some(large) = &self.large {
-            return Ok(large.cell_states(cell, &self.state.position));
+            return Ok(self.large_states(large, cell));
         }
         let angle = self.angle();
         let (sin, cos) = sin_cos(angle);
@@ -77,6 +78,19 @@ impl FlexBody {
             }
         };
         Ok(found.map(state).collect())
+    }
+
+    /// The points of a cell of large strain, after what has flowed.
+    fn large_states(&self, large: &FiniteStrainModel, cell: usize) -> Vec<PointState> {
+        let (at, flowed) = (&self.state.position, &self.state.flowed);
+        let mut states = large.cell_states(cell, at);
+        if !flowed.is_empty() {
+            let stresses = large.cell_stress_after(cell, at, flowed);
+            for (state, stress) in states.iter_mut().zip(stresses) {
+                state.stress = stress;
+            }
+        }
+        states
     }
 
     /// Smoothed stress at every node, in the body's frame (Pa); of a body of large strain Cauchy's, in the world's axes.

@@ -6,6 +6,7 @@
 //!   keeps its mass. What is crushed flat at tens of metres a second may turn cells inside out (`StableNeoHookean`) or take cut steps (`NeoHookean`, Hooke's law).
 //! - An inner pressure acts on the edges of its hole, not on what else lies in there; holes do not join where walls meet. A gas couples all nodes around its hole with each other, which costs with
 //!   the square of their number.
+//! - Plasticity is isotropic and independent of rate, in plane strain. A body that flows keeps its law for life. Where strains change their direction its steps are of first order.
 //! - What rolls or spins while it is pressed, and is a body of large strain, is braked by that: contact forces act wholly within their step. A disc of rubber that rolls at 2 m/s loses .36 m/s in
 //!   the first second at 1/60 s, .09 at 1/240 s, and .05 at 1/60 s with `.small_strain()`.
 //! - In an island with a body of large strain contact forces act wholly within their step. Bodies of `.small_strain()` there vibrate with more damping, of a ratio of about .25 ω dt.

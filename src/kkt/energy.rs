@@ -45,6 +45,15 @@ impl Island {
         sum
     }
 
+    /// What plastic flow dissipates in the step, which is in the elastic energy of its end (J).
+    pub fn flow_energy(&self) -> f64 {
+        let flows = self.blocks.iter().map(|block| match block {
+            Block::Flex(block) => block.flow_energy(),
+            Block::Rigid(_) => 0.0,
+        });
+        flows.sum()
+    }
+
     /// Work of applied forces (J).
     pub(super) fn applied_work(&self) -> f64 {
         let works = self.blocks.iter().map(|block| match block {

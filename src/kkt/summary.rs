@@ -29,7 +29,7 @@ pub struct IslandSummary {
     pub joint_violation: f64,
     /// Energy at the beginning: kinetic, elastic (J).
     pub start_energy: [f64; 2],
-    /// Energy at the end: kinetic, elastic (J).
+    /// Energy at the end: kinetic, elastic with what plastic flow has dissipated (J).
     pub end_energy: [f64; 2],
     /// Work of applied forces and of prescribed bodies (J).
     pub work: f64,

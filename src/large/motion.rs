@@ -29,7 +29,7 @@ impl WorldMotion {
         0.5 * squares.sum::<f64>()
     }
 
-    /// Kinetic and stored energy (J).
+    /// Kinetic and stored energy (J) of a body that has not flowed, see [`FiniteStrainModel::energy_after`].
     pub fn energy(&self, model: &FiniteStrainModel) -> f64 {
         self.kinetic_energy(model) + model.elastic_energy(&self.position)
     }

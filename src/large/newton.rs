@@ -114,6 +114,38 @@ impl Newton {
         outcome
     }
 
+    /// Moves what is free by what the body answers to the way of the held dofs where it is, so that the iterations begin without the strains of ends
+    /// that have moved alone: those would flow.
+    pub(super) fn follow_held(&mut self, equation: &Equation<'_>, end: &mut [f64]) {
+        if self.evaluate(equation, equation.start).is_err() {
+            return;
+        }
+        self.matrix.fill_zero();
+        let kind = Linearization::Consistent;
+        let model = equation.model;
+        model.add_tangent(equation.form, kind, &self.deformation, &mut self.matrix);
+        for (dof, way) in self.residual.iter_mut().enumerate() {
+            let moved = end[dof] - equation.start[dof];
+            *way = if equation.is_held[dof] { moved } else { 0.0 };
+        }
+        self.increment.fill(0.0);
+        self.matrix
+            .multiply_add(-1.0, &self.residual, &mut self.increment);
+        self.matrix.constrain(equation.is_held);
+        self.work.n_factorizations += 1;
+        self.forget_factor();
+        if self.cholesky.factorize(&self.matrix).is_err() {
+            return;
+        }
+        for (increment, &is_held) in self.increment.iter_mut().zip(equation.is_held) {
+            *increment = if is_held { 0.0 } else { *increment };
+        }
+        self.cholesky.solve_in_place(&mut self.increment);
+        for (end, increment) in end.iter_mut().zip(&self.increment) {
+            *end += increment;
+        }
+    }
+
     fn iterate(
         &mut self,
         equation: &Equation<'_>,

@@ -6,6 +6,7 @@ use super::turn::{MeanRotation, turn};
 use super::{LargeError, LargeSettings, WorldMotion};
 use crate::body::Pin;
 use crate::fe::finite_strain::{FiniteStrainModel, Form};
+use crate::fe::material::hyperelastic::PlasticState;
 use crate::math::{atan2, sin_cos};
 use std::sync::Arc;
 
@@ -26,6 +27,8 @@ pub struct StepWork {
     pub n_at_rounding: usize,
     /// The largest residual left by the other parts, over the largest force of its part (-).
     pub residual: f64,
+    /// What plastic flow has dissipated (J).
+    pub flowed: f64,
 }
 
 /// Steps one body of large strain; keeps its factor and buffers, so that nothing is allocated after `new`.
@@ -72,6 +75,9 @@ pub struct LargeStepper {
     /// What the holds have given at held dofs so far (N s).
     reaction_impulse: Vec<f64>,
     n_cutbacks: usize,
+    /// What had flowed before the step, and what the step dissipates by that so far (J).
+    flowed_before: Vec<PlasticState>,
+    flow_energy: f64,
 }
 
 impl LargeStepper {
@@ -98,6 +104,8 @@ impl LargeStepper {
             before: WorldMotion::at_rest(&model),
             reaction_impulse: zeros,
             n_cutbacks: 0,
+            flowed_before: model.virgin(),
+            flow_energy: 0.0,
             settings,
             model,
         })
@@ -137,6 +145,21 @@ impl LargeStepper {
         &self.reaction_impulse
     }
 
+    /// What has flowed at the quadrature points, in the order of [`FiniteStrainModel::points_of`]; nothing of laws that do not flow. Beside the
+    /// motion it is the state of the body.
+    pub fn flowed(&self) -> &[PlasticState] {
+        self.newton.deformation.flowed()
+    }
+
+    /// Goes on with a body in which this has flowed.
+    ///
+    /// # Panics
+    /// If it is not that of the same body.
+    pub fn set_flowed(&mut self, flowed: &[PlasticState]) {
+        self.newton.deformation.begin_with(flowed);
+        self.forget();
+    }
+
     /// Quadrature points that are turned inside out at the end of the last step.
     pub fn n_inverted(&self) -> usize {
         self.newton.deformation.n_inverted()
@@ -159,9 +182,13 @@ impl LargeStepper {
         self.newton.work = Work::default();
         self.n_cutbacks = 0;
         self.reaction_impulse.fill(0.0);
+        self.flow_energy = 0.0;
+        self.flowed_before
+            .copy_from_slice(self.newton.deformation.flowed());
         if let Err(error) = self.advance(dt, 0, load, motion) {
             motion.position.copy_from_slice(&self.before.position);
             motion.velocity.copy_from_slice(&self.before.velocity);
+            self.newton.deformation.begin_with(&self.flowed_before);
             self.forget();
             return Err(error);
         }
@@ -176,6 +203,7 @@ impl LargeStepper {
             n_cutbacks: self.n_cutbacks,
             n_at_rounding: work.n_at_rounding,
             residual: work.residual,
+            flowed: self.flow_energy,
         })
     }
 
@@ -286,6 +314,8 @@ impl LargeStepper {
             let (sin, cos) = sin_cos(turned);
             self.spin = atan2(sin, cos) / dt;
         }
+        let flowed = self.newton.deformation.flowed_mut();
+        self.flow_energy += self.model.commit_flow(&self.end, flowed);
         let states = motion.position.iter_mut().zip(&mut motion.velocity);
         for (dof, (x, v)) in states.enumerate() {
             self.reaction_impulse[dof] += dt * self.newton.reaction[dof];

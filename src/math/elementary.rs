@@ -31,8 +31,6 @@ functions! {
     atan2(y, x) = atan2;
     /// `e` to a power.
     exp(power) = exp;
-    /// `e` to a power, less one.
-    exp_m1(power) = expm1;
     /// Natural logarithm.
     ln(value) = log;
     /// `e` to a power, less one.

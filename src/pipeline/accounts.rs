@@ -77,10 +77,12 @@ impl StepReport {
         self.energy_limited += summary.limited;
         let gain: f64 =
             summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
-        self.energy.dissipated += summary.work - gain;
+        let flowed = part.island.flow_energy();
+        self.energy.flowed += flowed;
+        self.energy.dissipated += summary.work - gain + flowed;
         if part.span.is_last() {
             self.energy.kinetic += summary.end_energy[0] + summary.pending;
-            self.energy.elastic += summary.end_energy[1];
+            self.energy.elastic += summary.end_energy[1] - flowed;
             self.energy.swing += summary.swing;
             let gravity = from_rapier(names.sets.gravity);
             self.add_momentum(part.island, gravity, names.flex_bodies);

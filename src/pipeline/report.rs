@@ -79,7 +79,9 @@ pub struct EnergyReport {
     /// By how much an explicit step's energy swings about the one it conserves, `dt²/8 a·M a` at this instant; zero for implicit
     /// integrators. `total() - swing` is constant where nothing dissipates, up to the step's limit of stability.
     pub swing: f64,
-    /// What friction, damping, restitution and the integrator took since the pipeline was made: work done by applied
+    /// What plastic flow took in this step, never negative; it is in `dissipated` as well.
+    pub flowed: f64,
+    /// What friction, damping, plastic flow, restitution and the integrator took since the pipeline was made: work done by applied
     /// forces, constant inner pressures and prescribed motion less the gain of kinetic and elastic energy, over bodies while they were claimed.
     pub dissipated: f64,
 }

@@ -56,8 +56,9 @@ pub struct FlexBlock {
     /// Kinetic and elastic energy at the beginning (J).
     pub(super) loads: StepLoads,
     pub(super) start_energy: [f64; 2],
-    /// Elastic energy at the end (J).
+    /// Elastic energy at the end (J), and what plastic flow has dissipated in the step.
     pub(super) end_elastic: f64,
+    pub(super) end_flow: f64,
     /// `ü` at the beginning.
     pub(super) start_acceleration: Vec<f64>,
     /// Applied nodal forces, gravity included (N).
@@ -162,6 +163,7 @@ impl FlexBlock {
             loads: StepLoads::default(),
             start_energy: [0.0; 2],
             end_elastic: 0.0,
+            end_flow: 0.0,
             start_acceleration: zeros(),
             force: zeros(),
             force_total: Vec2::zeros(),

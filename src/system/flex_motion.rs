@@ -166,7 +166,9 @@ impl FlexBlock {
             return;
         }
         if let Some(large) = &self.large {
-            self.end_elastic = large.model.elastic_energy(&self.position);
+            let flowed = large.deformation.flowed();
+            let energy = large.model.energy_after(&self.position, flowed);
+            (self.end_elastic, self.end_flow) = (energy.stored, energy.dissipated);
             return;
         }
         let rayleigh = self.model.rayleigh();
@@ -197,11 +199,17 @@ impl FlexBlock {
         };
     }
 
-    /// Energy of the current iterate; the elastic part as last measured.
+    /// What plastic flow dissipates in the step, as last measured (J).
+    pub fn flow_energy(&self) -> f64 {
+        self.end_flow
+    }
+
+    /// Energy of the current iterate; the elastic part as last measured, with what plastic flow dissipates in the step: the potential of the
+    /// forces.
     pub fn end_balance(&self) -> Balance {
         Balance {
             kinetic: self.kinetic_energy(),
-            elastic: self.end_elastic,
+            elastic: self.end_elastic + self.end_flow,
         }
     }
 

@@ -145,7 +145,9 @@ impl FlexBlock {
             return Ok(());
         };
         large.led.forget();
+        large.deformation.begin_with(&state.flowed);
         large.model.begin(&state.position, &mut large.deformation);
+        self.end_flow = 0.0;
         for (dof, coast) in large.coast.iter_mut().enumerate() {
             *coast = state.position[dof] + dt * state.velocity[dof];
         }

@@ -1,6 +1,7 @@
 //! Cells of one node count, in flat arrays: gradients of the shape functions, volumes, places in the matrix.
 
 use super::Inadmissible;
+use super::deformed::Deformed;
 use super::guard::Guards;
 use super::hourglass::{Hourglass, Shape};
 use super::linearization::Linearization;
@@ -35,40 +36,11 @@ pub(super) struct CellGroup {
     pub(super) first_guard: usize,
 }
 
-/// A deformation: gradients, one per quadrature point, and amplitudes of the hourglass modes (m) where cells have such.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Deformed {
-    pub(super) gradients: Vec<[f64; 4]>,
-    pub(super) amplitudes: Vec<[f64; 2]>,
-    /// Gradients at the guarded places.
-    pub(super) guarded: Vec<[f64; 4]>,
-    /// Positions around the holes under pressure, relative to one of each (m).
-    pub(super) around: Vec<f64>,
-}
-
-impl Deformed {
-    pub(super) fn new(n_points: usize, n_guarded: usize, n_around: usize) -> Self {
-        Self {
-            gradients: vec![[0.0; 4]; n_points],
-            amplitudes: vec![[0.0; 2]; n_points],
-            guarded: vec![[0.0; 4]; n_guarded],
-            around: vec![0.0; n_around],
-        }
-    }
-
-    fn shape(&self, point: usize) -> Shape {
-        Shape {
-            gradient: self.gradients[point],
-            amplitude: self.amplitudes[point],
-        }
-    }
-}
-
 /// One cell: its nodes, and the gradients of its shape functions and the volume at each of its points.
-struct Kinematics<'a, const N: usize> {
-    nodes: &'a [u32; N],
-    gradients: &'a [[[f64; 2]; N]],
-    volumes: &'a [f64],
+pub(super) struct Kinematics<'a, const N: usize> {
+    pub(super) nodes: &'a [u32; N],
+    pub(super) gradients: &'a [[[f64; 2]; N]],
+    pub(super) volumes: &'a [f64],
 }
 
 /// Runs a kernel with the node count of a group as a constant, which lets the compiler unroll its loops.
@@ -84,6 +56,7 @@ macro_rules! with_node_count {
         }
     };
 }
+pub(super) use with_node_count;
 
 impl CellGroup {
     /// The group of so many nodes and points a cell, of cells with hourglass modes or without, and of this material; an empty one if there is
@@ -160,6 +133,7 @@ impl CellGroup {
         Shape {
             gradient: deformation_gradient(&differences, gradients),
             amplitude: self.hourglass[place].amplitude(&differences),
+            flowed: [0.0; 2],
         }
     }
 
@@ -178,11 +152,22 @@ impl CellGroup {
         residual: &mut [f64],
     ) -> Result<(), Inadmissible> {
         let points = self.points();
-        let pair = (&start.gradients[points.clone()], &mut end.gradients[points]);
-        with_node_count!(
-            self,
-            subtract_point_forces(law, form, positions, pair, residual)
-        )?;
+        match law.plasticity() {
+            None => {
+                let pair = (&start.gradients[points.clone()], &mut end.gradients[points]);
+                with_node_count!(
+                    self,
+                    subtract_point_forces(law, form, positions, pair, residual)
+                )?;
+            }
+            Some(law) => {
+                let pair = (start, &mut *end);
+                with_node_count!(
+                    self,
+                    subtract_flowing_forces(law, form, positions, pair, residual)
+                )?;
+            }
+        }
         let pair = (start, &mut *end);
         with_node_count!(
             self,
@@ -193,8 +178,15 @@ impl CellGroup {
             let hourglass = &self.hourglass[place];
             end.amplitudes[point] = hourglass.amplitude(&gather(nodes, positions));
             let mut force = [[0.0; 2]; 4];
-            let pair = (&start.shape(point), &end.shape(point));
-            hourglass.add_force(form, gradients, pair, &mut force);
+            let pair = [start.shape(point), end.shape(point)];
+            match law.plasticity() {
+                None => hourglass.add_force(form, gradients, (&pair[0], &pair[1]), &mut force),
+                Some(law) => {
+                    let flowed = &start.flowed[point];
+                    let bend = self.bend(law, form, (place, flowed), pair);
+                    bend.add_force(form, &mut force);
+                }
+            }
             subtract(nodes, force, residual);
         }
         Ok(())
@@ -209,14 +201,32 @@ impl CellGroup {
         matrix: &mut BlockMatrix,
     ) {
         let points = self.points();
-        let pair = (&start.gradients[points.clone()], &end.gradients[points]);
-        with_node_count!(self, add_point_tangent(law, form, kind, pair, matrix));
+        match law.plasticity() {
+            None => {
+                let pair = (&start.gradients[points.clone()], &end.gradients[points]);
+                with_node_count!(self, add_point_tangent(law, form, kind, pair, matrix));
+            }
+            Some(law) => {
+                let asked = (form, kind);
+                with_node_count!(self, add_flowing_tangent(law, asked, (start, end), matrix));
+            }
+        }
         with_node_count!(self, add_guard_tangent((form, kind), (start, end), matrix));
         for (place, point) in self.stiffened() {
             let (_, gradients) = self.quad(place);
             let mut blocks = [[[0.0; 4]; 4]; 4];
-            let pair = (&start.shape(point), &end.shape(point));
-            self.hourglass[place].add_tangent((form, kind), gradients, pair, &mut blocks);
+            let pair = [start.shape(point), end.shape(point)];
+            match law.plasticity() {
+                None => {
+                    let pair = (&pair[0], &pair[1]);
+                    self.hourglass[place].add_tangent((form, kind), gradients, pair, &mut blocks);
+                }
+                Some(law) => {
+                    let flowed = &start.flowed[point];
+                    let bend = self.bend(law, form, (place, flowed), pair);
+                    bend.add_tangent((form, kind), &mut blocks);
+                }
+            }
             let places = &self.places.as_chunks::<4>().0[4 * place..][..4];
             scatter(&blocks, places, matrix);
         }
@@ -229,12 +239,12 @@ impl CellGroup {
     }
 
     /// Nodes of a cell of four, and the gradients of their shape functions at its one point.
-    fn quad(&self, place: usize) -> (&[u32; 4], &[[f64; 2]; 4]) {
+    pub(super) fn quad(&self, place: usize) -> (&[u32; 4], &[[f64; 2]; 4]) {
         let nodes = &self.nodes.as_chunks::<4>().0[place];
         (nodes, &self.gradients.as_chunks::<4>().0[place])
     }
 
-    fn kinematics<const N: usize>(&self) -> impl Iterator<Item = Kinematics<'_, N>> {
+    pub(super) fn kinematics<const N: usize>(&self) -> impl Iterator<Item = Kinematics<'_, N>> {
         let nodes = self.nodes.as_chunks::<N>().0;
         let gradients = self.gradients.as_chunks::<N>().0;
         nodes

@@ -13,9 +13,8 @@
 //! the ends of a step it conserves energy and both momenta.
 
 use super::Inadmissible;
-use super::cells::{
-    CellGroup, Deformed, add_point, deformation_gradient, gather, scatter, subtract,
-};
+use super::cells::{CellGroup, add_point, deformation_gradient, gather, scatter, subtract};
+use super::deformed::Deformed;
 use super::linearization::Linearization;
 use super::point::{Form, cofactor, law_moduli, middle};
 use crate::fe::element::{Element, MAX_NODES, Tri3, kinematics::physical_gradient};

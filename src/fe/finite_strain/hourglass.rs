@@ -36,6 +36,8 @@ pub(super) struct Hourglass {
 pub(super) struct Shape {
     pub gradient: [f64; 4],
     pub amplitude: [f64; 2],
+    /// What of `c` has flowed (m).
+    pub flowed: [f64; 2],
 }
 
 impl Shape {
@@ -44,13 +46,28 @@ impl Shape {
         Self {
             gradient: std::array::from_fn(|k| mean(self.gradient[k], other.gradient[k])),
             amplitude: std::array::from_fn(|k| mean(self.amplitude[k], other.amplitude[k])),
+            flowed: self.flowed,
         }
     }
 
-    /// `c = Fᵀ q` (m).
+    /// `c = Fᵀ q`, less what has flowed (m).
     fn pulled(&self) -> [f64; 2] {
         let ([xx, xy, yx, yy], [x, y]) = (self.gradient, self.amplitude);
-        [xx * x + yx * y, xy * x + yy * y]
+        let [along, across] = self.flowed;
+        [xx * x + yx * y - along, xy * x + yy * y - across]
+    }
+
+    /// What must have flowed for `c` to be what is left of the one of another shape after that has.
+    pub fn moved_to(&self, other: &Self, flowed: [f64; 2]) -> [f64; 2] {
+        let (own, left) = (
+            Self {
+                flowed: [0.0; 2],
+                ..*self
+            },
+            Self { flowed, ..*other },
+        );
+        let (own, left) = (own.pulled(), left.pulled());
+        std::array::from_fn(|k| own[k] - left[k])
     }
 
     /// `∂c_i/∂x_a` for the gradient of the shape function of node `a` and its share of the mode: rows `i`, columns x, y.
@@ -159,9 +176,94 @@ impl Hourglass {
         }
     }
 
+    /// `u = c·K c` (J).
+    fn squared(&self, pulled: [f64; 2]) -> f64 {
+        let [x, y] = self.answer(0.0, pulled);
+        x * pulled[0] + y * pulled[1]
+    }
+
+    /// Modes that flow where `√u` reaches `g`: stored and dissipated energy (J), and what of `c` has flowed then, of a trial shape at the end.
+    ///
+    /// All of the stiffness is `K` then, and `c` is that of the elastic gradient, which a body that flows never loses.
+    pub fn flow(&self, limit: f64, at: &Shape) -> ([f64; 2], [f64; 2]) {
+        let pulled = at.pulled();
+        let size = self.squared(pulled).sqrt();
+        if size <= limit {
+            return ([0.5 * size * size, 0.0], at.flowed);
+        }
+        let share = 1.0 - limit / size;
+        let flowed = std::array::from_fn(|k| at.flowed[k] + share * pulled[k]);
+        ([0.5 * limit * limit, limit * (size - limit)], flowed)
+    }
+
+    /// Brings the modes of a shape to a limit: the energy that they lose (J), and what of `c` has flowed then.
+    pub fn ease(&self, limit: f64, at: &Shape) -> (f64, [f64; 2]) {
+        let pulled = at.pulled();
+        let size = self.squared(pulled).sqrt();
+        if size <= limit {
+            return (0.0, at.flowed);
+        }
+        let share = 1.0 - limit / size;
+        let flowed = std::array::from_fn(|k| at.flowed[k] + share * pulled[k]);
+        (0.5 * (size * size - limit * limit), flowed)
+    }
+
+    /// What answers as such modes do between two shapes: with the secant of their incremental potential `φ = u/2`, or `g √u - g²/2` where
+    /// `√u > g`, by which forces do its work; and with its tangent.
+    pub fn flowing(&self, form: Form, limit: f64, [start, end]: [&Shape; 2]) -> [Self; 2] {
+        let after = self.squared(end.pulled());
+        let size = after.sqrt();
+        let own = Self {
+            isotropic: 0.0,
+            ..*self
+        };
+        if size <= limit {
+            return [own, own];
+        }
+        let (secant, fall, at) = match form {
+            Form::Equilibrium => (limit / size, limit / (size * after), *end),
+            Form::EnergyMomentum { .. } => {
+                let change = after - self.squared(start.pulled());
+                // What begins beyond the limit does so by rounding.
+                if change <= f64::EPSILON * after {
+                    return [own, own];
+                }
+                let lost = (size - limit) * (size - limit) / change;
+                let fall = 4.0 * (1.0 - lost - limit / size) / change;
+                (1.0 - lost, fall.max(0.0), start.middle(*end))
+            }
+        };
+        // The mean of what is pulled, not what the mean shape pulls.
+        let pulled = match form {
+            Form::Equilibrium => at.pulled(),
+            Form::EnergyMomentum { .. } => {
+                let [before, after] = [start.pulled(), end.pulled()];
+                std::array::from_fn(|k| 0.5 * (before[k] + after[k]))
+            }
+        };
+        let [x, y] = self.answer(0.0, pulled);
+        let products = [x * x, y * y, x * y];
+        let scaled = self.stiffness.map(|entry| secant * entry);
+        let risen = std::array::from_fn(|k| scaled[k] - fall * products[k]);
+        let with = |stiffness| Self { stiffness, ..own };
+        [with(scaled), with(risen)]
+    }
+
     /// Adds the tangent to the blocks `a <= b`.
     pub fn add_tangent(
         &self,
+        of: (Form, Linearization),
+        gradients: &[[f64; 2]; 4],
+        pair: (&Shape, &Shape),
+        blocks: &mut [[[f64; 4]; 4]; 4],
+    ) {
+        self.add_tangent_rising(self, of, gradients, pair, blocks);
+    }
+
+    /// The same where forces rise as those of another do.
+    pub fn add_tangent_rising(
+        &self,
+        rising: &Self,
         (form, kind): (Form, Linearization),
         gradients: &[[f64; 2]; 4],
         (start, end): (&Shape, &Shape),
@@ -185,7 +287,7 @@ impl Hourglass {
         // What the stress rises by as `c` does: one half of the conserving part is of the end, and half the decay.
         let rise = |column: [f64; 2]| {
             let (lasting, decaying) = (
-                self.answer(self.isotropic, column),
+                rising.answer(self.isotropic, column),
                 self.answer(0.0, column),
             );
             [0, 1].map(|k| scale * lasting[k] + 0.5 * decay * decaying[k])

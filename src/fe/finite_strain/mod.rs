@@ -17,6 +17,8 @@
 //! |---|---|
 //! | `point` | stress and moduli at one quadrature point |
 //! | `cells` | cells of one node count, and their kernels |
+//! | `deformed` | gradients and what has flowed, at the quadrature points |
+//! | `flow` | bodies whose law flows: the same kernels after what has flowed, and its commitment |
 //! | `hourglass` | the modes that the one point of a four-node cell does not see |
 //! | `description` | what a body is assembled from |
 //! | `pressure` | a constant pressure, a gas that is shut in |
@@ -30,7 +32,9 @@
 //! modes resist as its inner modes let them at small strain.
 
 mod cells;
+mod deformed;
 mod description;
+mod flow;
 mod guard;
 mod hole;
 mod hourglass;
@@ -42,6 +46,7 @@ mod solid;
 mod stress;
 
 pub use description::{FiniteStrainDescription, FiniteStrainError};
+pub use flow::FlowEnergy;
 pub use linearization::Linearization;
 pub use model::{Deformation, FiniteStrainModel};
 pub use point::Form;

@@ -1,7 +1,8 @@
 //! The assembled body: cells in groups, nodal masses, the pattern of the matrix.
 
 use super::Inadmissible;
-use super::cells::{CellGroup, Deformed};
+use super::cells::CellGroup;
+use super::deformed::Deformed;
 use super::description::{FiniteStrainDescription, FiniteStrainError};
 use super::hole::Hole;
 use super::hourglass::Hourglass;
@@ -20,7 +21,7 @@ use std::sync::Arc;
 /// Gradients of deformation at the quadrature points: at the beginning of a step, and at the end last asked for.
 #[derive(Clone, Debug)]
 pub struct Deformation {
-    start: Deformed,
+    pub(super) start: Deformed,
     end: Deformed,
 }
 
@@ -28,6 +29,8 @@ impl Deformation {
     /// Makes the end of the step the beginning of the next.
     pub fn accept(&mut self) {
         std::mem::swap(&mut self.start, &mut self.end);
+        // What has flowed belongs to the beginning.
+        std::mem::swap(&mut self.start.flowed, &mut self.end.flowed);
     }
 
     /// Quadrature points that are turned inside out at the beginning of the step.
@@ -61,7 +64,7 @@ impl Deformation {
 pub struct FiniteStrainModel {
     pub(super) description: FiniteStrainDescription,
     pub(super) groups: Vec<CellGroup>,
-    n_points: usize,
+    pub(super) n_points: usize,
     n_guarded: usize,
     masses: Vec<f64>,
     /// All holes, if there is a pressure in one.
@@ -216,6 +219,7 @@ impl FiniteStrainModel {
             start: deformed.clone(),
             end: deformed,
         };
+        deformation.start.flowed = self.virgin();
         self.begin(positions, &mut deformation);
         deformation
     }
@@ -297,7 +301,8 @@ impl FiniteStrainModel {
         }
     }
 
-    /// Stored energy (J) at `positions` (m), that of gases in holes included; not a number where the law or a gas has none.
+    /// Stored energy (J) at `positions` (m) of a body that has not flowed and does not, that of gases in holes included; not a number where the
+    /// law or a gas has none. Of others [`energy_after`](Self::energy_after) tells.
     ///
     /// # Panics
     /// If there is not one entry per dof.

@@ -46,12 +46,26 @@ pub(super) fn stress<L: Hyperelastic + ?Sized>(
     start: [f64; 4],
     end: [f64; 4],
 ) -> [f64; 4] {
-    let (at, [a, b]) = match form {
-        Form::Equilibrium => (end, law.gradient(Invariants::of(end))),
+    let pair = match form {
+        Form::Equilibrium => law.gradient(Invariants::of(end)),
         Form::EnergyMomentum { .. } => {
-            let pair = law.conserving_pair(Invariants::of(start), Invariants::of(end));
-            (middle(start, end), pair)
+            law.conserving_pair(Invariants::of(start), Invariants::of(end))
         }
+    };
+    stress_of_pair(law, form, pair, [start, end])
+}
+
+/// `P = 2 a F + b cof F` of a pair, with the decay (Pa).
+#[inline]
+pub(super) fn stress_of_pair<L: Hyperelastic + ?Sized>(
+    law: &L,
+    form: Form,
+    [a, b]: [f64; 2],
+    [start, end]: [[f64; 4]; 2],
+) -> [f64; 4] {
+    let at = match form {
+        Form::Equilibrium => end,
+        Form::EnergyMomentum { .. } => middle(start, end),
     };
     let cofactor = cofactor(at);
     let mut stress: [f64; 4] = std::array::from_fn(|k| 2.0 * a * at[k] + b * cofactor[k]);
@@ -103,14 +117,27 @@ pub(super) fn moduli<L: Hyperelastic + ?Sized>(
     end: [f64; 4],
 ) -> [[f64; 4]; 4] {
     let invariants = Invariants::of(end);
-    let (at, pair, second, scale) = match form {
-        Form::Equilibrium => (end, law.gradient(invariants), law.hessian(invariants), 1.0),
+    let derivatives = match form {
+        Form::Equilibrium => (law.gradient(invariants), law.hessian(invariants)),
         Form::EnergyMomentum { .. } => {
             let before = Invariants::of(start);
             let pair = law.conserving_pair(before, invariants);
-            let second = law.conserving_hessian(before, invariants);
-            (middle(start, end), pair, second, 0.5)
+            (pair, law.conserving_hessian(before, invariants))
         }
+    };
+    moduli_of_pair(law, (form, kind), derivatives, [start, end])
+}
+
+/// The moduli of a pair and its derivatives (Pa).
+pub(super) fn moduli_of_pair<L: Hyperelastic + ?Sized>(
+    law: &L,
+    (form, kind): (Form, Linearization),
+    (pair, second): ([f64; 2], [f64; 3]),
+    [start, end]: [[f64; 4]; 2],
+) -> [[f64; 4]; 4] {
+    let (at, scale) = match form {
+        Form::Equilibrium => (end, 1.0),
+        Form::EnergyMomentum { .. } => (middle(start, end), 0.5),
     };
     let (pair, second) = match kind {
         Linearization::Consistent => (pair, second),
