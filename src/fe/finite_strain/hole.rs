@@ -11,18 +11,16 @@
 //! too. As `p' < 0` that part is positive semidefinite; it couples all nodes of the loop, and so does the matrix of a body with gas in it. Without
 //! it Newton's iterations do not converge wherever a gas is stiffer than what holds it.
 
+use super::FiniteStrainDescription;
 use super::linearization::Linearization;
-use super::model::FiniteStrainModel;
 use super::point::Form;
 use super::pressure::{InnerPressure, PressureError};
-use super::{FiniteStrainDescription, FiniteStrainError};
 use crate::fe::mesh::Mesh;
 use crate::linalg::block_matrix::BlockMatrix;
-use std::sync::Arc;
 
 /// Two nodes of a loop, by their places in it, and what their cross product counts for.
 #[derive(Clone, Copy, Debug)]
-struct Term {
+pub(super) struct Term {
     from: usize,
     to: usize,
     weight: f64,
@@ -31,14 +29,14 @@ struct Term {
 /// A hole under pressure.
 #[derive(Clone, Debug)]
 pub(super) struct Hole {
-    nodes: Vec<usize>,
+    pub(super) nodes: Vec<usize>,
     terms: Vec<Term>,
     /// Of each node those that its slope is made of, and with what weight (-).
     beside: Vec<[(usize, f64); 4]>,
-    pressure: InnerPressure,
+    pub(super) pressure: InnerPressure,
     /// At rest (m²).
-    area: f64,
-    thickness: f64,
+    pub(super) area: f64,
+    pub(super) thickness: f64,
     /// Where its positions begin among those of all holes, two numbers a node.
     first: usize,
     /// Places in the matrix of the blocks of each term and of their transposed ones.
@@ -138,7 +136,11 @@ impl Hole {
     }
 
     /// `A' - A` from the differences of the positions (m²).
-    fn growth(&self, start: impl Fn(usize) -> [f64; 2], end: impl Fn(usize) -> [f64; 2]) -> f64 {
+    pub(super) fn growth(
+        &self,
+        start: impl Fn(usize) -> [f64; 2],
+        end: impl Fn(usize) -> [f64; 2],
+    ) -> f64 {
         let products = self.terms.iter().map(|term| {
             let [a, b] = [term.from, term.to].map(|place| {
                 let (from, to) = (start(place), end(place));
@@ -239,7 +241,7 @@ fn product([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
     a * d - b * c
 }
 
-fn area(terms: &[Term], at: impl Fn(usize) -> [f64; 2]) -> f64 {
+pub(super) fn area(terms: &[Term], at: impl Fn(usize) -> [f64; 2]) -> f64 {
     let products = terms.iter();
     products
         .map(|term| term.weight * product(at(term.from), at(term.to)))
@@ -247,7 +249,7 @@ fn area(terms: &[Term], at: impl Fn(usize) -> [f64; 2]) -> f64 {
 }
 
 /// Position of a node of a loop relative to the first one (m).
-fn relative(nodes: &[usize], place: usize, positions: &[f64]) -> [f64; 2] {
+pub(super) fn relative(nodes: &[usize], place: usize, positions: &[f64]) -> [f64; 2] {
     let (node, origin) = (nodes[place], nodes[0]);
     [0, 1].map(|axis| positions[2 * node + axis] - positions[2 * origin + axis])
 }
@@ -275,12 +277,12 @@ fn beside(terms: &[Term], n: usize) -> Vec<[(usize, f64); 4]> {
 }
 
 /// Number of holes of a mesh.
-fn n_holes(mesh: &Mesh) -> usize {
+pub(super) fn n_holes(mesh: &Mesh) -> usize {
     mesh.boundary().loops().len().saturating_sub(1)
 }
 
 /// The nodes around a hole, counter-clockwise.
-fn loop_of(mesh: &Mesh, hole: usize) -> Vec<usize> {
+pub(super) fn loop_of(mesh: &Mesh, hole: usize) -> Vec<usize> {
     let around = &mesh.boundary().loops()[hole + 1];
     // The first one is a corner, and stays it.
     let mut nodes = around.nodes().to_vec();
@@ -289,7 +291,7 @@ fn loop_of(mesh: &Mesh, hole: usize) -> Vec<usize> {
 }
 
 /// The sum that is the area within a loop.
-fn terms_of(mesh: &Mesh, nodes: &[usize]) -> Vec<Term> {
+pub(super) fn terms_of(mesh: &Mesh, nodes: &[usize]) -> Vec<Term> {
     let mut is_midside = vec![false; mesh.n_nodes()];
     for cell in mesh.cells() {
         for &node in &cell.nodes[cell.kind.n_corners()..] {
@@ -318,99 +320,4 @@ fn terms_of(mesh: &Mesh, nodes: &[usize]) -> Vec<Term> {
         }
     }
     terms
-}
-
-/// Holes and the pressure in them. Holes are numbered as the mesh lists their loops, from zero: by their lowest corner.
-impl FiniteStrainModel {
-    /// Energy of gases in the body at rest (J).
-    pub(crate) fn rest_energy(&self) -> f64 {
-        let holes = self.holes.iter();
-        holes.fold(0.0, |sum, hole| sum + hole.energy(self.rest_positions()))
-    }
-
-    /// Number of holes of the mesh, with or without pressure.
-    pub fn n_holes(&self) -> usize {
-        n_holes(self.mesh())
-    }
-
-    /// Inner pressures, one per hole; none where no hole has one.
-    pub fn pressures(&self) -> &[InnerPressure] {
-        &self.description.pressures
-    }
-
-    /// Whether another body is this one but for the numbers of its inner pressures.
-    pub(crate) fn has_layout_of(&self, other: &Self) -> bool {
-        let pairs = self.holes.iter().zip(&other.holes);
-        Arc::ptr_eq(&self.description.mesh, &other.description.mesh)
-            && self.holes.len() == other.holes.len()
-            && pairs
-                .into_iter()
-                .all(|(one, other)| one.pressure.is_gas() == other.pressure.is_gas())
-    }
-
-    /// The same body with another pressure in a hole; in others what there was.
-    ///
-    /// # Errors
-    /// If there is no such hole, or a number is out of its range.
-    pub fn with_pressure(
-        &self,
-        hole: usize,
-        pressure: InnerPressure,
-    ) -> Result<Self, FiniteStrainError> {
-        pressure.validate()?;
-        let n_holes = self.n_holes();
-        if hole >= n_holes {
-            return Err(PressureError::Hole { hole, n_holes }.into());
-        }
-        let mut description = self.description.clone();
-        description.pressures.resize(n_holes, InnerPressure::NONE);
-        let before = std::mem::replace(&mut description.pressures[hole], pressure);
-        if self.holes.is_empty() || before.is_gas() != pressure.is_gas() {
-            return Self::assemble(description);
-        }
-        let mut model = self.clone();
-        model.holes[hole].pressure = pressure;
-        model.description = description;
-        Ok(model)
-    }
-
-    /// Area of a hole at `positions` (m²); `None` if there is no such hole.
-    ///
-    /// # Panics
-    /// If there is not one entry per dof.
-    pub fn hole_area(&self, hole: usize, positions: &[f64]) -> Option<f64> {
-        self.assert_length(positions);
-        (hole < self.n_holes()).then(|| {
-            let nodes = loop_of(self.mesh(), hole);
-            let terms = terms_of(self.mesh(), &nodes);
-            area(&terms, |place| relative(&nodes, place, positions))
-        })
-    }
-
-    /// Pressure in a hole at `positions`, above that outside (Pa); `None` if there is no such hole.
-    ///
-    /// # Panics
-    /// If there is not one entry per dof.
-    pub fn hole_pressure(&self, hole: usize, positions: &[f64]) -> Option<f64> {
-        let area = self.hole_area(hole, positions)?;
-        let pressure = |hole: &Hole| hole.pressure.at(area / hole.area);
-        Some(self.holes.get(hole).map_or(0.0, pressure))
-    }
-
-    /// Work of the constant pressures on the way from one placement to another (J). That of gases is what their energy falls by, which is part of
-    /// [`elastic_energy`](Self::elastic_energy).
-    ///
-    /// # Panics
-    /// If there is not one entry per dof.
-    pub fn pressure_work(&self, from: &[f64], to: &[f64]) -> f64 {
-        self.assert_length(from);
-        self.assert_length(to);
-        let constant = self.holes.iter().filter(|hole| !hole.pressure.is_gas());
-        let works = constant.map(|hole| {
-            let at = |positions| move |place| relative(&hole.nodes, place, positions);
-            let growth = hole.growth(at(from), at(to));
-            hole.thickness * hole.pressure.at(1.0) * growth
-        });
-        works.sum()
-    }
 }

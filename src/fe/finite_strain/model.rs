@@ -4,10 +4,11 @@ use super::Inadmissible;
 use super::cells::CellGroup;
 use super::deformed::Deformed;
 use super::description::{FiniteStrainDescription, FiniteStrainError};
-use super::hole::Hole;
+use super::hole::{Hole, area, loop_of, n_holes, relative, terms_of};
 use super::hourglass::Hourglass;
 use super::linearization::Linearization;
 use super::point::Form;
+use super::pressure::{InnerPressure, PressureError};
 use crate::fe::element::quadrature::SQUARE_1;
 use crate::fe::element::{ElementError, MAX_NODES, kinematics::physical_gradient};
 use crate::fe::material::Rayleigh;
@@ -313,6 +314,98 @@ impl FiniteStrainModel {
         self.holes
             .iter()
             .fold(elastic, |sum, hole| sum + hole.energy(positions))
+    }
+
+    /// Energy of gases in the body at rest (J).
+    pub(crate) fn rest_energy(&self) -> f64 {
+        let holes = self.holes.iter();
+        holes.fold(0.0, |sum, hole| sum + hole.energy(self.rest_positions()))
+    }
+
+    /// Number of holes of the mesh, with or without pressure.
+    pub fn n_holes(&self) -> usize {
+        n_holes(self.mesh())
+    }
+
+    /// Inner pressures, one per hole; none where no hole has one.
+    pub fn pressures(&self) -> &[InnerPressure] {
+        &self.description.pressures
+    }
+
+    /// Whether another body is this one but for the numbers of its inner pressures.
+    pub(crate) fn has_layout_of(&self, other: &Self) -> bool {
+        let pairs = self.holes.iter().zip(&other.holes);
+        Arc::ptr_eq(&self.description.mesh, &other.description.mesh)
+            && self.holes.len() == other.holes.len()
+            && pairs
+                .into_iter()
+                .all(|(one, other)| one.pressure.is_gas() == other.pressure.is_gas())
+    }
+
+    /// The same body with another pressure in a hole; in others what there was.
+    ///
+    /// # Errors
+    /// If there is no such hole, or a number is out of its range.
+    pub fn with_pressure(
+        &self,
+        hole: usize,
+        pressure: InnerPressure,
+    ) -> Result<Self, FiniteStrainError> {
+        pressure.validate()?;
+        let n_holes = self.n_holes();
+        if hole >= n_holes {
+            return Err(PressureError::Hole { hole, n_holes }.into());
+        }
+        let mut description = self.description.clone();
+        description.pressures.resize(n_holes, InnerPressure::NONE);
+        let before = std::mem::replace(&mut description.pressures[hole], pressure);
+        if self.holes.is_empty() || before.is_gas() != pressure.is_gas() {
+            return Self::assemble(description);
+        }
+        let mut model = self.clone();
+        model.holes[hole].pressure = pressure;
+        model.description = description;
+        Ok(model)
+    }
+
+    /// Area of a hole at `positions` (m²); `None` if there is no such hole.
+    ///
+    /// # Panics
+    /// If there is not one entry per dof.
+    pub fn hole_area(&self, hole: usize, positions: &[f64]) -> Option<f64> {
+        self.assert_length(positions);
+        (hole < self.n_holes()).then(|| {
+            let nodes = loop_of(self.mesh(), hole);
+            let terms = terms_of(self.mesh(), &nodes);
+            area(&terms, |place| relative(&nodes, place, positions))
+        })
+    }
+
+    /// Pressure in a hole at `positions`, above that outside (Pa); `None` if there is no such hole.
+    ///
+    /// # Panics
+    /// If there is not one entry per dof.
+    pub fn hole_pressure(&self, hole: usize, positions: &[f64]) -> Option<f64> {
+        let area = self.hole_area(hole, positions)?;
+        let pressure = |hole: &Hole| hole.pressure.at(area / hole.area);
+        Some(self.holes.get(hole).map_or(0.0, pressure))
+    }
+
+    /// Work of the constant pressures on the way from one placement to another (J). That of gases is what their energy falls by, which is part of
+    /// [`elastic_energy`](Self::elastic_energy).
+    ///
+    /// # Panics
+    /// If there is not one entry per dof.
+    pub fn pressure_work(&self, from: &[f64], to: &[f64]) -> f64 {
+        self.assert_length(from);
+        self.assert_length(to);
+        let constant = self.holes.iter().filter(|hole| !hole.pressure.is_gas());
+        let works = constant.map(|hole| {
+            let at = |positions| move |place| relative(&hole.nodes, place, positions);
+            let growth = hole.growth(at(from), at(to));
+            hole.thickness * hole.pressure.at(1.0) * growth
+        });
+        works.sum()
     }
 
     pub(super) fn assert_length(&self, dofs: &[f64]) {
