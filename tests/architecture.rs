@@ -7,7 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layers from the top; members of one layer do not import each other.
-const LAYERS: [&[&str]; 12] = [
+const LAYERS: [&[&str]; 13] = [
+    &["bin"],
     &["guide"],
     &["doctor", "io"],
     &["pipeline"],
@@ -23,7 +24,7 @@ const LAYERS: [&[&str]; 12] = [
 ];
 
 /// Modules that may hold rapier's sets; everything below sees copies of what is in them.
-const BORDER: [&str; 4] = ["coupling", "doctor", "io", "pipeline"];
+const BORDER: [&str; 5] = ["bin", "coupling", "doctor", "io", "pipeline"];
 
 /// Rapier's containers and pipelines.
 const SETS: [&str; 13] = [

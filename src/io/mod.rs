@@ -3,6 +3,7 @@
 //! - [`MshMesh`] reads meshes of gmsh, with their physical groups.
 //! - [`Outline`]s are read of GeoJSON (feature `json`) and of SVG (feature `svg`), to be meshed.
 //! - [`VtuSeries`] and [`write_vtu`] write results for ParaView, [`History`] tables of chosen numbers.
+//! - [`write_still`] draws a step, as SVG.
 //! - [`Replay`] writes a page that plays a run in a browser.
 
 mod base64;
@@ -13,6 +14,7 @@ mod output;
 mod replay;
 mod rigid_lines;
 mod scene;
+mod still;
 mod stress;
 mod vtu;
 
@@ -26,4 +28,5 @@ pub use outline::{SvgOptions, outlines_from_svg};
 pub use output::OutputError;
 pub use replay::Replay;
 pub use scene::Scene;
+pub use still::{still, write_still};
 pub use vtu::{VtuEncoding, VtuSeries, write_vtu};

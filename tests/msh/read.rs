@@ -273,6 +273,23 @@ fn a_body_is_made_of_it_and_pinned_by_name() -> Result<(), Box<dyn std::error::E
     Ok(())
 }
 
+/// The strip has a group of all its cells besides its two halves.
+#[test]
+fn groups_become_regions_the_smallest_first() {
+    let msh = read("strip_mixed_22_ascii");
+    let mesh = msh.mesh_with_regions().expect("names differ");
+    for name in ["left", "right"] {
+        let number = mesh.region_named(name).expect("it has cells");
+        let cells = mesh.cells().enumerate();
+        let own: Vec<usize> = cells
+            .filter(|(_, cell)| cell.region == number)
+            .map(|(index, _)| index)
+            .collect();
+        assert_eq!(Some(own.as_slice()), msh.region(name), "{name}");
+    }
+    assert_eq!(mesh.region_named("4"), None, "no cell is left for it");
+}
+
 #[test]
 fn quadrilaterals_of_eight_nodes_are_those_of_the_library() {
     let msh = read("grid_quad8_41_ascii");

@@ -13,7 +13,7 @@ mod reader;
 
 pub use error::{MshError, MshPlace};
 
-use crate::fe::mesh::Mesh;
+use crate::fe::mesh::{Mesh, MeshError};
 use std::path::Path;
 
 /// A mesh of a file, with the physical groups of its surfaces, curves and points.
@@ -115,6 +115,30 @@ impl MshMesh {
     /// As [`read`](Self::read).
     pub fn pieces_from_bytes(bytes: &[u8]) -> Result<Vec<Self>, MshError> {
         assemble::pieces(bytes)
+    }
+
+    /// The mesh with its physical surfaces as named regions, for [`FlexBodyBuilder::region_material`](crate::body::FlexBodyBuilder::region_material):
+    /// numbered from one in their order, zero where there is none. A cell of several is of the one with the fewest cells.
+    ///
+    /// # Errors
+    /// If two of the same name remain.
+    pub fn mesh_with_regions(&self) -> Result<Mesh, MeshError> {
+        let mut numbered: Vec<(u32, &NamedCells)> = (1..).zip(&self.regions).collect();
+        numbered.sort_by_key(|(_, region)| std::cmp::Reverse(region.cells.len()));
+        let mut regions = vec![0; self.mesh.n_cells()];
+        for &(number, region) in &numbered {
+            for &cell in &region.cells {
+                regions[cell] = number;
+            }
+        }
+        let mut mesh = self.mesh.clone().with_regions(regions)?;
+        let present = mesh.regions();
+        for (number, region) in numbered {
+            if present.contains(&number) {
+                mesh = mesh.with_region_name(number, &region.name)?;
+            }
+        }
+        Ok(mesh)
     }
 
     /// Cells of the physical surface of this name.
