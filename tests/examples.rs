@@ -21,6 +21,8 @@ mod gripper;
 mod rope;
 #[path = "../examples/sensor_gate.rs"]
 mod sensor_gate;
+#[path = "../examples/trampoline.rs"]
+mod trampoline;
 #[path = "../examples/truck.rs"]
 mod truck;
 #[path = "../examples/two_blocks.rs"]
@@ -273,5 +275,23 @@ fn a_rope_swings_winds_around_a_peg_and_unwinds() -> Outcome {
     assert!(outcome.max_penetration_m < 1e-5, "{outcome:?}");
     // The ball in its circle of a metre carries several times its weight.
     assert!(outcome.peg_force_n > 2.0 * 20.0, "{outcome:?}");
+    Ok(())
+}
+
+/// The tension of the strip is its law's, to the hundredth that its weight adds; the ball goes as deep as energy lets it, to some hundredths, and the slack strip lets it deeper.
+#[test]
+fn a_trampoline_is_as_taut_and_as_deep_as_its_energy_says() -> Outcome {
+    let outcome = trampoline::run(&trampoline::support::cli::Options::default(), None)?;
+    let [tension, expected] = outcome.taut.tension_n;
+    assert_within("tension", tension / expected, 1.0, 0.02);
+    for bounce in [outcome.taut, outcome.slack] {
+        let [depth, expected] = bounce.depth_m;
+        assert_within("depth", depth / expected, 1.0, 0.05);
+        assert!(bounce.rebound > 0.7 && bounce.rebound < 1.0, "{bounce:?}");
+        assert!(bounce.energy_gained < 1e-3, "{bounce:?}");
+        assert_eq!(bounce.unsolved, 0);
+        assert!(bounce.max_penetration_m < 1e-6, "{bounce:?}");
+    }
+    assert!(outcome.slack.depth_m[0] > 1.1 * outcome.taut.depth_m[0]);
     Ok(())
 }

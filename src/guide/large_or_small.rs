@@ -48,7 +48,14 @@
 //! | [`Corotated`](crate::fe::material::hyperelastic::Corotated) | what is stiff and bends far |
 //! | [`StableNeoHookean`](crate::fe::material::hyperelastic::StableNeoHookean) | what is soft, and may be crushed flat: it recovers from being turned inside out |
 //! | [`NeoHookean`](crate::fe::material::hyperelastic::NeoHookean) | what must never turn inside out |
+//! | [`MooneyRivlin`](crate::fe::material::hyperelastic::MooneyRivlin), [`Gent`](crate::fe::material::hyperelastic::Gent) | rubber, by what it was measured at |
+//! | [`NeoHookeanSheet`](crate::fe::material::hyperelastic::NeoHookeanSheet), [`MooneyRivlinSheet`](crate::fe::material::hyperelastic::MooneyRivlinSheet) | thin sheets, free to change their thickness |
+//! | [`J2Plasticity`](crate::fe::material::hyperelastic::J2Plasticity) | metals that yield: what has flowed stays |
 //! | [`StVenantKirchhoff`](crate::fe::material::hyperelastic::StVenantKirchhoff) | comparisons |
+//!
+//! Regions of one body may have materials of their own,
+//! [`FlexBodyBuilder::region_material`](crate::body::FlexBodyBuilder::region_material), and holes an
+//! [`inner_pressure`](crate::body::FlexBodyBuilder::inner_pressure), constant or of a gas that is shut in: tyres and balloons.
 //!
 //! A law of your own is an `impl` of [`Hyperelastic`](crate::fe::material::hyperelastic::Hyperelastic), and
 //! [`conformance::check_law`](crate::fe::material::hyperelastic::conformance::check_law) tests it.

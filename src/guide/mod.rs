@@ -7,7 +7,8 @@
 //! | [`contact`] | what touches what, with which forces, at which distance |
 //! | [`large_or_small`] | bodies that bend far and bodies that do not |
 //! | [`reports`] | what a step tells, and what to do about it |
-//! | [`statics`] | equilibria without a world |
+//! | [`statics`] | equilibria and natural modes, without a world |
+//! | [`files`] | shapes from other programs, and results for them |
 //! | [`embedding`] | flexible bodies in an app that exists: events, joints, saving, sleep |
 //! | [`performance`] | what a step costs, and how to make it cost less |
 //! | [`soft_bodies`] | coming from rapier's own soft bodies |
@@ -17,6 +18,7 @@
 pub mod contact;
 pub mod embedding;
 pub mod equations;
+pub mod files;
 pub mod first_beam;
 pub mod large_or_small;
 pub mod limits;

@@ -1,4 +1,4 @@
-//! Equilibria without a world.
+//! Equilibria and natural modes, without a world.
 //!
 //! [`LoadStepper`](crate::large::LoadStepper) leads a body of large strain through equilibria as loads and held nodes go where a
 //! [`LoadCase`](crate::large::LoadCase) says:
@@ -37,4 +37,27 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Load control ends at a limit load, where bodies snap through; [`PathStepper`](crate::large::PathStepper) follows the path of equilibria past it, and tells limit points and
+//! whether what it finds is stable. Its [`FollowerForce`](crate::large::FollowerForce)s turn with the body.
+//!
 //! In a world, bodies at rest are in equilibrium with what touches them: let them settle, or sleep.
+//!
+//! # Natural modes
+//!
+//! [`FlexBody::natural_modes`](crate::body::FlexBody::natural_modes) tells the lowest frequencies and shapes of a body as it is pinned; of a body of large strain about where it is, so that a
+//! string has the notes of its tension:
+//!
+//! ```
+//! use foil2d::prelude::*;
+//!
+//! let strip = FlexBodyBuilder::rectangle([1.0, 0.02], [40, 2])
+//!     .material(LinearElastic::plane_stress(2.1e11, 0.3).density(7800.0))
+//!     .pin_where(|[x, _]| x == 0.0, Pin::both())
+//!     .build()?;
+//! let frequencies = strip.natural_modes(2, 1e-8)?.frequencies();
+//! // A slender cantilever: 3.516 and 22.03 times √(E I/ρ A)/L².
+//! let unit = 0.02 * (2.1e11_f64 / 7800.0 / 12.0).sqrt();
+//! assert!((frequencies[0] / (3.516 * unit) - 1.0).abs() < 5e-3);
+//! assert!((frequencies[1] / (22.03 * unit) - 1.0).abs() < 5e-3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
