@@ -5,3 +5,5 @@ mod bodies;
 mod common;
 #[path = "regions/statics.rs"]
 mod statics;
+#[path = "regions/together.rs"]
+mod together;

@@ -300,6 +300,31 @@ fn a_body_that_flows_restored_after_every_step_never_differs() {
     }
 }
 
+/// Regions, a gas and plastic flow in one body.
+#[test]
+fn a_ring_of_metal_and_rubber_with_a_gas_restored_after_every_step_never_differs() {
+    let mut run = everything();
+    let law = J2Plasticity::plane_strain(2e5, 0.3, 50.0).with_hardening(4e4);
+    let ring = FlexBodyBuilder::annulus(0.3, 0.5, 0.1)
+        .material(rubber())
+        .regions_by(|[x, y]| u32::from(x * x + y * y > 0.16))
+        .region_material(
+            1,
+            HyperelasticSolid::new(law)
+                .with_density(2000.0)
+                .with_damping(Material::rayleigh(&rubber())),
+        )
+        .inner_pressure(InnerPressure::isothermal(500.0))
+        .translation([0.0, 6.0])
+        .angvel(3.0);
+    let ring = run.flex_bodies.insert(ring, &mut run.world);
+    let ring = ring.expect("the description is right");
+    let log = Recorder::default();
+    (0..20).for_each(|_| run.step(&log));
+    assert!(run.flex_bodies[ring].max_plastic_strain() > 0.0);
+    step_by_step(run, 40);
+}
+
 /// One of Hooke's law, among others.
 #[test]
 fn a_body_of_hookes_law_at_large_strain_restored_after_every_step_never_differs() {
