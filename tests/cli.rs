@@ -232,7 +232,7 @@ fn what_is_wrong_in_a_scene_is_told_where_it_stands() {
             "-1",
         ),
         (
-            "[[rigid]]\nshape.halfspace.normal = [0.0, 0.0]\n",
+            "[[rigid]]\nshape.halfspace.normal = [0.0, 0.0]\nkind = \"fixed\"\n",
             "scene.toml:2:26",
             "direction",
         ),
@@ -288,6 +288,88 @@ fn what_is_wrong_in_a_scene_is_told_where_it_stands() {
     }
     let complaint = complaint(&["run", "missing.toml"], &folder);
     assert!(complaint.contains("missing.toml"), "{complaint}");
+}
+
+/// Each of these once made the program panic, run for ever, or compute nonsense.
+#[test]
+fn numbers_that_no_world_has_are_refused_where_they_stand() {
+    let folder = folder("numbers");
+    let ball = |key: &str| format!("[[rigid]]\nshape.ball.radius = 1.0\n{key}\n");
+    let jointed = |joint: &str| {
+        let two = "[[rigid]]\nname = \"a\"\nshape.ball.radius = 1.0\n[[rigid]]\nname = \"b\"\nshape.ball.radius = 1.0\n";
+        format!("{two}[[joint]]\n{joint}\n")
+    };
+    let cases = [
+        "[world]\ndt = 0\n".to_owned(),
+        "[world]\ndt = 1e-300\n".to_owned(),
+        "[world]\ndt = nan\n".to_owned(),
+        "[world]\nduration = inf\n".to_owned(),
+        "[world]\nduration = -1.0\n".to_owned(),
+        "[world]\ngravity = [nan, 0.0]\n".to_owned(),
+        "[world]\ndecay = -1.0\n".to_owned(),
+        "[output]\nevery = 0\n".to_owned(),
+        "[[rigid]]\nshape.hull.points = []\n".to_owned(),
+        "[[rigid]]\nshape.ball.radius = -1.0\n".to_owned(),
+        "[[rigid]]\nshape.cuboid.size = [1.0, nan]\n".to_owned(),
+        "[[rigid]]\nshape.halfspace.normal = [0.0, 1.0]\n".to_owned(),
+        ball("density = -1.0"),
+        ball("friction = -1.0"),
+        ball("translation = [nan, 0.0]"),
+        ball("angvel = inf"),
+        jointed("kind = \"fixed\"\nbetween = [\"a\", \"a\"]\nat = [0.0, 0.0]"),
+        jointed("kind = \"fixed\"\nbetween = [\"a\", \"b\"]\nat = [nan, 0.0]"),
+        jointed("kind.prismatic.axis = [0.0, 0.0]\nbetween = [\"a\", \"b\"]\nat = [0.0, 0.0]"),
+    ];
+    for text in cases {
+        std::fs::write(folder.join("scene.toml"), &text).expect("a scene");
+        for command in ["run", "doctor"] {
+            let complaint = complaint(&[command, "scene.toml"], &folder);
+            let is_placed = complaint.starts_with("error: scene.toml:");
+            assert!(
+                is_placed && !complaint.contains("panicked"),
+                "{text}: {complaint}"
+            );
+        }
+    }
+    std::fs::write(
+        folder.join("a.json"),
+        r#"{"type": "Polygon", "coordinates": [[[0, 0], [2, 0], [2, 1], [0, 0]]]}"#,
+    )
+    .expect("an outline");
+    for option in [
+        "--height=-5",
+        "--duration=inf",
+        "--young=nan",
+        "--scale=0",
+        "--edge=0",
+    ] {
+        let complaint = complaint(&["drop", "a.json", option], &folder);
+        let (name, _) = option.split_once('=').expect("an option");
+        assert!(complaint.contains(name), "{complaint}");
+    }
+}
+
+/// A pendulum whose bob and post overlap at their joint swings: jointed bodies do not touch unless they are told to.
+#[test]
+fn a_pendulum_swings_about_its_joint() {
+    let folder = folder("pendulum");
+    let scene = format!(
+        "[world]\nduration = 0.4\n{STEEL}\n[[rigid]]\nname = \"post\"\nkind = \"fixed\"\nshape.ball.radius = 0.05\n\
+         [[rigid]]\nname = \"arm\"\nshape.cuboid.size = [0.1, 0.1]\ntranslation = [-0.1, 0.0]\n\
+         [[joint]]\nkind = \"revolute\"\nbetween = [\"post\", \"arm\"]\nat = [0.0, 0.0]\n\
+         [[flexible]]\nname = \"bar\"\nmaterial = \"steel\"\nsmall_strain = true\nshape.rectangle = {{ size = [1.0, 0.1], cells = [10, 1] }}\ntranslation = [-1.15, -0.05]\n\
+         [[attachment]]\nkind = \"weld\"\nbody = \"bar\"\nnodes.box = [[1.0, 0.0], [1.0, 0.1]]\nto = \"arm\"\n\
+         [[output.history]]\nbody = \"bar\"\nwhat = \"position\"\n"
+    );
+    std::fs::write(folder.join("scene.toml"), scene).expect("a scene");
+    let told = told(&["run", "scene.toml", "--quiet"], &folder);
+    assert!(told.contains(" 0 unfinished"), "{told}");
+    let [x, y] = ["bar_x_m", "bar_y_m"].map(|name| column(&last_row(&folder.join("out")), name));
+    assert!(y < -0.3, "it has swung down: {x}, {y}");
+    assert!(
+        (x.hypot(y) - 0.65).abs() < 0.01,
+        "about its joint: {x}, {y}"
+    );
 }
 
 #[test]

@@ -122,7 +122,7 @@ impl fmt::Display for CourseReport {
             "energy {first:.4e} J at the beginning, {last:.4e} J at the end, {:.4e} J dissipated",
             self.dissipated
         )?;
-        if let Some((body, turn)) = self.turn {
+        if let Some((body, turn)) = self.turn.filter(|(_, turn)| *turn > 1e-3) {
             writeln!(f, "{body:?} turned farthest, by {turn:.3} rad")?;
         }
         if let Some((body, strain)) = self.neglected_strain {

@@ -65,6 +65,7 @@ impl<'a> Scene<'a> {
                     lines: lines_of(collider.shape()),
                     translation: from_rapier(pose.translation).into(),
                     rotation,
+                    moves: parent.is_some_and(|body| body.is_dynamic()),
                     centre,
                     linvel,
                     angvel,
@@ -84,6 +85,8 @@ pub(super) struct RigidShape {
     pub(super) translation: [f64; 2],
     /// Cosine and sine of its angle.
     pub(super) rotation: [f64; 2],
+    /// Whether forces move it.
+    pub(super) moves: bool,
     centre: Vec2,
     linvel: Vec2,
     angvel: f64,

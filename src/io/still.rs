@@ -5,6 +5,7 @@ use super::scene::Scene;
 use super::stress::world_stress;
 use crate::body::FlexBody;
 use crate::math::{Vec2, node_vec};
+use crate::pipeline::Participant;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -14,7 +15,7 @@ const WIDTH: f64 = 960.0;
 /// Height of the line of words over it (px).
 const HEAD: f64 = 34.0;
 
-/// Room around the flexible bodies, over the size of all of them.
+/// Room around the bodies, over the size of all of them.
 const MARGIN: f64 = 0.15;
 
 /// Length of the arrow of the largest force, over the size of the picture.
@@ -30,7 +31,7 @@ const COLOURS: [[f64; 3]; 6] = [
     [190.0, 30.0, 45.0],
 ];
 
-/// Draws a step as SVG: flexible bodies with von Mises' stress, rigid ones as outlines, forces of contact as arrows on the contactors.
+/// Draws a step as SVG: flexible bodies with von Mises' stress, rigid ones as outlines, forces of contact as arrows: on the flexible body, or on the contactor of two.
 ///
 /// ```
 /// use foil2d::io::{Scene, still};
@@ -113,13 +114,21 @@ struct View {
 }
 
 impl View {
-    /// All flexible bodies, with room around.
+    /// All bodies that forces move, with room around.
     fn around(scene: &Scene<'_>) -> Self {
         let (mut low, mut high) = (Vec2::repeat(f64::INFINITY), Vec2::repeat(-f64::INFINITY));
         for (_, body) in scene.flex_bodies.iter() {
             for node in 0..body.n_nodes() {
                 let at = node_vec(body.positions(), node);
                 (low, high) = (low.inf(&at), high.sup(&at));
+            }
+        }
+        for shape in scene.rigid_shapes().iter().filter(|shape| shape.moves) {
+            for point in shape.lines.iter().flat_map(|line| &line.points) {
+                let at = Vec2::from(shape.place(*point));
+                if at.x.is_finite() && at.y.is_finite() {
+                    (low, high) = (low.inf(&at), high.sup(&at));
+                }
             }
         }
         if low.x > high.x {
@@ -174,7 +183,14 @@ impl View {
 
     fn draw_forces(&self, picture: &mut String, scene: &Scene<'_>) {
         let contacts = scene.report.contacts().iter();
-        let arrows = contacts.map(|contact| [contact.position, contact.force()].map(Vec2::from));
+        let arrows = contacts.map(|contact| {
+            let [at, force] = [contact.position, contact.force()].map(Vec2::from);
+            // On the flexible one.
+            match (contact.contactor, contact.target) {
+                (Participant::Rigid(_), Participant::Flex(_)) => [at, -force],
+                _ => [at, force],
+            }
+        });
         let arrows: Vec<[Vec2; 2]> = arrows.collect();
         let largest = arrows
             .iter()

@@ -11,6 +11,11 @@ use toml::Spanned;
 pub struct At<T>(Spanned<T>);
 
 impl<T> At<T> {
+    /// A value that no scene holds, as at the beginning of one.
+    pub fn unsaid(value: T) -> Self {
+        Self(Spanned::new(0..0, value))
+    }
+
     pub fn get(&self) -> &T {
         self.0.get_ref()
     }

@@ -4,6 +4,7 @@ use super::at::At;
 use super::problem::Problem;
 use super::scene::{
     AttachKind, Flexible, Integrator, Joint, JointKind, Law, MaterialSpec, Nodes, Rigid, RigidKind,
+    RigidShape,
 };
 use super::shape::{Shaped, collider, no_such, shaped, vector};
 use super::source::Source;
@@ -15,6 +16,16 @@ use foil2d::rapier::math::Real;
 use foil2d::rapier::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// Numbers beyond this are refused, as the library does.
+const LARGEST: f64 = 1e18;
+
+/// Lengths of steps (s), as the library takes them.
+const SHORTEST: f64 = 1e-8;
+const LONGEST: f64 = 1e4;
+
+/// Steps of a run.
+const MOST_STEPS: f64 = 1e9;
 
 /// A world that is ready to be stepped.
 pub struct Built {
@@ -28,7 +39,8 @@ pub struct Built {
 
 /// Builds the world of a scene.
 pub fn build(source: &Source) -> Result<Built, Problem> {
-    let spec = &source.scene.world;
+    let spec = source.scene.world.get();
+    check_world(source)?;
     let integrator = match spec.integrator {
         Integrator::Damped => Beta2::damped(spec.decay).map_err(Problem::plain)?,
         Integrator::Trapezoidal => Beta2::trapezoidal(),
@@ -64,6 +76,7 @@ pub fn build(source: &Source) -> Result<Built, Problem> {
 
 impl Built {
     fn insert_rigid(&mut self, source: &Source, rigid: &Rigid) -> Result<(), Problem> {
+        check_rigid(source, rigid)?;
         let body = match rigid.kind {
             RigidKind::Dynamic => RigidBodyBuilder::dynamic(),
             RigidKind::Fixed => RigidBodyBuilder::fixed(),
@@ -74,7 +87,7 @@ impl Built {
             .rotation(rigid.rotation as Real)
             .linvel(vector(rigid.linvel))
             .angvel(rigid.angvel as Real);
-        let shape = collider(source, &rigid.shape)?
+        let shape = collider(source, rigid.shape.get())?
             .density(rigid.density as Real)
             .friction(rigid.friction as Real)
             .restitution(rigid.restitution as Real);
@@ -152,18 +165,33 @@ impl Built {
         let ends = [0, 1].map(|end| self.rigid_named(source, &joint.between[end]));
         let [first, second] = ends;
         let (first, second) = (first?, second?);
+        if first == second {
+            return Err(source.problem(
+                &joint.between[1],
+                "a joint is between two bodies: name another one",
+            ));
+        }
+        let place = *joint.at.get();
+        let axis = match joint.kind {
+            JointKind::Prismatic { axis } => axis,
+            _ => [1.0, 0.0],
+        };
+        let is_sound = are_finite(&place) && are_finite(&axis) && hypot(axis[0], axis[1]) > 0.0;
+        if !is_sound {
+            return Err(source.problem(&joint.at, "a joint has a place, and a prismatic one an axis, of finite numbers, the axis not zero"));
+        }
         let local = |handle: RigidBodyHandle, at: Vector| {
             let pose = self.world.bodies.get(handle).map(|body| *body.position());
             pose.unwrap_or(Pose::IDENTITY).inverse_transform_point(at)
         };
-        let anchors = [first, second].map(|body| local(body, vector(joint.at)));
+        let anchors = [first, second].map(|body| local(body, vector(place)));
         let turned = |handle: RigidBodyHandle, axis: [f64; 2]| {
             let body = self.world.bodies.get(handle);
             body.map_or(vector(axis), |body| {
                 body.rotation().inverse() * vector(axis)
             })
         };
-        let built: GenericJoint = match joint.kind {
+        let mut built: GenericJoint = match joint.kind {
             JointKind::Revolute => RevoluteJointBuilder::new()
                 .local_anchor1(anchors[0])
                 .local_anchor2(anchors[1])
@@ -171,7 +199,7 @@ impl Built {
             JointKind::Fixed => {
                 let frames = [first, second].map(|handle| {
                     let pose = self.world.bodies.get(handle).map(|body| *body.position());
-                    let world = Pose::from_translation(vector(joint.at));
+                    let world = Pose::from_translation(vector(place));
                     pose.unwrap_or(Pose::IDENTITY).inverse() * world
                 });
                 FixedJointBuilder::new()
@@ -185,6 +213,7 @@ impl Built {
                 .local_anchor2(anchors[1])
                 .into(),
         };
+        built.contacts_enabled = joint.contacts;
         self.world.impulse_joints.insert(first, second, built, true);
         Ok(())
     }
@@ -236,6 +265,80 @@ impl Built {
     }
 }
 
+fn are_finite(numbers: &[f64]) -> bool {
+    numbers.iter().all(|number| number.abs() <= LARGEST)
+}
+
+/// Refuses a world that has no steps, or no end.
+fn check_world(source: &Source) -> Result<(), Problem> {
+    let at = &source.scene.world;
+    let world = at.get();
+    let refuse = |what: &str| Err(source.problem(at, what));
+    if !(SHORTEST..=LONGEST).contains(&world.dt) {
+        return refuse("`dt` is the length of a step: give seconds from 1e-8 to 1e4");
+    }
+    let n_steps = world.duration / world.dt;
+    if !(0.5..=MOST_STEPS).contains(&n_steps) {
+        return refuse("`duration` is to hold a step of `dt`, and a billion at most");
+    }
+    if !are_finite(&world.gravity) {
+        return refuse("`gravity` is to hold finite numbers");
+    }
+    if !(0.0..=1.0).contains(&world.decay) {
+        return refuse("`decay` is to be from 0 to 1");
+    }
+    match source.scene.output.every {
+        0 => refuse("`every` of the output counts steps: give 1 or more"),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a rigid body that rapier cannot hold.
+fn check_rigid(source: &Source, rigid: &Rigid) -> Result<(), Problem> {
+    let at = &rigid.shape;
+    let refuse = |what: &str| Err(source.problem(at, what));
+    let [x, y] = rigid.translation;
+    let [vx, vy] = rigid.linvel;
+    if !are_finite(&[x, y, vx, vy, rigid.rotation, rigid.angvel]) {
+        return refuse(
+            "`translation`, `rotation`, `linvel` and `angvel` of a rigid body are to be finite numbers up to 1e18",
+        );
+    }
+    let coefficients = [rigid.friction, rigid.restitution];
+    if !coefficients.iter().all(|one| (0.0..=LARGEST).contains(one)) {
+        return refuse("`friction` and `restitution` are not to be negative");
+    }
+    let is_dynamic = rigid.kind == RigidKind::Dynamic;
+    if is_dynamic && !(rigid.density > 0.0 && rigid.density <= LARGEST) {
+        return refuse("the density of a rigid body that moves is to be positive");
+    }
+    let is_open = matches!(
+        at.get(),
+        RigidShape::Polyline { .. } | RigidShape::Halfspace { .. }
+    );
+    if is_dynamic && is_open {
+        return refuse(
+            "polylines and half-spaces have no mass: give `kind = \"fixed\"` or `\"kinematic\"`",
+        );
+    }
+    let is_size = |size: f64| size > 0.0 && size <= LARGEST;
+    let is_sound = match at.get() {
+        RigidShape::Ball { radius } => is_size(*radius),
+        RigidShape::Cuboid { size } => size.iter().all(|&one| is_size(one)),
+        RigidShape::Capsule { from, to, radius } => {
+            is_size(*radius) && are_finite(from) && are_finite(to)
+        }
+        RigidShape::Hull { points } | RigidShape::Polyline { points } => {
+            points.get().iter().all(|point| are_finite(point))
+        }
+        RigidShape::Halfspace { normal } => are_finite(normal.get()),
+    };
+    match is_sound {
+        true => Ok(()),
+        false => refuse("a radius or size is to be positive, and points are to be finite"),
+    }
+}
+
 /// The nodes chosen, one at least.
 fn nodes(source: &Source, shaped: &Shaped, chosen: &Nodes) -> Result<Vec<usize>, Problem> {
     match chosen {
@@ -261,7 +364,10 @@ fn nodes(source: &Source, shaped: &Shaped, chosen: &Nodes) -> Result<Vec<usize>,
                 false => Ok(found),
             }
         }
-        Nodes::Near(point) => Ok(vec![nearest(&shaped.mesh, *point)]),
+        Nodes::Near(point) => match are_finite(point.get()) {
+            true => Ok(vec![nearest(&shaped.mesh, *point.get())]),
+            false => Err(source.problem(point, "the place of a node is to be of finite numbers")),
+        },
     }
 }
 

@@ -43,6 +43,7 @@ pub struct Options {
 /// Writes a scene of the shapes over a floor beside the other files, and runs it.
 pub fn drop_outline(options: &Options) -> Result<(), Problem> {
     let scene = options.out.join("scene.toml");
+    check(options)?;
     let text = scene_of(options)?;
     std::fs::create_dir_all(&options.out)
         .and_then(|()| std::fs::write(&scene, text))
@@ -55,6 +56,27 @@ pub fn drop_outline(options: &Options) -> Result<(), Problem> {
     println!("wrote {}", scene.display());
     print!("{told}");
     Ok(())
+}
+
+fn check(options: &Options) -> Result<(), Problem> {
+    let given = [
+        ("scale", Some(options.scale)),
+        ("edge", options.edge),
+        ("young", Some(options.young)),
+        ("density", Some(options.density)),
+        ("height", options.height),
+        ("duration", Some(options.duration)),
+    ];
+    let is_sound = |value: f64| value > 0.0 && value <= 1e12;
+    let mut given = given
+        .into_iter()
+        .filter_map(|(name, value)| Some((name, value?)));
+    match given.find(|(_, value)| !is_sound(*value)) {
+        Some((name, value)) => Err(Problem::plain(format!(
+            "--{name} is {value}: give a positive number"
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// The scene, in TOML.
@@ -82,9 +104,13 @@ fn scene_of(options: &Options) -> Result<String, Problem> {
         low - height,
     );
     for (index, outline) in found.iter().enumerate() {
+        let name = match outline.name.as_deref() {
+            Some(name) => format!("{name} {index}"),
+            None => format!("shape {index}"),
+        };
         let _ = write!(
             scene,
-            "\n[[flexible]]\nname = \"shape {index}\"\nmaterial = \"soft\"\nshape.polygon = {{ edge = {edge:?}, outline = {:?}, holes = {:?} }}\n",
+            "\n[[flexible]]\nname = {name:?}\nmaterial = \"soft\"\nshape.polygon = {{ edge = {edge:?}, outline = {:?}, holes = {:?} }}\n",
             outline.outer, outline.holes
         );
     }

@@ -34,7 +34,7 @@ pub fn run(options: &Options) -> Result<(), Problem> {
             eprintln!("note: {finding}");
         }
     }
-    let world = &source.scene.world;
+    let world = source.scene.world.get();
     let by_duration = (world.duration / world.dt).round().max(0.0) as usize;
     let n_steps = options.steps.unwrap_or(by_duration);
     let outputs = Outputs::new(&source, &built, options.out.clone())?;

@@ -11,8 +11,8 @@ use std::path::PathBuf;
 #[serde(deny_unknown_fields)]
 #[schemars(title = "A foil2d scene")]
 pub struct SceneFile {
-    #[serde(default)]
-    pub world: World,
+    #[serde(default = "World::unsaid")]
+    pub world: At<World>,
     /// Materials by name.
     #[serde(default)]
     pub materials: BTreeMap<String, At<MaterialSpec>>,
@@ -47,6 +47,12 @@ pub struct World {
     pub decay: f64,
     /// Whether a step that is not solved ends the run.
     pub refuse_unsolved: bool,
+}
+
+impl World {
+    fn unsaid() -> At<Self> {
+        At::unsaid(Self::default())
+    }
 }
 
 impl Default for World {
@@ -193,7 +199,7 @@ pub enum Nodes {
     /// From the lower left to the upper right corner (m), both included; `inf` and `-inf` are bounds too.
     Box(At<[[f64; 2]; 2]>),
     /// The node nearest to a point (m).
-    Near([f64; 2]),
+    Near(At<[f64; 2]>),
 }
 
 /// Nodes that are held.
@@ -223,7 +229,7 @@ pub struct Rigid {
     /// What others call it.
     #[serde(default)]
     pub name: Option<At<String>>,
-    pub shape: RigidShape,
+    pub shape: At<RigidShape>,
     #[serde(default)]
     pub kind: RigidKind,
     #[serde(default)]
@@ -294,7 +300,10 @@ pub struct Joint {
     /// Both bodies by name.
     pub between: [At<String>; 2],
     /// Where (m).
-    pub at: [f64; 2],
+    pub at: At<[f64; 2]>,
+    /// Whether the two may touch each other.
+    #[serde(default)]
+    pub contacts: bool,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]

@@ -152,7 +152,12 @@ pub fn collider(source: &Source, shape: &RigidShape) -> Result<ColliderBuilder, 
         }
         RigidShape::Hull { points } => {
             let all: Vec<Vector> = points.get().iter().map(|&at| vector(at)).collect();
-            ColliderBuilder::convex_hull(&all).ok_or_else(|| {
+            let hull = match all.len() {
+                // Parry 0.31 panics.
+                0..3 => None,
+                _ => ColliderBuilder::convex_hull(&all),
+            };
+            hull.ok_or_else(|| {
                 source.problem(
                     points,
                     "the points have no convex hull: give three or more that are not on a line",
