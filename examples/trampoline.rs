@@ -90,7 +90,7 @@ impl Scene {
         );
         let mut flex_bodies = FlexBodySet::new();
         let net = LinearElastic::plane_stress(YOUNG, 0.0).density(300.0);
-        let is_end = |[x, _]: [f64; 2]| x < 1e-9 || x > LENGTH - 1e-9;
+        let is_end = |[x, _]: [f64; 2]| !(1e-9..=LENGTH - 1e-9).contains(&x);
         let strip = flex_bodies.insert(
             FlexBodyBuilder::rectangle([LENGTH, THICKNESS], [60, 1])
                 .material(net.rayleigh(1e-4))
