@@ -174,6 +174,15 @@ fn a_body_that_is_shot_far_in_a_step_is_named() {
     }
 }
 
+/// A body that is held everywhere has no vibrations to be looked at, and nothing is wrong with it.
+#[test]
+fn a_body_that_is_held_everywhere_is_sound() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let block = FlexBodyBuilder::rectangle([1.0, 1.0], [2, 2]).material(rubber());
+    scene.flexible(block.pin_where(|_| true, Pin::both()));
+    assert_eq!(findings(&scene), []);
+}
+
 #[test]
 fn a_body_far_from_the_origin_is_named() {
     let far = by_precision(4e3, 2e12);

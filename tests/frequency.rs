@@ -1,10 +1,12 @@
 //! The largest natural frequency: Lanczos against a dense eigenvalue solver and the bar's closed form, and a safe bound.
 
+#[path = "modes/exact.rs"]
+mod exact;
+
 use foil2d::fe::frequency::{FrequencyError, frequency_bound, largest_frequency};
 use foil2d::fe::material::LinearElastic;
 use foil2d::fe::mesh::{CellKind, Mesh, generate};
-use foil2d::fe::model::{MassKind, MassMatrix, Model, ModelDescription};
-use nalgebra::{Cholesky, DMatrix};
+use foil2d::fe::model::{MassKind, Model, ModelDescription};
 use std::sync::Arc;
 
 fn model(mesh: Mesh, poisson: f64, mass_kind: MassKind, massless: Vec<bool>) -> Model {
@@ -29,40 +31,10 @@ fn rectangle(size: [f64; 2], divisions: [usize; 2], kind: CellKind) -> Mesh {
     generate::rectangle(size, divisions, kind).expect("a sound rectangle")
 }
 
-/// The largest frequency by dense matrices: free dofs with mass, massless ones condensed out.
+/// The largest frequency by dense matrices.
 fn dense(model: &Model, is_fixed: &[bool]) -> f64 {
-    let free: Vec<usize> = (0..model.n_dofs())
-        .filter(|&dof| !is_fixed.get(dof).copied().unwrap_or(false))
-        .collect();
-    let (followers, massive): (Vec<usize>, Vec<usize>) =
-        free.iter().partition(|&&dof| model.is_massless(dof / 2));
-    let entry = |i: usize, j: usize| {
-        let block = model.stiffness().block(i / 2, j / 2);
-        block.map_or(0.0, |block| block[2 * (i % 2) + j % 2])
-    };
-    let part = |rows: &[usize], columns: &[usize]| {
-        DMatrix::from_fn(rows.len(), columns.len(), |i, j| entry(rows[i], columns[j]))
-    };
-    let mut stiffness = part(&massive, &massive);
-    if !followers.is_empty() {
-        let inner = Cholesky::new(part(&followers, &followers)).expect("held by the others");
-        let beside = part(&followers, &massive);
-        stiffness -= beside.transpose() * inner.solve(&beside);
-    }
-    let mass = DMatrix::from_fn(massive.len(), massive.len(), |i, j| {
-        let (i, j) = (massive[i], massive[j]);
-        match model.mass() {
-            _ if i % 2 != j % 2 => 0.0,
-            MassMatrix::Lumped(mass) => f64::from(u8::from(i == j)) * mass[i / 2],
-            MassMatrix::Consistent(mass) => mass.block(i / 2, j / 2).map_or(0.0, |b| b[0]),
-        }
-    });
-    let factor = Cholesky::new(mass).expect("massive").l();
-    let half = factor.solve_lower_triangular(&stiffness).expect("regular");
-    let reduced = factor
-        .solve_lower_triangular(&half.transpose())
-        .expect("regular");
-    reduced.symmetric_eigenvalues().max().sqrt()
+    let squares = exact::dense(model, is_fixed);
+    squares.last().expect("a free dof").sqrt()
 }
 
 /// Lanczos to 1e-9 against the dense solver, and the bound above but not above `largest_ratio` times the frequency.

@@ -4,6 +4,8 @@
 mod beams;
 #[path = "modes/dense.rs"]
 mod dense;
+#[path = "modes/exact.rs"]
+mod exact;
 #[path = "modes/plates.rs"]
 mod plates;
 #[path = "modes/prestress.rs"]

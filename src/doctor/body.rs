@@ -4,6 +4,7 @@ use super::finding::Finding;
 use crate::body::{FlexBody, FlexBodyHandle};
 use crate::fe::material::Material;
 use crate::fe::mesh::{CellKind, Mesh};
+use crate::fe::modes::{ModesError, lowest_modes};
 use crate::integrator::Beta2;
 use crate::math::{Vec2, node_vec};
 use crate::pipeline::InsertionNote;
@@ -111,8 +112,11 @@ impl Patient<'_> {
         let (body, model) = (self.handle, self.body.model());
         let fixed = self.body.fixed_dofs();
         // At rest, whatever the body is doing; rounding is no matter here.
-        let Ok(found) = crate::fe::modes::lowest_modes(model, fixed, N_MODES, 1e-4) else {
-            return;
+        let found = match lowest_modes(model, fixed, N_MODES, 1e-4) {
+            Ok(found) => found,
+            // It is held nearly everywhere.
+            Err(ModesError::TooMany { .. }) => return,
+            Err(_) => return findings.push(Finding::Unexamined { body }),
         };
         let mut frequencies = found.frequencies().into_iter();
         let Some(frequency) = frequencies.find(|&frequency| frequency > 0.0) else {

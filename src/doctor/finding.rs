@@ -30,6 +30,11 @@ pub enum Finding {
         /// Length over thickness (-).
         slenderness: f64,
     },
+    /// The lowest vibrations could not be computed, and neither damping nor sag were looked at.
+    Unexamined {
+        /// The body.
+        body: FlexBodyHandle,
+    },
     /// The lowest vibration is damped far beyond the critical ratio: the body creeps.
     Overdamped {
         /// The body.
@@ -109,6 +114,7 @@ impl Finding {
             Self::Sliver { body, .. }
             | Self::Locking { body, .. }
             | Self::FewCells { body, .. }
+            | Self::Unexamined { body }
             | Self::Overdamped { body, .. }
             | Self::Crushed { body, .. }
             | Self::Sagging { body, .. }
@@ -141,6 +147,10 @@ impl fmt::Display for Finding {
             } => write!(
                 f,
                 "{body:?} is {slenderness:.0} times as long as thick and has {across} three-node triangle(s) across, which are much too stiff in bending: take `CellKind::Tri6` or `Quad4`"
+            ),
+            Self::Unexamined { body } => write!(
+                f,
+                "the lowest vibrations of {body:?} cannot be computed, so that its damping and sag were not looked at: check its moduli and the shape of its cells"
             ),
             Self::Overdamped {
                 body,

@@ -51,7 +51,7 @@ impl Outputs {
             });
         }
         Ok(Self {
-            every: spec.every.max(1),
+            every: spec.every,
             vtu: spec.vtu.then(|| VtuSeries::new(folder.join("scene"))),
             replay: spec.replay.then(|| Replay::new("foil2d")),
             has_still: spec.still,
