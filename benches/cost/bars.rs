@@ -23,7 +23,7 @@ enum Promise {
     Stage(f64, f64),
 }
 
-const BARS: [Bar; 10] = [
+const BARS: [Bar; 19] = [
     Bar::new(Phase::Clamped, [20, 2], Promise::Faster(2.0, CONSTRAINTS)),
     Bar::new(Phase::Clamped, [80, 8], Promise::Faster(12.0, CONSTRAINTS)),
     Bar::new(
@@ -40,6 +40,43 @@ const BARS: [Bar; 10] = [
     Bar::new(Phase::Clamped, [20, 2], Promise::Stage(2.1, 55.0)),
     Bar::new(Phase::Clamped, [80, 8], Promise::Stage(21.0, 799.0)),
     Bar::new(Phase::Clamped, [200, 20], Promise::Stage(165.0, 4849.0)),
+    Bar::new(Phase::Bending, [20, 2], Promise::Faster(6e+00, CONSTRAINTS)),
+    Bar::new(Phase::Bending, [80, 8], Promise::Faster(5e+00, CONSTRAINTS)),
+    Bar::new(
+        Phase::Bending,
+        [200, 20],
+        Promise::Faster(4e+00, CONSTRAINTS),
+    ),
+    Bar::new(
+        Phase::Swinging,
+        [20, 2],
+        Promise::Faster(3e+00, CONSTRAINTS),
+    ),
+    Bar::new(
+        Phase::Swinging,
+        [80, 8],
+        Promise::Faster(2e+00, CONSTRAINTS),
+    ),
+    Bar::new(
+        Phase::Swinging,
+        [200, 20],
+        Promise::Faster(2e+00, CONSTRAINTS),
+    ),
+    Bar::new(
+        Phase::Swinging,
+        [20, 2],
+        Promise::Faster(6e+00, CONVERGED_FEM),
+    ),
+    Bar::new(
+        Phase::Swinging,
+        [80, 8],
+        Promise::Faster(1e+01, CONVERGED_FEM),
+    ),
+    Bar::new(
+        Phase::Swinging,
+        [200, 20],
+        Promise::Faster(2e+01, CONVERGED_FEM),
+    ),
     Bar::new(Phase::Landed, [16, 16], Promise::Faster(3.0, CONSTRAINTS)),
     Bar::new(Phase::Landed, [64, 64], Promise::Faster(5.0, CONSTRAINTS)),
 ];
@@ -91,7 +128,10 @@ impl Bar {
 
 /// Prints every bar whose scene was run.
 pub fn print(outcomes: &[(Scene, Vec<Timing>)]) {
-    println!("\n{:<40} {:<47} {:>14} {:>14}", "Bars", "", "Tri3", "Quad4");
+    println!(
+        "\n{:<40} {:<47} {:>14} {:>14}",
+        "Bars", "", "Tri3 or Tri6", "Quad4"
+    );
     for bar in &BARS {
         let outcome = outcomes
             .iter()

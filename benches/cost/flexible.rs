@@ -99,19 +99,24 @@ impl Side for FlexSide {
     }
 
     fn tip_deflection(&self) -> f64 {
-        -self.bodies[self.body].displacement(self.scene.tip())[1]
+        let body = &self.bodies[self.body];
+        -body.displacement(self.scene.tip(body.mesh()))[1]
     }
 }
 
 fn builder(scene: &Scene, kind: CellKind) -> Outcome<FlexBodyBuilder> {
-    let is_clamped = scene.phase == Phase::Clamped;
+    let is_clamped = scene.is_clamped();
     let damping = if is_clamped { 0.0 } else { BLOCK_DAMPING };
     let material = LinearElastic::plane_stress(scene.young, POISSON)
         .density(DENSITY)
         .rayleigh(damping);
-    let builder = FlexBodyBuilder::mesh(scene.mesh(kind)?)
-        .small_strain()
-        .material(material)
+    let builder = FlexBodyBuilder::mesh(scene.mesh(kind)?).material(material);
+    let builder = if scene.is_large() {
+        builder
+    } else {
+        builder.small_strain()
+    };
+    let builder = builder
         .translation(scene.origin())
         // Asleep it would cost next to nothing; rapier's soft bodies are timed awake.
         .can_sleep(false);

@@ -71,7 +71,12 @@ fn main() -> Outcome<()> {
 
 fn sides(scene: &Scene) -> Outcome<Vec<Box<dyn Side>>> {
     let mut sides: Vec<Box<dyn Side>> = Vec::new();
-    for kind in [CellKind::Tri3, CellKind::Quad4] {
+    let first = if scene.is_large() {
+        CellKind::Tri6
+    } else {
+        CellKind::Tri3
+    };
+    for kind in [first, CellKind::Quad4] {
         sides.push(Box::new(FlexSide::new(scene, kind)?));
     }
     for model in soft::models(scene) {

@@ -15,7 +15,7 @@ pub fn models(scene: &Scene) -> Vec<SoftModel> {
         SoftModel::Fem,
         SoftModel::ConvergedFem,
     ];
-    if scene.phase == Phase::Clamped {
+    if scene.is_clamped() {
         models.push(SoftModel::TightFem);
     }
     models
@@ -27,6 +27,7 @@ pub struct SoftSide {
     model: SoftModel,
     world: PhysicsWorld,
     body: SoftBodyHandle,
+    tip: usize,
 }
 
 impl SoftSide {
@@ -40,6 +41,7 @@ impl SoftSide {
             model,
             world,
             body,
+            tip: scene.tip(&mesh),
         })
     }
 }
@@ -88,7 +90,7 @@ impl Side for SoftSide {
     }
 
     fn tip_deflection(&self) -> f64 {
-        let tip = self.world.soft_bodies[self.body].particle_position(self.scene.tip());
+        let tip = self.world.soft_bodies[self.body].particle_position(self.tip);
         0.5 * self.scene.size[1] - f64::from(tip.y)
     }
 }
@@ -103,15 +105,11 @@ fn builder(scene: &Scene, model: SoftModel, mesh: &Mesh) -> SoftBodyBuilder {
         .cells(cells.collect())
         .masses(masses(mesh, DENSITY))
         .cell_model(SoftBodyCellModel::Corotational)
-        .material(material(
-            scene.young,
-            POISSON,
-            scene.phase != Phase::Clamped,
-        ))
+        .material(material(scene.young, POISSON, !scene.is_clamped()))
         .solver(model.solver())
         .particle_radius(RADIUS as Real)
         .can_sleep(false);
-    if scene.phase != Phase::Clamped {
+    if !scene.is_clamped() {
         return builder;
     }
     let is_clamped = |&node: &u32| mesh.nodes()[node as usize][0] == 0.0;

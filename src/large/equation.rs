@@ -53,9 +53,10 @@ impl Equation<'_> {
         self.model
             .subtract_force(self.form, end, deformation, residual)?;
         let (mut norm, mut at): (f64, usize) = (0.0, 0);
-        for (dof, (residual, reaction)) in residual.iter_mut().zip(reaction).enumerate() {
+        let dofs = residual.iter_mut().zip(reaction).zip(self.is_held);
+        for (dof, ((residual, reaction), is_held)) in dofs.enumerate() {
             *reaction = 0.0;
-            if self.is_held[dof] {
+            if *is_held {
                 *reaction = -*residual;
                 // Where held dofs alone deform a body there is no other force to compare with. In a step there is inertia, beside which
                 // the couple of a clamp would be a poor measure.
@@ -81,14 +82,25 @@ impl Equation<'_> {
     fn apply_loads(&self, end: &[f64], residual: &mut [f64]) -> f64 {
         let Inertia { acceleration, drag } = self.inertia;
         let mut scale: f64 = 0.0;
-        for (dof, residual) in residual.iter_mut().enumerate() {
-            let mass = self.model.masses()[dof / 2];
-            let inertia = mass
-                * (acceleration * (end[dof] - self.coast[dof])
-                    + drag * (end[dof] - self.start[dof]));
-            *residual = self.load[dof] - inertia;
-            if !self.is_held[dof] {
-                scale = scale.max(self.load[dof].abs()).max(inertia.abs());
+        let nodes = residual
+            .as_chunks_mut::<2>()
+            .0
+            .iter_mut()
+            .zip(self.model.masses())
+            .zip(end.as_chunks::<2>().0)
+            .zip(self.coast.as_chunks::<2>().0)
+            .zip(self.start.as_chunks::<2>().0)
+            .zip(self.load.as_chunks::<2>().0)
+            .zip(self.is_held.as_chunks::<2>().0);
+        for ((((((residual, mass), end), coast), start), load), is_held) in nodes {
+            for k in 0..2 {
+                let inertia =
+                    mass * (acceleration * (end[k] - coast[k]) + drag * (end[k] - start[k]));
+                residual[k] = load[k] - inertia;
+                let size = load[k].abs().max(inertia.abs());
+                if !is_held[k] && size > scale {
+                    scale = size;
+                }
             }
         }
         scale

@@ -302,6 +302,9 @@ impl BlockMatrix {
             {
                 let other = other as usize;
                 let fixed_column = [is_fixed[2 * other], is_fixed[2 * other + 1]];
+                if fixed_row == [false; 2] && fixed_column == [false; 2] {
+                    continue;
+                }
                 for (k, value) in block.iter_mut().enumerate() {
                     if fixed_row[k / 2] || fixed_column[k % 2] {
                         *value = if other == node && k / 2 == k % 2 {

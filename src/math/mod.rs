@@ -62,8 +62,10 @@ mod mix;
 pub(crate) mod ordered;
 mod real;
 mod sum;
+mod wide;
 
 pub use elementary::{atan, atan2, cos, exp, exp_m1, hypot, ln, ln_1p, sin, sin_cos, tan};
 pub use mix::mix;
 pub use real::{REAL_EPSILON, are_held, from_rapier, is_held, to_rapier};
 pub use sum::{sum_over, sum_over_dofs};
+pub(crate) use wide::{LANES, Number, Wide};

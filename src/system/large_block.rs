@@ -331,7 +331,7 @@ impl FlexBlock {
                 continue;
             };
             let is_slow = last.is_some_and(|last| now.norm > SLOWEST * last.norm);
-            let has_ended = now.norm <= TOLERANCE * now.scale || is_slow && now.norm <= rounding;
+            let has_ended = now.norm <= TOLERANCE * now.scale || now.norm <= rounding;
             if n_iterations == MOST_ITERATIONS && !has_ended {
                 let moved = self.local.iter().fold(0.0f64, |most, x| most.max(x.abs()));
                 return moved / self.size;

@@ -4,11 +4,13 @@ use super::Inadmissible;
 use super::deformed::Deformed;
 use super::guard::Guards;
 use super::hourglass::{Hourglass, Shape};
+use super::lanes::{Deform, Packs, PointEnergy, PointForces, PointTangent};
 use super::linearization::Linearization;
-use super::point::{self, Form};
+use super::point::{self, Form, each};
 use super::solid::Solid;
-use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
+use crate::fe::material::hyperelastic::Hyperelastic;
 use crate::linalg::block_matrix::BlockMatrix;
+use crate::math::Number;
 
 /// Cells of one material with the same number of nodes and of quadrature points.
 #[derive(Clone, Debug)]
@@ -32,8 +34,9 @@ pub(super) struct CellGroup {
     pub(super) hourglass: Vec<Hourglass>,
     /// What keeps the nodes of the cells from turning, or nothing.
     pub(super) guards: Guards,
-    /// Where its guarded places begin among those of the body.
-    pub(super) first_guard: usize,
+    /// Where its cells begin among all.
+    pub(super) first_cell: usize,
+    pub(super) packs: Packs,
 }
 
 /// One cell: its nodes, and the gradients of its shape functions and the volume at each of its points.
@@ -87,7 +90,8 @@ impl CellGroup {
                 first_point: 0,
                 hourglass: Vec::new(),
                 guards: Guards::default(),
-                first_guard: 0,
+                first_cell: 0,
+                packs: Packs::default(),
             });
         }
         &mut groups[at]
@@ -98,17 +102,14 @@ impl CellGroup {
         self.first_point..self.first_point + self.volumes.len()
     }
 
-    /// The guarded places of this group among those of the body.
-    pub(super) fn guarded_places(&self) -> std::ops::Range<usize> {
-        self.first_guard..self.first_guard + self.guards.len()
+    /// Its cells among those of all groups, one after the other.
+    pub(super) fn flat_places(&self) -> std::ops::Range<usize> {
+        self.first_cell..self.first_cell + self.cells.len()
     }
 
     /// Writes the deformation at these positions (m).
     pub(super) fn deform(&self, positions: &[f64], out: &mut Deformed) {
-        let gradients = &mut out.gradients[self.points()];
-        with_node_count!(self, deform_points(positions, gradients));
-        let guarded = &mut out.guarded[self.guarded_places()];
-        with_node_count!(self, deform_guards(positions, guarded));
+        with_node_count!(self, deform_points(positions, out));
         for (place, point) in self.stiffened() {
             let (nodes, _) = self.quad(place);
             out.amplitudes[point] = self.hourglass[place].amplitude(&gather(nodes, positions));
@@ -117,8 +118,7 @@ impl CellGroup {
 
     /// Stored energy (J) of the group at these positions (m).
     pub(super) fn energy(&self, law: &dyn Hyperelastic, positions: &[f64]) -> f64 {
-        let energy: f64 = with_node_count!(self, point_energy(law, positions));
-        let energy = energy + with_node_count!(self, guard_energy(positions));
+        let energy = with_node_count!(self, point_energy(law, positions));
         let stiffened = self.stiffened();
         energy
             + stiffened
@@ -151,16 +151,16 @@ impl CellGroup {
         (start, end): (&Deformed, &mut Deformed),
         residual: &mut [f64],
     ) -> Result<(), Inadmissible> {
-        let points = self.points();
         match law.plasticity() {
             None => {
-                let pair = (&start.gradients[points.clone()], &mut end.gradients[points]);
+                let pair = (start, &mut *end);
                 with_node_count!(
                     self,
                     subtract_point_forces(law, form, positions, pair, residual)
                 )?;
             }
             Some(law) => {
+                end.is_flat[self.flat_places()].fill(self.guards.len() > 0);
                 let pair = (start, &mut *end);
                 with_node_count!(
                     self,
@@ -168,11 +168,8 @@ impl CellGroup {
                 )?;
             }
         }
-        let pair = (start, &mut *end);
-        with_node_count!(
-            self,
-            subtract_guard_forces(law, form, positions, pair, residual)
-        )?;
+        let pair = (start, &*end);
+        with_node_count!(self, subtract_guard_forces(law, form, pair, residual))?;
         for (place, point) in self.stiffened() {
             let (nodes, gradients) = self.quad(place);
             let hourglass = &self.hourglass[place];
@@ -200,11 +197,10 @@ impl CellGroup {
         (start, end): (&Deformed, &Deformed),
         matrix: &mut BlockMatrix,
     ) {
-        let points = self.points();
         match law.plasticity() {
             None => {
-                let pair = (&start.gradients[points.clone()], &end.gradients[points]);
-                with_node_count!(self, add_point_tangent(law, form, kind, pair, matrix));
+                let asked = (form, kind);
+                with_node_count!(self, add_point_tangent(law, asked, (start, end), matrix));
             }
             Some(law) => {
                 let asked = (form, kind);
@@ -258,17 +254,14 @@ impl CellGroup {
             })
     }
 
-    /// Writes `F` at every point of the group.
-    fn deform_points<const N: usize>(&self, positions: &[f64], out: &mut [[f64; 4]]) {
-        let cells = self
-            .kinematics::<N>()
-            .zip(out.chunks_exact_mut(self.n_points));
-        for (cell, out) in cells {
-            let differences = gather(cell.nodes, positions);
-            for (gradient, out) in cell.gradients.iter().zip(out) {
-                *out = deformation_gradient(&differences, gradient);
-            }
-        }
+    /// Writes `F` at every point of the group, and which cells may be flat.
+    fn deform_points<const N: usize>(&self, positions: &[f64], out: &mut Deformed) {
+        let kernel = Deform::<N> {
+            group: self,
+            positions,
+            out,
+        };
+        kernel.run();
     }
 
     /// `F` at the points of one cell of the group.
@@ -283,16 +276,14 @@ impl CellGroup {
         })
     }
 
+    /// Stored energy of points and guards (J).
     fn point_energy<const N: usize>(&self, law: &dyn Hyperelastic, positions: &[f64]) -> f64 {
-        let mut energy = 0.0;
-        for cell in self.kinematics::<N>() {
-            let differences = gather(cell.nodes, positions);
-            for (gradient, volume) in cell.gradients.iter().zip(cell.volumes) {
-                let at = Invariants::of(deformation_gradient(&differences, gradient));
-                energy += volume * law.energy_density(at);
-            }
-        }
-        energy
+        let kernel = PointEnergy::<N> {
+            group: self,
+            law,
+            positions,
+        };
+        kernel.sum()
     }
 
     fn subtract_point_forces<const N: usize>(
@@ -300,51 +291,44 @@ impl CellGroup {
         law: &dyn Hyperelastic,
         form: Form,
         positions: &[f64],
-        (start, end): (&[[f64; 4]], &mut [[f64; 4]]),
+        (start, end): (&Deformed, &mut Deformed),
         residual: &mut [f64],
     ) -> Result<(), Inadmissible> {
-        let cells = self
-            .kinematics::<N>()
-            .zip(start.chunks_exact(self.n_points))
-            .zip(end.chunks_exact_mut(self.n_points))
-            .zip(&self.cells);
-        for (((cell, start), end), &index) in cells {
-            let differences = gather(cell.nodes, positions);
-            let mut force = [[0.0; 2]; N];
-            let points = cell.gradients.iter().zip(cell.volumes).zip(start).zip(end);
-            for (((gradient, volume), start), end) in points {
-                *end = deformation_gradient(&differences, gradient);
-                let at = Invariants::of(*end);
-                if !law.admits(at) {
-                    return Err(Inadmissible {
-                        cell: index,
-                        jacobian: at.j,
-                        law: law.name(),
-                    });
-                }
-                let stress = point::stress(law, form, *start, *end).map(|part| volume * part);
-                for (force, [x, y]) in force.iter_mut().zip(gradient) {
-                    force[0] += stress[0] * x + stress[1] * y;
-                    force[1] += stress[2] * x + stress[3] * y;
-                }
-            }
-            subtract(cell.nodes, force, residual);
-        }
-        Ok(())
+        let forces = PointForces::<N> {
+            group: self,
+            law,
+            form,
+            positions,
+            start,
+            end,
+            residual,
+        };
+        forces.subtract()
     }
 
     fn add_point_tangent<const N: usize>(
         &self,
         law: &dyn Hyperelastic,
-        form: Form,
-        kind: Linearization,
-        (start, end): (&[[f64; 4]], &[[f64; 4]]),
+        (form, kind): (Form, Linearization),
+        (start, end): (&Deformed, &Deformed),
         matrix: &mut BlockMatrix,
     ) {
+        if kind == Linearization::Consistent {
+            let tangent = PointTangent::<N> {
+                group: self,
+                law,
+                form,
+                start,
+                end,
+                matrix,
+            };
+            return tangent.add();
+        }
+        let points = self.points();
         let cells = self
             .kinematics::<N>()
-            .zip(start.chunks_exact(self.n_points))
-            .zip(end.chunks_exact(self.n_points))
+            .zip(start.gradients[points.clone()].chunks_exact(self.n_points))
+            .zip(end.gradients[points].chunks_exact(self.n_points))
             .zip(self.places.as_chunks::<N>().0.chunks_exact(N));
         for (((cell, start), end), places) in cells {
             let mut blocks = [[[0.0; 4]; N]; N];
@@ -387,13 +371,13 @@ pub(super) fn gather<const N: usize>(nodes: &[u32; N], positions: &[f64]) -> [[f
 }
 
 /// `F = Σ_a (x_a - x_0) ⊗ dN_a/dX`.
-#[inline]
-pub(super) fn deformation_gradient<const N: usize>(
-    differences: &[[f64; 2]; N],
-    gradient: &[[f64; 2]; N],
-) -> [f64; 4] {
-    let mut f = [0.0; 4];
-    for ([x, y], [by_x, by_y]) in differences.iter().zip(gradient).skip(1) {
+#[inline(always)]
+pub(super) fn deformation_gradient<T: Number, const N: usize>(
+    differences: &[[T; 2]; N],
+    gradient: &[[T; 2]; N],
+) -> [T; 4] {
+    let mut f = [T::ZERO; 4];
+    for (&[x, y], &[by_x, by_y]) in differences.iter().zip(gradient).skip(1) {
         f[0] += x * by_x;
         f[1] += x * by_y;
         f[2] += y * by_x;
@@ -403,20 +387,20 @@ pub(super) fn deformation_gradient<const N: usize>(
 }
 
 /// Adds `volume ∇N_a · A · ∇N_b` to the blocks `a <= b`.
-#[inline]
-pub(super) fn add_point<const N: usize>(
-    gradient: &[[f64; 2]; N],
-    moduli: &[[f64; 4]; 4],
-    volume: f64,
-    blocks: &mut [[[f64; 4]; N]; N],
+#[inline(always)]
+pub(super) fn add_point<T: Number, const N: usize>(
+    gradient: &[[T; 2]; N],
+    moduli: &[[T; 4]; 4],
+    volume: T,
+    blocks: &mut [[[T; 4]; N]; N],
 ) {
-    for (b, [x, y]) in gradient.iter().enumerate() {
+    for (b, &[x, y]) in gradient.iter().enumerate() {
         let (x, y) = (volume * x, volume * y);
         // The stress that a motion of node b along each axis brings.
         let stress =
             |row: usize, axis: usize| moduli[row][2 * axis] * x + moduli[row][2 * axis + 1] * y;
-        let stress: [[f64; 2]; 4] = std::array::from_fn(|row| [stress(row, 0), stress(row, 1)]);
-        for (row, [x, y]) in blocks.iter_mut().zip(gradient).take(b + 1) {
+        let stress = each(|row| [stress(row, 0), stress(row, 1)]);
+        for (row, &[x, y]) in blocks.iter_mut().zip(gradient).take(b + 1) {
             let block = &mut row[b];
             block[0] += x * stress[0][0] + y * stress[1][0];
             block[1] += x * stress[0][1] + y * stress[1][1];

@@ -8,8 +8,10 @@ use crate::fe::material::hyperelastic::PlasticState;
 pub(super) struct Deformed {
     pub(super) gradients: Vec<[f64; 4]>,
     pub(super) amplitudes: Vec<[f64; 2]>,
-    /// Gradients at the guarded places.
-    pub(super) guarded: Vec<[f64; 4]>,
+    /// Positions of the nodes (m).
+    pub(super) positions: Vec<f64>,
+    /// Whether a guarded place of a cell may be flat, group after group.
+    pub(super) is_flat: Vec<bool>,
     /// Positions around the holes under pressure, relative to one of each (m).
     pub(super) around: Vec<f64>,
     /// What has flowed before the step, one per quadrature point; of its beginning, and of bodies that may flow.
@@ -17,11 +19,12 @@ pub(super) struct Deformed {
 }
 
 impl Deformed {
-    pub(super) fn new(n_points: usize, n_guarded: usize, n_around: usize) -> Self {
+    pub(super) fn new(n_points: usize, [n_dofs, n_cells]: [usize; 2], n_around: usize) -> Self {
         Self {
             gradients: vec![[0.0; 4]; n_points],
             amplitudes: vec![[0.0; 2]; n_points],
-            guarded: vec![[0.0; 4]; n_guarded],
+            positions: vec![0.0; n_dofs],
+            is_flat: vec![false; n_cells],
             around: vec![0.0; n_around],
             flowed: Vec::new(),
         }

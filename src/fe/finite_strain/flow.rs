@@ -102,7 +102,7 @@ impl FiniteStrainModel {
                 },
             );
             sum.stored += points.stored;
-            sum.stored += with_node_count!(group, guard_energy(positions));
+            sum.stored += with_node_count!(group, guards_energy(positions));
             sum.dissipated += points.dissipated;
         }
         for hole in &self.holes {
@@ -290,8 +290,8 @@ impl CellGroup {
                 let pair = [start[point], end[point]].map(|f| state.elastic(f));
                 let (coefficients, _) = derivatives(law, form, state, pair);
                 let volume = cell.volumes[point];
-                let stress =
-                    stress_of_pair(law, form, coefficients, pair).map(|part| volume * part);
+                let stress = stress_of_pair(law.constants(), form, coefficients, pair)
+                    .map(|part| volume * part);
                 for (force, gradient) in force.iter_mut().zip(gradient) {
                     let [x, y] = state.gradient(*gradient);
                     force[0] += stress[0] * x + stress[1] * y;
@@ -325,7 +325,7 @@ impl CellGroup {
                 let gradient = cell.gradients[point].map(|gradient| state.gradient(gradient));
                 let pair = [start[point], end[point]].map(|f| state.elastic(f));
                 let derivatives = derivatives(law, form, state, pair);
-                let moduli = moduli_of_pair(law, (form, kind), derivatives, pair);
+                let moduli = moduli_of_pair(law.constants(), (form, kind), derivatives, pair);
                 let volume = cell.volumes[point];
                 let share = kind.share(&gradient, &moduli, volume);
                 add_point(&gradient, &moduli, share * volume, &mut blocks);

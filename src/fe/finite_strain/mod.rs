@@ -22,6 +22,7 @@
 //! | `hourglass` | the modes that the one point of a four-node cell does not see |
 //! | `description` | what a body is assembled from |
 //! | `pressure` | a constant pressure, a gas that is shut in |
+//! | `lanes` | the kernels of laws that do not flow, four cells side by side |
 //! | `hole` | holes of the body under pressure |
 //! | `linearization` | which matrix stands for the derivative of the forces |
 //! | `model` | the assembled body |
@@ -38,6 +39,7 @@ mod flow;
 mod guard;
 mod hole;
 mod hourglass;
+mod lanes;
 mod linearization;
 mod model;
 mod point;

@@ -6,6 +6,7 @@ use super::deformed::Deformed;
 use super::description::{FiniteStrainDescription, FiniteStrainError};
 use super::hole::{Hole, area, loop_of, n_holes, relative, terms_of};
 use super::hourglass::Hourglass;
+use super::lanes::Packs;
 use super::linearization::Linearization;
 use super::point::Form;
 use super::pressure::{InnerPressure, PressureError};
@@ -66,7 +67,6 @@ pub struct FiniteStrainModel {
     pub(super) description: FiniteStrainDescription,
     pub(super) groups: Vec<CellGroup>,
     pub(super) n_points: usize,
-    n_guarded: usize,
     masses: Vec<f64>,
     /// All holes, if there is a pressure in one.
     pub(super) holes: Vec<Hole>,
@@ -93,7 +93,6 @@ impl FiniteStrainModel {
         let mut model = Self {
             groups: Vec::new(),
             n_points: 0,
-            n_guarded: 0,
             masses: vec![0.0; n_nodes],
             holes,
             pattern,
@@ -105,11 +104,13 @@ impl FiniteStrainModel {
                 .add_cell(index, &cell)
                 .map_err(FiniteStrainError::Model)?;
         }
+        let mut n_cells = 0;
         for group in &mut model.groups {
             group.first_point = model.n_points;
             model.n_points += group.volumes.len();
-            group.first_guard = model.n_guarded;
-            model.n_guarded += group.guards.len();
+            group.first_cell = n_cells;
+            n_cells += group.cells.len();
+            group.packs = Packs::of(group, &model.description.rest_positions);
         }
         Ok(model)
     }
@@ -215,7 +216,8 @@ impl FiniteStrainModel {
     /// If there is not one entry per dof.
     pub fn deformation(&self, positions: &[f64]) -> Deformation {
         let n_around = self.holes.last().map_or(0, |hole| hole.positions().end);
-        let deformed = Deformed::new(self.n_points, self.n_guarded, n_around);
+        let sizes = [self.n_dofs(), self.mesh().n_cells()];
+        let deformed = Deformed::new(self.n_points, sizes, n_around);
         let mut deformation = Deformation {
             start: deformed.clone(),
             end: deformed,
@@ -231,6 +233,7 @@ impl FiniteStrainModel {
     /// If there is not one entry per dof.
     pub fn begin(&self, positions: &[f64], deformation: &mut Deformation) {
         self.assert_length(positions);
+        deformation.start.positions.copy_from_slice(positions);
         for group in &self.groups {
             group.deform(positions, &mut deformation.start);
         }
@@ -240,7 +243,8 @@ impl FiniteStrainModel {
         let Deformation { start, end } = deformation;
         end.gradients.copy_from_slice(&start.gradients);
         end.amplitudes.copy_from_slice(&start.amplitudes);
-        end.guarded.copy_from_slice(&start.guarded);
+        end.positions.copy_from_slice(&start.positions);
+        end.is_flat.copy_from_slice(&start.is_flat);
         end.around.copy_from_slice(&start.around);
     }
 
@@ -261,6 +265,7 @@ impl FiniteStrainModel {
     ) -> Result<(), Inadmissible> {
         self.assert_length(positions);
         self.assert_length(residual);
+        deformation.end.positions.copy_from_slice(positions);
         for group in &self.groups {
             let pair = (&deformation.start, &mut deformation.end);
             let law = group.solid.law.as_ref();

@@ -137,6 +137,36 @@ pub trait Hyperelastic: Send + Sync + Debug {
         true
     }
 
+    /// The [`energy_density`](Self::energy_density) at each of four places: cells stand side by side, and ask together.
+    fn energy_densities(&self, at: &[Invariants; 4]) -> [f64; 4] {
+        at.map(|at| self.energy_density(at))
+    }
+
+    /// The [`gradient`](Self::gradient) at each of four places.
+    fn gradients(&self, at: &[Invariants; 4]) -> [[f64; 2]; 4] {
+        at.map(|at| self.gradient(at))
+    }
+
+    /// The [`hessian`](Self::hessian) at each of four places.
+    fn hessians(&self, at: &[Invariants; 4]) -> [[f64; 3]; 4] {
+        at.map(|at| self.hessian(at))
+    }
+
+    /// The [`conserving_pair`](Self::conserving_pair) of each of four places.
+    fn conserving_pairs(&self, from: &[Invariants; 4], to: &[Invariants; 4]) -> [[f64; 2]; 4] {
+        std::array::from_fn(|k| self.conserving_pair(from[k], to[k]))
+    }
+
+    /// The [`conserving_hessian`](Self::conserving_hessian) of each of four places.
+    fn conserving_hessians(&self, from: &[Invariants; 4], to: &[Invariants; 4]) -> [[f64; 3]; 4] {
+        std::array::from_fn(|k| self.conserving_hessian(from[k], to[k]))
+    }
+
+    /// Whether the law has an energy at all of four places.
+    fn admits_all(&self, at: &[Invariants; 4]) -> bool {
+        at.iter().all(|at| self.admits(*at))
+    }
+
     /// What happens normal to the plane: nothing stretches unless overridden.
     fn plane(&self) -> Plane {
         Plane::Strain
