@@ -39,6 +39,6 @@ pub use pin::Pin;
 #[cfg(feature = "serde-serialize")]
 pub(crate) use record::{SetRecord, SetRecordError};
 pub use set::FlexBodySet;
-pub use state::{AppliedLoad, BodyEnergy, FlexState, FrameMotion, KnownLoads};
+pub use state::{AppliedLoad, BodyEnergy, FlexState, FrameMotion, KnownLoads, Linearized};
 pub use surface::SurfacePick;
 pub(crate) use surface::contact_offset;

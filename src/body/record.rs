@@ -116,6 +116,10 @@ impl BodyRecord {
         if state.flowed.len() != n_flowing || !state.flowed.iter().all(PlasticState::is_sound) {
             return Err(ModelRecordError::Length("plastic strains"));
         }
+        let linearized = &state.linearized.position;
+        if !linearized.is_empty() && linearized.len() != n_dofs {
+            return Err(ModelRecordError::Length("the positions of the tangent"));
+        }
         let is_large = large.is_some();
         let frame: Option<Frame> = frame_of(model.rest_positions(), &self.is_fixed, is_large);
         let frame = frame.ok_or(ModelRecordError::Length("pins"))?;

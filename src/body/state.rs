@@ -77,6 +77,27 @@ pub struct KnownLoads {
     pub lag: f64,
 }
 
+/// Where the tangent was taken by whose factor the last step of a body of large strain was solved: it may serve for the next.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub struct Linearized {
+    /// World positions, interleaved (m); empty where none may serve.
+    pub position: Vec<f64>,
+    /// Length of the step (s).
+    pub dt: f64,
+}
+
+impl Linearized {
+    /// Lets the next step take its own.
+    pub fn forget(&mut self) {
+        self.position.clear();
+        self.dt = 0.0;
+    }
+}
+
 /// The committed motion of a flexible body; nodal vectors are interleaved.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
@@ -108,6 +129,8 @@ pub struct FlexState {
     pub flowed: Vec<PlasticState>,
     /// What plastic flow has dissipated since the body was built (J).
     pub flow_energy: f64,
+    /// Where the tangent of the last step was taken.
+    pub linearized: Linearized,
 }
 
 impl FlexState {
@@ -131,6 +154,7 @@ impl FlexState {
             elastic_energy: large.map_or(0.0, |large| large.rest_energy()),
             flowed: Vec::new(),
             flow_energy: 0.0,
+            linearized: Linearized::default(),
         }
     }
 

@@ -19,7 +19,8 @@ use super::explicit_block::Explicit;
 use super::flex_block::FlexBlock;
 use super::large_equation::{MOST_GROWTH, equation_of, factorize};
 use super::large_led::Led;
-use crate::body::{FlexState, Frame};
+use super::large_reference::{Reference, is_near};
+use crate::body::{FlexState, Frame, Linearized};
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel};
 use crate::fe::model::Model;
 use crate::large::Evaluation;
@@ -70,6 +71,7 @@ pub(super) struct Large {
     /// Whether what is not found without detours need not be found: the step is cut then.
     pub(super) may_give_up: bool,
     pub(super) led: Led,
+    pub(super) reference: Reference,
 }
 
 impl FlexBlock {
@@ -99,6 +101,7 @@ impl FlexBlock {
             is_ambiguous: false,
             may_give_up: false,
             led: Led::default(),
+            reference: Reference::default(),
             model: large,
         }));
         block
@@ -155,7 +158,7 @@ impl FlexBlock {
         let Some(mut large) = self.large.take() else {
             return Ok(());
         };
-        let outcome = self.factorize_large(&mut large);
+        let outcome = self.factorize_large(&mut large, state);
         if outcome.is_ok() {
             self.resolve(&state.position, &state.velocity, &mut large.start_resolved);
             self.guess_large(state, &large);
@@ -177,8 +180,54 @@ impl FlexBlock {
         }
     }
 
-    /// Factorizes where the step begins: contacts ask how the body answers before it has moved.
-    fn factorize_large(&mut self, large: &mut Large) -> Result<(), CholeskyError> {
+    /// Factorizes where the step begins, or where it was last done if that is near: contacts ask how the body answers before it has moved.
+    fn factorize_large(
+        &mut self,
+        large: &mut Large,
+        state: &FlexState,
+    ) -> Result<(), CholeskyError> {
+        large.is_ambiguous = false;
+        let Linearized { position, dt } = &state.linearized;
+        let may_serve = *dt == self.step.dt && position.len() == self.position.len();
+        if may_serve && self.serves_again(large, position, &state.position)? {
+            return Ok(());
+        }
+        self.factorize_at(large, &state.position)
+    }
+
+    /// Takes the factor of the tangent at these positions, if the step begins near enough to them; returns whether it does.
+    fn serves_again(
+        &mut self,
+        large: &mut Large,
+        at: &[f64],
+        start: &[f64],
+    ) -> Result<bool, CholeskyError> {
+        let equation = equation_of(
+            &large.model,
+            &self.step,
+            large.led.takes_end,
+            [&large.load, &self.start_position, &large.coast],
+            &self.is_fixed,
+        );
+        let key = (&large.model, &equation);
+        if large.reference.is_of(key, at, &self.factor) {
+            return Ok(is_near(large.reference.gradients(), &large.deformation));
+        }
+        // A run that was restored.
+        large.model.begin(at, &mut large.deformation);
+        let gradients = large.deformation.start_gradients().to_vec();
+        large.model.begin(start, &mut large.deformation);
+        if large.model.flows() || !is_near(&gradients, &large.deformation) {
+            return Ok(false);
+        }
+        large.model.begin(at, &mut large.deformation);
+        self.factorize_at(large, at)?;
+        large.model.begin(start, &mut large.deformation);
+        Ok(!large.is_ambiguous)
+    }
+
+    /// Factorizes where the deformation begins, at these positions.
+    fn factorize_at(&mut self, large: &mut Large, at: &[f64]) -> Result<(), CholeskyError> {
         let equation = equation_of(
             &large.model,
             &self.step,
@@ -193,6 +242,10 @@ impl FlexBlock {
         let found = factorize(&equation, scale, deformation, matrices, &mut self.factor)?;
         large.row_sum = found.row_sum;
         large.is_ambiguous = !found.is_definite;
+        let (key, place) = ((&large.model, &equation), (at, deformation));
+        large
+            .reference
+            .note(key, place, &self.factor, found.is_definite);
         self.compliance.clear();
         Ok(())
     }

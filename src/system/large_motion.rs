@@ -273,6 +273,10 @@ impl FlexBlock {
         state.elastic_energy = self.end_elastic;
         state.position.copy_from_slice(&self.position);
         state.velocity.copy_from_slice(&self.velocity);
+        let dt = self.step.dt;
+        large
+            .reference
+            .tell(&self.factor, dt, &mut state.linearized);
         let flowed = &mut state.flowed;
         state.flow_energy += large.model.commit_flow(&self.position, flowed);
         state.torque = 0.0;

@@ -23,6 +23,7 @@ mod large_block;
 mod large_equation;
 mod large_led;
 mod large_motion;
+mod large_reference;
 mod link_response;
 mod massless_surface;
 mod moments;

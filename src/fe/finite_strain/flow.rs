@@ -58,11 +58,16 @@ impl Deformation {
 impl FiniteStrainModel {
     /// What has flowed in a body as it is made: nothing, one entry per quadrature point; none of a body whose law does not flow.
     pub fn virgin(&self) -> Vec<PlasticState> {
-        let flows = |group: &CellGroup| group.solid.law.as_ref().plasticity().is_some();
-        match self.groups.iter().any(flows) {
+        match self.flows() {
             true => vec![PlasticState::VIRGIN; self.n_points],
             false => Vec::new(),
         }
+    }
+
+    /// Whether a law of the body flows.
+    pub(crate) fn flows(&self) -> bool {
+        let flows = |group: &CellGroup| group.solid.law.as_ref().plasticity().is_some();
+        self.groups.iter().any(flows)
     }
 
     /// Whether what has flowed in the other body means the same in this one.
@@ -74,7 +79,7 @@ impl FiniteStrainModel {
                 groups.map(|group| (group.cells.clone(), group.solid.law.plasticity().copied()));
             laws.collect()
         };
-        let flows = |model: &Self| !model.virgin().is_empty();
+        let flows = |model: &Self| model.flows();
         !(flows(self) || flows(other)) || laws(self) == laws(other)
     }
 

@@ -35,6 +35,11 @@ impl Deformation {
         std::mem::swap(&mut self.start.flowed, &mut self.end.flowed);
     }
 
+    /// `F` at all quadrature points where the step begins.
+    pub(crate) fn start_gradients(&self) -> &[[f64; 4]] {
+        &self.start.gradients
+    }
+
     /// Quadrature points that are turned inside out at the beginning of the step.
     pub fn n_inverted(&self) -> usize {
         let is_inverted = |[xx, xy, yx, yy]: &&[f64; 4]| xx * yy - xy * yx <= 0.0;
