@@ -19,8 +19,8 @@ use super::explicit_block::Explicit;
 use super::flex_block::FlexBlock;
 use super::large_equation::{MOST_GROWTH, equation_of, factorize};
 use super::large_led::Led;
-use super::large_reference::{Reference, is_near};
-use crate::body::{FlexState, Frame, Linearized};
+use super::large_reference::Reference;
+use crate::body::{FlexState, Frame};
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel};
 use crate::fe::model::Model;
 use crate::large::Evaluation;
@@ -67,7 +67,7 @@ pub(super) struct Large {
     pub(super) resolved: Vec<f64>,
     pub(super) row_sum: f64,
     /// Whether the tangent is indefinite where the step begins: under the same forces the body may end it in more ways than one.
-    is_ambiguous: bool,
+    pub(super) is_ambiguous: bool,
     /// Whether what is not found without detours need not be found: the step is cut then.
     pub(super) may_give_up: bool,
     pub(super) led: Led,
@@ -178,76 +178,6 @@ impl FlexBlock {
             let start = node_vec(&state.position, node);
             set_node_vec(&mut self.position, node, start + moved);
         }
-    }
-
-    /// Factorizes where the step begins, or where it was last done if that is near: contacts ask how the body answers before it has moved.
-    fn factorize_large(
-        &mut self,
-        large: &mut Large,
-        state: &FlexState,
-    ) -> Result<(), CholeskyError> {
-        large.is_ambiguous = false;
-        let Linearized { position, dt } = &state.linearized;
-        let may_serve = *dt == self.step.dt && position.len() == self.position.len();
-        if may_serve && self.serves_again(large, position, &state.position)? {
-            return Ok(());
-        }
-        self.factorize_at(large, &state.position)
-    }
-
-    /// Takes the factor of the tangent at these positions, if the step begins near enough to them; returns whether it does.
-    fn serves_again(
-        &mut self,
-        large: &mut Large,
-        at: &[f64],
-        start: &[f64],
-    ) -> Result<bool, CholeskyError> {
-        let equation = equation_of(
-            &large.model,
-            &self.step,
-            large.led.takes_end,
-            [&large.load, &self.start_position, &large.coast],
-            &self.is_fixed,
-        );
-        let key = (&large.model, &equation);
-        if large.reference.is_of(key, at, &self.factor) {
-            return Ok(is_near(large.reference.gradients(), &large.deformation));
-        }
-        // A run that was restored.
-        large.model.begin(at, &mut large.deformation);
-        let gradients = large.deformation.start_gradients().to_vec();
-        large.model.begin(start, &mut large.deformation);
-        if large.model.flows() || !is_near(&gradients, &large.deformation) {
-            return Ok(false);
-        }
-        large.model.begin(at, &mut large.deformation);
-        self.factorize_at(large, at)?;
-        large.model.begin(start, &mut large.deformation);
-        Ok(!large.is_ambiguous)
-    }
-
-    /// Factorizes where the deformation begins, at these positions.
-    fn factorize_at(&mut self, large: &mut Large, at: &[f64]) -> Result<(), CholeskyError> {
-        let equation = equation_of(
-            &large.model,
-            &self.step,
-            large.led.takes_end,
-            [&large.load, &self.start_position, &large.coast],
-            &self.is_fixed,
-        );
-        let scale = self.step.weights.b0;
-        let matrices = (&mut large.tangent, &mut self.effective);
-        let deformation = &large.deformation;
-        self.n_factorizations += 1;
-        let found = factorize(&equation, scale, deformation, matrices, &mut self.factor)?;
-        large.row_sum = found.row_sum;
-        large.is_ambiguous = !found.is_definite;
-        let (key, place) = ((&large.model, &equation), (at, deformation));
-        large
-            .reference
-            .note(key, place, &self.factor, found.is_definite);
-        self.compliance.clear();
-        Ok(())
     }
 
     fn start_spin_momentum(&self) -> f64 {
@@ -384,7 +314,7 @@ impl FlexBlock {
                 continue;
             };
             let is_slow = last.is_some_and(|last| now.norm > SLOWEST * last.norm);
-            let has_ended = now.norm <= TOLERANCE * now.scale || now.norm <= rounding;
+            let has_ended = now.norm <= TOLERANCE * now.scale || is_slow && now.norm <= rounding;
             if n_iterations == MOST_ITERATIONS && !has_ended {
                 let moved = self.local.iter().fold(0.0f64, |most, x| most.max(x.abs()));
                 return moved / self.size;

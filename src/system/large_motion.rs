@@ -2,16 +2,88 @@
 
 use super::flex_block::FlexBlock;
 use super::large_block::Large;
-use super::large_equation::total_decay;
+use super::large_equation::{equation_of, factorize, total_decay};
+use super::large_reference::is_near;
 use super::pin_rates::RigidRates;
 use super::rigid_way::RigidWay;
-use crate::body::{FlexState, Frame};
+use crate::body::{FlexState, Frame, Linearized};
+use crate::linalg::cholesky::CholeskyError;
 use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec, sum_over};
 
 /// Rounding of a sum of products (-).
 const ROUNDING: f64 = 1e-12;
 
 impl FlexBlock {
+    /// Factorizes where the step begins, or where it was last done if that is near: contacts ask how the body answers before it has moved.
+    pub(super) fn factorize_large(
+        &mut self,
+        large: &mut Large,
+        state: &FlexState,
+    ) -> Result<(), CholeskyError> {
+        large.is_ambiguous = false;
+        let Linearized { position, dt } = &state.linearized;
+        let may_serve = *dt == self.step.dt && position.len() == self.position.len();
+        if may_serve && self.serves_again(large, position, &state.position)? {
+            return Ok(());
+        }
+        self.factorize_at(large, &state.position)
+    }
+
+    /// Takes the factor of the tangent at these positions, if the step begins near enough to them; returns whether it does.
+    fn serves_again(
+        &mut self,
+        large: &mut Large,
+        at: &[f64],
+        start: &[f64],
+    ) -> Result<bool, CholeskyError> {
+        let equation = equation_of(
+            &large.model,
+            &self.step,
+            large.led.takes_end,
+            [&large.load, &self.start_position, &large.coast],
+            &self.is_fixed,
+        );
+        let key = (&large.model, &equation);
+        if large.reference.is_of(key, at, &self.factor) {
+            return Ok(is_near(large.reference.gradients(), &large.deformation));
+        }
+        // A run that was restored.
+        large.model.begin(at, &mut large.deformation);
+        let gradients = large.deformation.start_gradients().to_vec();
+        large.model.begin(start, &mut large.deformation);
+        if large.model.flows() || !is_near(&gradients, &large.deformation) {
+            return Ok(false);
+        }
+        large.model.begin(at, &mut large.deformation);
+        self.factorize_at(large, at)?;
+        large.model.begin(start, &mut large.deformation);
+        Ok(!large.is_ambiguous)
+    }
+
+    /// Factorizes where the deformation begins, at these positions.
+    fn factorize_at(&mut self, large: &mut Large, at: &[f64]) -> Result<(), CholeskyError> {
+        let equation = equation_of(
+            &large.model,
+            &self.step,
+            large.led.takes_end,
+            [&large.load, &self.start_position, &large.coast],
+            &self.is_fixed,
+        );
+        let scale = self.step.weights.b0;
+        let matrices = (&mut large.tangent, &mut self.effective);
+        let deformation = &large.deformation;
+        self.n_factorizations += 1;
+        let found = factorize(&equation, scale, deformation, matrices, &mut self.factor)?;
+        large.row_sum = found.row_sum;
+        large.is_ambiguous = !found.is_definite;
+        let (key, place) = ((&large.model, &equation), (at, deformation));
+        large
+            .reference
+            .note(key, place, &self.factor, found.is_definite);
+        self.compliance.clear();
+        Ok(())
+    }
+
     /// Writes the velocities and the centre that go with the positions.
     pub(super) fn follow_positions(&mut self) {
         let dt = self.step.dt;

@@ -41,14 +41,14 @@ impl Strip {
     }
 }
 
-/// A driven body that the held nodes are welded to as well moves away by 5 mm: no place of theirs agrees with both. The strip swings on as one that is
-/// welded once.
+/// A driven body that the held nodes are welded to as well moves away by 5 mm: no place of theirs agrees with both. Once the jolt has died, the strip
+/// swings on as one that is welded once.
 #[test]
 fn a_strip_that_is_welded_to_two_places_hangs_between_them_and_swings() {
-    for young in [1e6, 1e8] {
+    for young in [1e6, 1e8, 1.002e8] {
         let [mut once, mut twice] = [false, true].map(|twice| Strip::new(young, twice));
         let mut sag = [0.0; 2];
-        for step in 0..150 {
+        for step in 0..360 {
             if step == 30 {
                 let away = Pose::new(vec2(-1.005, 2.05), 0.0);
                 let driven = &mut twice.scene.world.bodies[twice.driven];
@@ -68,6 +68,8 @@ fn a_strip_that_is_welded_to_two_places_hangs_between_them_and_swings() {
                 assert_eq!(quality, Quality::Cut, "{name}");
                 // Both distances sum up to what the places are apart: the larger one is half of it or more.
                 assert!(left > 2.49e-3 && left < 5.01e-3, "{name}");
+            }
+            if step > 250 {
                 sag[0] += (2.1 - once.tip()) / 109.0;
                 sag[1] += (2.1 - twice.tip()) / 109.0;
             }

@@ -170,20 +170,18 @@ impl CellGroup {
         }
         let pair = (start, &*end);
         with_node_count!(self, subtract_guard_forces(law, form, pair, residual))?;
+        let Some(law) = law.plasticity() else {
+            return Ok(());
+        };
         for (place, point) in self.stiffened() {
-            let (nodes, gradients) = self.quad(place);
+            let (nodes, _) = self.quad(place);
             let hourglass = &self.hourglass[place];
             end.amplitudes[point] = hourglass.amplitude(&gather(nodes, positions));
             let mut force = [[0.0; 2]; 4];
             let pair = [start.shape(point), end.shape(point)];
-            match law.plasticity() {
-                None => hourglass.add_force(form, gradients, (&pair[0], &pair[1]), &mut force),
-                Some(law) => {
-                    let flowed = &start.flowed[point];
-                    let bend = self.bend(law, form, (place, flowed), pair);
-                    bend.add_force(form, &mut force);
-                }
-            }
+            let flowed = &start.flowed[point];
+            let bend = self.bend(law, form, (place, flowed), pair);
+            bend.add_force(form, &mut force);
             subtract(nodes, force, residual);
         }
         Ok(())
@@ -208,7 +206,8 @@ impl CellGroup {
             }
         }
         with_node_count!(self, add_guard_tangent((form, kind), (start, end), matrix));
-        for (place, point) in self.stiffened() {
+        let is_done = kind == Linearization::Consistent && law.plasticity().is_none();
+        for (place, point) in self.stiffened().filter(|_| !is_done) {
             let (_, gradients) = self.quad(place);
             let mut blocks = [[[0.0; 4]; 4]; 4];
             let pair = [start.shape(point), end.shape(point)];

@@ -140,7 +140,7 @@ impl Reach {
             let [_, j] = invariants(deformation_gradient(differences, gradient));
             for (is_flat, j) in is_flat.iter_mut().zip(j.0) {
                 // What is not a number is looked at.
-                *is_flat |= !(j >= FLAT);
+                *is_flat |= j < FLAT || j.is_nan();
             }
         }
         is_flat

@@ -13,50 +13,64 @@
 //! `k` stays.
 
 use super::linearization::Linearization;
-use super::point::Form;
+use super::point::{Form, middle};
 use crate::fe::element::{Element, ElementError};
 use crate::fe::material::Material;
+use crate::math::{LANES, Number, Wide};
 
 /// The signs of the corners in a mode.
 pub(super) const PATTERN: [f64; 4] = [1.0, -1.0, 1.0, -1.0];
 
 /// The modes of one cell.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hourglass {
+pub(super) struct Hourglass<T = f64> {
     /// `γ` (-).
-    shape: [f64; 4],
+    shape: [T; 4],
     /// `k` (N/m).
-    isotropic: f64,
+    isotropic: T,
     /// `K` as `[xx, yy, xy]` (N/m).
-    stiffness: [f64; 3],
+    stiffness: [T; 3],
 }
 
 /// A cell on its way: the mean gradient and the amplitudes `q` (m).
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Shape {
-    pub gradient: [f64; 4],
-    pub amplitude: [f64; 2],
+pub(super) struct Shape<T = f64> {
+    pub gradient: [T; 4],
+    pub amplitude: [T; 2],
     /// What of `c` has flowed (m).
-    pub flowed: [f64; 2],
+    pub flowed: [T; 2],
 }
 
-impl Shape {
+impl<T: Number> Shape<T> {
+    #[inline(always)]
     fn middle(self, other: Self) -> Self {
-        let mean = |a: f64, b: f64| 0.5 * (a + b);
         Self {
-            gradient: std::array::from_fn(|k| mean(self.gradient[k], other.gradient[k])),
-            amplitude: std::array::from_fn(|k| mean(self.amplitude[k], other.amplitude[k])),
+            gradient: middle(self.gradient, other.gradient),
+            amplitude: mean(self.amplitude, other.amplitude),
             flowed: self.flowed,
         }
     }
 
     /// `c = Fᵀ q`, less what has flowed (m).
-    fn pulled(&self) -> [f64; 2] {
+    #[inline(always)]
+    fn pulled(&self) -> [T; 2] {
         let ([xx, xy, yx, yy], [x, y]) = (self.gradient, self.amplitude);
         let [along, across] = self.flowed;
         [xx * x + yx * y - along, xy * x + yy * y - across]
     }
 
+    /// `∂c_i/∂x_a` for the gradient of the shape function of node `a` and its share of the mode: rows `i`, columns x, y.
+    #[inline(always)]
+    fn slope(&self, [by_x, by_y]: [T; 2], share: T) -> [[T; 2]; 2] {
+        let ([xx, xy, yx, yy], [x, y]) = (self.gradient, self.amplitude);
+        [
+            [by_x * x + share * xx, by_x * y + share * yx],
+            [by_y * x + share * xy, by_y * y + share * yy],
+        ]
+    }
+}
+
+impl Shape {
     /// What must have flowed for `c` to be what is left of the one of another shape after that has.
     pub fn moved_to(&self, other: &Self, flowed: [f64; 2]) -> [f64; 2] {
         let (own, left) = (
@@ -69,15 +83,12 @@ impl Shape {
         let (own, left) = (own.pulled(), left.pulled());
         std::array::from_fn(|k| own[k] - left[k])
     }
+}
 
-    /// `∂c_i/∂x_a` for the gradient of the shape function of node `a` and its share of the mode: rows `i`, columns x, y.
-    fn slope(&self, [by_x, by_y]: [f64; 2], share: f64) -> [[f64; 2]; 2] {
-        let ([xx, xy, yx, yy], [x, y]) = (self.gradient, self.amplitude);
-        [
-            [by_x * x + share * xx, by_x * y + share * yx],
-            [by_y * x + share * xy, by_y * y + share * yy],
-        ]
-    }
+/// The mean of two pairs.
+#[inline(always)]
+fn mean<T: Number>(one: [T; 2], other: [T; 2]) -> [T; 2] {
+    [(one[0] + other[0]) * 0.5, (one[1] + other[1]) * 0.5]
 }
 
 impl Hourglass {
@@ -117,63 +128,12 @@ impl Hourglass {
         })
     }
 
-    /// The amplitudes of the modes (m), of positions relative to any one.
-    pub fn amplitude(&self, positions: &[[f64; 2]; 4]) -> [f64; 2] {
-        let mut sum = [0.0; 2];
-        for (share, [x, y]) in self.shape.iter().zip(positions) {
-            sum[0] += share * x;
-            sum[1] += share * y;
-        }
-        sum
-    }
-
-    /// `K a - k a`, or `K a` with `k` zero.
-    fn answer(&self, isotropic: f64, [x, y]: [f64; 2]) -> [f64; 2] {
-        let [xx, yy, xy] = self.stiffness;
-        [(xx - isotropic) * x + xy * y, xy * x + (yy - isotropic) * y]
-    }
-
     /// Stored energy (J).
     pub fn energy(&self, at: &Shape) -> f64 {
         let pulled = at.pulled();
         let force = self.answer(self.isotropic, pulled);
         let [x, y] = at.amplitude;
         0.5 * (self.isotropic * (x * x + y * y) + force[0] * pulled[0] + force[1] * pulled[1])
-    }
-
-    /// Where the derivatives are taken, what acts along them, and how much of the end is in the first.
-    fn stress(&self, form: Form, start: &Shape, end: &Shape) -> (Shape, [f64; 2], f64) {
-        match form {
-            Form::Equilibrium => (*end, self.answer(self.isotropic, end.pulled()), 1.0),
-            Form::EnergyMomentum { decay } => {
-                let [before, after] = [start.pulled(), end.pulled()];
-                let mean = std::array::from_fn(|k| 0.5 * (before[k] + after[k]));
-                let change = std::array::from_fn(|k| after[k] - before[k]);
-                let lasting = self.answer(self.isotropic, mean);
-                let decaying = self.answer(0.0, change);
-                let sum = std::array::from_fn(|k| lasting[k] + 0.5 * decay * decaying[k]);
-                (start.middle(*end), sum, 0.5)
-            }
-        }
-    }
-
-    /// Adds the forces on the nodes (N).
-    pub fn add_force(
-        &self,
-        form: Form,
-        gradients: &[[f64; 2]; 4],
-        (start, end): (&Shape, &Shape),
-        force: &mut [[f64; 2]; 4],
-    ) {
-        let (at, [first, second], _) = self.stress(form, start, end);
-        for ((force, gradient), share) in force.iter_mut().zip(gradients).zip(self.shape) {
-            let [of_first, of_second] = at.slope(*gradient, share);
-            for axis in 0..2 {
-                force[axis] += self.isotropic * share * at.amplitude[axis]
-                    + first * of_first[axis]
-                    + second * of_second[axis];
-            }
-        }
     }
 
     /// `u = c·K c` (J).
@@ -278,43 +238,150 @@ impl Hourglass {
         let [x, y] = at.amplitude;
         let length = x * x + y * y;
         let grows_only = matches!(kind, Linearization::Impulsive { .. }) && length > 0.0;
-        let along = [x * x, x * y, x * y, y * y].map(|part| self.isotropic * part / length);
         let isotropic = if grows_only { 0.0 } else { self.isotropic };
+        let along = (form, scale, gradients);
+        self.add_rising(rising, along, (&at, stress, isotropic), blocks);
+        if !grows_only {
+            return;
+        }
+        let along = [x * x, x * y, x * y, y * y].map(|part| self.isotropic * part / length);
+        for b in 0..4 {
+            for (a, row) in blocks.iter_mut().enumerate().take(b + 1) {
+                for (entry, along) in row[b].iter_mut().zip(along) {
+                    *entry += scale * self.shape[a] * self.shape[b] * along;
+                }
+            }
+        }
+    }
+}
+
+impl<T: Number> Hourglass<T> {
+    /// The amplitudes of the modes (m), of positions relative to any one.
+    #[inline(always)]
+    pub fn amplitude(&self, positions: &[[T; 2]]) -> [T; 2] {
+        let mut sum = [T::ZERO; 2];
+        for (&share, &[x, y]) in self.shape.iter().zip(positions) {
+            sum[0] += share * x;
+            sum[1] += share * y;
+        }
+        sum
+    }
+
+    /// `K a - k a`, or `K a` with `k` zero.
+    #[inline(always)]
+    fn answer(&self, isotropic: T, [x, y]: [T; 2]) -> [T; 2] {
+        let [xx, yy, xy] = self.stiffness;
+        [(xx - isotropic) * x + xy * y, xy * x + (yy - isotropic) * y]
+    }
+
+    /// Where the derivatives are taken, what acts along them, and how much of the end is in the first.
+    #[inline(always)]
+    fn stress(&self, form: Form, start: &Shape<T>, end: &Shape<T>) -> (Shape<T>, [T; 2], f64) {
+        match form {
+            Form::Equilibrium => (*end, self.answer(self.isotropic, end.pulled()), 1.0),
+            Form::EnergyMomentum { decay } => {
+                let (before, after) = (start.pulled(), end.pulled());
+                let lasting = self.answer(self.isotropic, mean(before, after));
+                let change = [after[0] - before[0], after[1] - before[1]];
+                let decaying = self.answer(T::ZERO, change);
+                let sum = |k: usize| lasting[k] + decaying[k] * (0.5 * decay);
+                (start.middle(*end), [sum(0), sum(1)], 0.5)
+            }
+        }
+    }
+
+    /// Adds the forces on the nodes (N).
+    #[inline(always)]
+    pub fn add_force(
+        &self,
+        form: Form,
+        gradients: &[[T; 2]],
+        (start, end): (&Shape<T>, &Shape<T>),
+        force: &mut [[T; 2]],
+    ) {
+        let (at, [first, second], _) = self.stress(form, start, end);
+        for ((force, gradient), share) in force.iter_mut().zip(gradients).zip(self.shape) {
+            let [of_first, of_second] = at.slope(*gradient, share);
+            for axis in 0..2 {
+                force[axis] += self.isotropic * share * at.amplitude[axis]
+                    + first * of_first[axis]
+                    + second * of_second[axis];
+            }
+        }
+    }
+
+    /// Adds the consistent tangent to the blocks `a <= b`.
+    #[inline(always)]
+    pub fn add_consistent_tangent<const N: usize>(
+        &self,
+        form: Form,
+        gradients: &[[T; 2]; N],
+        (start, end): (&Shape<T>, &Shape<T>),
+        blocks: &mut [[[T; 4]; N]; N],
+    ) {
+        let (at, stress, scale) = self.stress(form, start, end);
+        let along = (form, scale, gradients);
+        self.add_rising(self, along, (&at, stress, self.isotropic), blocks);
+    }
+
+    /// Adds what the stress `S` along the derivatives and its rise make of the tangent.
+    ///
+    /// - `rising`: what the stress rises as.
+    /// - `isotropic`: `k` as far as turns of the amplitude are resisted (N/m).
+    #[inline(always)]
+    fn add_rising<const N: usize>(
+        &self,
+        rising: &Self,
+        (form, scale, gradients): (Form, f64, &[[T; 2]; N]),
+        (at, stress, isotropic): (&Shape<T>, [T; 2], T),
+        blocks: &mut [[[T; 4]; N]; N],
+    ) {
         let decay = match form {
             Form::Equilibrium => 0.0,
             Form::EnergyMomentum { decay } => decay,
         };
         // What the stress rises by as `c` does: one half of the conserving part is of the end, and half the decay.
-        let rise = |column: [f64; 2]| {
-            let (lasting, decaying) = (
-                rising.answer(self.isotropic, column),
-                self.answer(0.0, column),
-            );
-            [0, 1].map(|k| scale * lasting[k] + 0.5 * decay * decaying[k])
+        let rise = |column: [T; 2]| {
+            let lasting = rising.answer(self.isotropic, column);
+            let decaying = self.answer(T::ZERO, column);
+            let sum = |k: usize| lasting[k] * scale + decaying[k] * (0.5 * decay);
+            [sum(0), sum(1)]
         };
-        for b in 0..4 {
+        for b in 0..N.min(4) {
             let slope = at.slope(gradients[b], self.shape[b]);
-            let risen = [0, 1].map(|axis| rise([slope[0][axis], slope[1][axis]]));
+            let risen = [
+                rise([slope[0][0], slope[1][0]]),
+                rise([slope[0][1], slope[1][1]]),
+            ];
             for (a, row) in blocks.iter_mut().enumerate().take(b + 1) {
                 let own = at.slope(gradients[a], self.shape[a]);
                 // The second derivative of `c_i` is the same for both axes.
                 let bend =
                     |i: usize| gradients[a][i] * self.shape[b] + self.shape[a] * gradients[b][i];
-                let spherical = scale
-                    * (isotropic * self.shape[a] * self.shape[b]
-                        + stress[0] * bend(0)
-                        + stress[1] * bend(1));
+                let spherical = (isotropic * self.shape[a] * self.shape[b]
+                    + stress[0] * bend(0)
+                    + stress[1] * bend(1))
+                    * scale;
                 let block = &mut row[b];
                 for (place, entry) in block.iter_mut().enumerate() {
                     let (of, by) = (place / 2, place % 2);
                     *entry += own[0][of] * risen[by][0] + own[1][of] * risen[by][1];
-                    if grows_only {
-                        *entry += scale * self.shape[a] * self.shape[b] * along[place];
-                    }
                 }
                 block[0] += spherical;
                 block[3] += spherical;
             }
+        }
+    }
+}
+
+impl Hourglass<Wide> {
+    /// The modes of cells side by side.
+    pub fn side_by_side(of: [&Hourglass; LANES]) -> Self {
+        let lanes = |part: &dyn Fn(&Hourglass) -> f64| Wide::from_fn(|lane| part(of[lane]));
+        Self {
+            shape: std::array::from_fn(|a| lanes(&|one| one.shape[a])),
+            isotropic: lanes(&|one| one.isotropic),
+            stiffness: std::array::from_fn(|k| lanes(&|one| one.stiffness[k])),
         }
     }
 }

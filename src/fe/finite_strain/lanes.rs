@@ -6,6 +6,7 @@ use super::Inadmissible;
 use super::cells::{CellGroup, add_point, deformation_gradient};
 use super::deformed::Deformed;
 use super::guard::Reach;
+use super::hourglass::{Hourglass, Shape};
 use super::point::{Form, consistent_moduli, each, invariants, stress_of_pair};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::linalg::block_matrix::BlockMatrix;
@@ -21,6 +22,8 @@ pub(super) struct Packs {
     volumes: Vec<Wide>,
     /// What tells from the nodes of a cell that none of its places is flat; none where no place is guarded.
     reach: Vec<Reach>,
+    /// The modes that the one point of a cell does not see, or none of any.
+    hourglass: Vec<Hourglass<Wide>>,
 }
 
 impl Packs {
@@ -40,6 +43,10 @@ impl Packs {
                 }
                 let volume = |lane| group.volumes[cell(lane) * n + point];
                 packs.volumes.push(Wide::from_fn(volume));
+            }
+            if !group.hourglass.is_empty() {
+                let modes = each(|lane| &group.hourglass[cell(lane)]);
+                packs.hourglass.push(Hourglass::side_by_side(modes));
             }
             if group.guards.len() > 0 {
                 packs.reach.push(Reach::of(group, cell, rest_positions));
@@ -69,12 +76,12 @@ fn gather<const N: usize>(cells: &[[u32; N]], positions: &[f64]) -> [[Wide; 2]; 
     differences
 }
 
-/// Gradients of one point of each cell, which are `stride` apart.
+/// Values of one point of each cell, which are `stride` apart.
 #[inline(always)]
-fn read(gradients: &[[f64; 4]], stride: usize, n_cells: usize) -> [Wide; 4] {
-    let mut read = [Wide::ZERO; 4];
+fn read<const K: usize>(values: &[[f64; K]], stride: usize, n_cells: usize) -> [Wide; K] {
+    let mut read = [Wide::ZERO; K];
     for lane in 0..LANES {
-        let one = &gradients[lane.min(n_cells - 1) * stride];
+        let one = &values[lane.min(n_cells - 1) * stride];
         for (read, one) in read.iter_mut().zip(one) {
             read.0[lane] = *one;
         }
@@ -83,9 +90,16 @@ fn read(gradients: &[[f64; 4]], stride: usize, n_cells: usize) -> [Wide; 4] {
 }
 
 #[inline(always)]
-fn write(gradient: [Wide; 4], stride: usize, n_cells: usize, gradients: &mut [[f64; 4]]) {
+fn write<const K: usize>(
+    of_cells: [Wide; K],
+    stride: usize,
+    n_cells: usize,
+    values: &mut [[f64; K]],
+) {
     for lane in 0..n_cells {
-        gradients[lane * stride] = each(|k| gradient[k].0[lane]);
+        for (value, of_cells) in values[lane * stride].iter_mut().zip(&of_cells) {
+            *value = of_cells.0[lane];
+        }
     }
 }
 
@@ -238,7 +252,7 @@ impl<const N: usize> WithSimd for PointForces<'_, N> {
         let constants = self.law.constants();
         let points = group.points();
         let starts = &self.start.gradients[points.clone()];
-        let ends = &mut self.end.gradients[points];
+        let ends = &mut self.end.gradients[points.clone()];
         let is_flat = &mut self.end.is_flat[group.flat_places()];
         for (pack, cells) in group.nodes.as_chunks::<N>().0.chunks(LANES).enumerate() {
             let first = pack * LANES;
@@ -277,6 +291,23 @@ impl<const N: usize> WithSimd for PointForces<'_, N> {
                     force[0] += stress[0] * *x + stress[1] * *y;
                     force[1] += stress[2] * *x + stress[3] * *y;
                 }
+            }
+            if let Some(hourglass) = group.packs.hourglass.get(pack) {
+                let (own, modes) = (points.start + first, cells.len());
+                let amplitude = hourglass.amplitude(&differences);
+                write(amplitude, 1, modes, &mut self.end.amplitudes[own..]);
+                let start = Shape {
+                    gradient: read(&starts[first..], 1, modes),
+                    amplitude: read(&self.start.amplitudes[own..], 1, modes),
+                    flowed: [Wide::ZERO; 2],
+                };
+                let end = Shape {
+                    gradient: one,
+                    amplitude,
+                    flowed: [Wide::ZERO; 2],
+                };
+                let gradient = &group.packs.gradients.as_chunks::<N>().0[pack];
+                hourglass.add_force(self.form, gradient, (&start, &end), &mut force);
             }
             for (lane, nodes) in cells.iter().enumerate() {
                 for (&node, [x, y]) in nodes.iter().zip(&force) {
@@ -319,6 +350,7 @@ impl<const N: usize> WithSimd for PointTangent<'_, N> {
         let (group, n) = (self.group, self.group.n_points);
         let constants = self.law.constants();
         let points = group.points();
+        let first_point = points.start;
         let starts = &self.start.gradients[points.clone()];
         let ends = &self.end.gradients[points];
         let cells = group.nodes.as_chunks::<N>().0.chunks(LANES);
@@ -343,6 +375,18 @@ impl<const N: usize> WithSimd for PointTangent<'_, N> {
                 let derivatives = (side_by_side(pair), side_by_side(second));
                 let moduli = consistent_moduli(constants, self.form, derivatives, [start, end]);
                 add_point(gradient, &moduli, group.packs.volumes[place], &mut blocks);
+                if let Some(hourglass) = group.packs.hourglass.get(pack) {
+                    let (own, modes) = (first_point + first, cells.len());
+                    let shape = |gradient, amplitudes: &[[f64; 2]]| Shape {
+                        gradient,
+                        amplitude: read(&amplitudes[own..], 1, modes),
+                        flowed: [Wide::ZERO; 2],
+                    };
+                    let start = shape(start, &self.start.amplitudes);
+                    let end = shape(end, &self.end.amplitudes);
+                    let pair = (&start, &end);
+                    hourglass.add_consistent_tangent(self.form, gradient, pair, &mut blocks);
+                }
             }
             for lane in 0..cells.len() {
                 let places = &places[(first + lane) * N..][..N];

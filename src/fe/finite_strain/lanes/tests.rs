@@ -191,6 +191,6 @@ fn has_flat_place<const N: usize>(group: &CellGroup, cell: usize, positions: &[f
     let mut places = group.guard_gradients::<N>(cell);
     places.any(|gradient| {
         let [_, j] = invariants(deformation_gradient(&differences, gradient));
-        !(j >= 0.1)
+        j < 0.1 || j.is_nan()
     })
 }
