@@ -1,8 +1,6 @@
 //! Motion relative to a rigid one that several blocks have in common.
 
-use super::{Block, FlexBlock, RigidBlock, RigidMotion, RigidRates};
-use crate::body::Frame;
-use crate::math::{add_node_vec, node_vec};
+use super::{Block, RigidBlock, RigidMotion, RigidRates};
 
 /// Whether a block follows forces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,7 +17,7 @@ impl Block {
     /// Whether the block follows forces.
     pub fn hold(&self) -> Hold {
         match self {
-            Self::Flex(block) => hold_of_pins(block),
+            Self::Flex(block) => block.pinned_hold(),
             Self::Rigid(block) if block.is_driven() => Hold::Led,
             Self::Rigid(block) if block.moves_along().iter().all(|moves| *moves) => Hold::Free,
             Self::Rigid(_) => Hold::Held,
@@ -34,11 +32,7 @@ impl Block {
     /// The motion of its frame at the end of the step.
     pub fn frame_motion(&self) -> RigidRates {
         match self {
-            Self::Flex(block) => RigidRates {
-                about: block.frame.centre,
-                velocity: block.frame.velocity,
-                spin: block.frame.spin,
-            },
+            Self::Flex(block) => block.frame_motion(),
             Self::Rigid(block) => {
                 let motion = block.current();
                 RigidRates {
@@ -53,7 +47,7 @@ impl Block {
     /// Kinetic energies of the motion at the end of the step, of the common part of it, and of the rest alone (J).
     pub fn energies_about(&mut self, common: &RigidRates) -> [f64; 3] {
         match self {
-            Self::Flex(block) => flexible_energies(block, common),
+            Self::Flex(block) => block.energies_about(common),
             Self::Rigid(block) => rigid_energies(block, common),
         }
     }
@@ -61,7 +55,7 @@ impl Block {
     /// Multiplies what the block does beyond the common motion.
     pub fn scale_about(&mut self, common: &RigidRates, scale: f64) {
         match self {
-            Self::Flex(block) => scale_flexible(block, common, scale),
+            Self::Flex(block) => block.scale_about(common, scale),
             Self::Rigid(block) => {
                 let (own, less) = (*block.current(), scale - 1.0);
                 let shared = common.at(own.centre);
@@ -71,47 +65,6 @@ impl Block {
                 );
             }
         }
-    }
-}
-
-fn hold_of_pins(block: &FlexBlock) -> Hold {
-    let is_moved = |dof: &usize| block.position[*dof] != block.start_position[*dof];
-    if block.is_explicit() || block.fixed_dofs.iter().any(is_moved) {
-        return Hold::Led;
-    }
-    match block.fixed_dofs.is_empty() {
-        true => Hold::Free,
-        false => Hold::Held,
-    }
-}
-
-fn flexible_energies(block: &mut FlexBlock, common: &RigidRates) -> [f64; 3] {
-    let mass = block.model.mass();
-    let whole = 0.5 * mass.inner(&block.velocity, &block.velocity);
-    for node in 0..block.model.n_nodes() {
-        let shared = common.at(node_vec(&block.position, node));
-        block.local[2 * node] = shared.x;
-        block.local[2 * node + 1] = shared.y;
-    }
-    let shared = 0.5 * mass.inner(&block.local, &block.local);
-    for (own, velocity) in block.local.iter_mut().zip(&block.velocity) {
-        *own = velocity - *own;
-    }
-    [whole, shared, 0.5 * mass.inner(&block.local, &block.local)]
-}
-
-fn scale_flexible(block: &mut FlexBlock, common: &RigidRates, scale: f64) {
-    let less = scale - 1.0;
-    for node in 0..block.model.n_nodes() {
-        let place = node_vec(&block.position, node);
-        let change = less * (node_vec(&block.velocity, node) - common.at(place));
-        add_node_vec(&mut block.velocity, node, change);
-        if let Some(large) = &mut block.large {
-            add_node_vec(&mut large.resolved, node, change);
-        }
-    }
-    if block.kind == Frame::Free {
-        block.frame.velocity += less * (block.frame.velocity - common.at(block.frame.centre));
     }
 }
 

@@ -4,28 +4,8 @@
 //! the multipliers. [`FlexBlock`] has two dofs a node, [`RigidBlock`] three.
 
 mod common_motion;
-mod compliance;
-mod explicit_block;
-mod explicit_motion;
-#[cfg(feature = "serde-serialize")]
-mod explicit_record;
-mod flex_block;
-mod flex_factor;
-mod flex_impulse;
-mod flex_inertia;
-mod flex_momentum;
-mod flex_motion;
-mod flex_path;
-mod flex_restart;
-mod flex_solve;
-mod flex_surface;
-mod large_block;
-mod large_equation;
-mod large_led;
-mod large_motion;
-mod large_reference;
+mod flex;
 mod link_response;
-mod massless_surface;
 mod moments;
 mod pin_rates;
 mod rigid_block;
@@ -34,13 +14,11 @@ mod rigid_load;
 mod rigid_motion;
 mod rigid_way;
 mod step;
-mod step_loads;
 
 pub use common_motion::Hold;
 #[cfg(feature = "serde-serialize")]
-pub(crate) use explicit_record::ExplicitRecord;
-pub use flex_block::FlexBlock;
-pub use flex_motion::Balance;
+pub(crate) use flex::ExplicitRecord;
+pub use flex::{Balance, FlexBlock};
 pub use link_response::{LinkAnswer, LinkResponse};
 pub use moments::Moments;
 pub use pin_rates::RigidRates;

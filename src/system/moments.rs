@@ -1,8 +1,7 @@
 //! What a block weighs in the balance of momentum of bodies that touch.
 
 use super::Block;
-use crate::body::Frame;
-use crate::math::{Vec2, add_node_vec, node_vec, perp};
+use crate::math::Vec2;
 
 /// Mass and momentum of a free block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,10 +23,7 @@ impl Block {
     /// turns it.
     pub fn uniform_acceleration(&self) -> Option<Vec2> {
         match self {
-            Self::Flex(block) => {
-                let is_free = block.kind == Frame::Free && block.model.rayleigh().mass == 0.0;
-                block.uniform.filter(|_| is_free)
-            }
+            Self::Flex(block) => block.uniform_acceleration(),
             Self::Rigid(block) => {
                 let [x, y, torque] = block.force();
                 let mass = block.mass();
@@ -40,13 +36,7 @@ impl Block {
     /// Moments of a free block at the beginning of the step.
     pub fn start_moments(&self) -> Moments {
         match self {
-            Self::Flex(block) => Moments {
-                mass: block.arms.mass,
-                centre: block.start_frame.centre,
-                velocity: block.start_frame.velocity,
-                spin_momentum: block.start_momentum,
-                inertia: block.arms.polar,
-            },
+            Self::Flex(block) => block.start_moments(),
             Self::Rigid(block) => {
                 let ([mass, _, inertia], start) = (block.mass(), block.start());
                 Moments {
@@ -63,19 +53,7 @@ impl Block {
     /// Moments of a free block at the end of the step.
     pub fn end_moments(&self) -> Moments {
         match self {
-            Self::Flex(block) => {
-                let centre = block.frame.centre;
-                Moments {
-                    mass: block.arms.mass,
-                    centre,
-                    velocity: block.frame.velocity,
-                    spin_momentum: block.angular_momentum(centre),
-                    inertia: match block.is_large() {
-                        true => block.inertia,
-                        false => block.inertia_of(&block.displacement),
-                    },
-                }
-            }
+            Self::Flex(block) => block.end_moments(),
             Self::Rigid(block) => {
                 let ([mass, _, inertia], end) = (block.mass(), block.current());
                 Moments {
@@ -92,18 +70,7 @@ impl Block {
     /// Adds a rigid motion about the centre to the end velocity (m/s, rad/s).
     pub fn add_rigid_velocity(&mut self, velocity: Vec2, spin: f64) {
         match self {
-            Self::Flex(block) => {
-                let centre = block.frame.centre;
-                block.frame.velocity += velocity;
-                for node in 0..block.model.n_nodes() {
-                    let arm = node_vec(&block.position, node) - centre;
-                    let rigid = velocity + spin * perp(arm);
-                    add_node_vec(&mut block.velocity, node, rigid);
-                    if let Some(large) = &mut block.large {
-                        add_node_vec(&mut large.resolved, node, rigid);
-                    }
-                }
-            }
+            Self::Flex(block) => block.add_rigid_velocity(velocity, spin),
             Self::Rigid(block) => block.add_velocity(velocity, spin),
         }
     }

@@ -1,6 +1,6 @@
 //! Velocities of a rigid motion, and those that pins give to a body.
 
-use crate::math::{Vec2, node_vec, perp};
+use crate::math::{Vec2, node_vec, perp, set_node_vec};
 use nalgebra::{Matrix3, Vector3};
 
 /// Share of the largest eigenvalue below which one says that the pins leave that motion free.
@@ -69,6 +69,13 @@ impl RigidRates {
     /// Velocity at a place (m/s).
     pub fn at(&self, place: Vec2) -> Vec2 {
         self.velocity + self.spin * perp(place - self.about)
+    }
+
+    /// Writes the velocities at nodal positions, interleaved.
+    pub(super) fn write_at(&self, position: &[f64], velocity: &mut [f64]) {
+        for node in 0..position.len() / 2 {
+            set_node_vec(velocity, node, self.at(node_vec(position, node)));
+        }
     }
 
     /// Whether both are one motion.

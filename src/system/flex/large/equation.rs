@@ -1,11 +1,11 @@
 //! The equation of a step of a body of large strain, and the factor of its matrix.
 
-use super::step::Step;
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Form, Linearization};
 use crate::fe::material::Rayleigh;
 use crate::large::{Equation, Inertia, largest_row_sum};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
+use crate::system::step::Step;
 
 /// A residual that grows by more in one iteration has left the neighbourhood in which the factor means something.
 pub(super) const MOST_GROWTH: f64 = 4.0;
@@ -86,11 +86,11 @@ const RIGID: f64 = 1e10;
 
 /// What impulses are answered by: masses and the definite part of the stiffness, of which no point resists a turn.
 ///
-/// Impulses that bring velocities `A⁻¹ M v` to rest take kinetic energy from whatever moves, as long as `A >= M` (see [`FlexBlock::resolve`]); but
+/// Impulses that bring velocities `A⁻¹ M v` to rest take kinetic energy from whatever moves, as long as `A >= M` (see [`resolve`]); but
 /// they may only be sought with what then acts. Of cells that are all but flat the stiffness is 10^20 times the masses, rounding leaves nothing of
 /// these, and what is stiff enough not to move in the step may as well be a little softer.
 ///
-/// [`FlexBlock::resolve`]: super::flex_block::FlexBlock::resolve
+/// [`resolve`]: super::motion::resolve
 pub(super) fn impulsive(equation: &Equation<'_>) -> Linearization {
     let masses = equation.model.masses();
     let mean = masses.iter().sum::<f64>() / masses.len() as f64;

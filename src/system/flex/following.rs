@@ -27,12 +27,14 @@
 //! so from rest on it never gives more than it was given. `A` and its factor are those of (C.5) as printed; what the stiffness acts on
 //! is `w_m = u_m + β u̇_m` and `w_s = E w_m + e' + κ (e' - e)`, and where the surface is follows from `F_s' = (K w)_s`.
 
-use super::flex_block::FlexBlock;
 use super::massless_surface::MasslessSurface;
+use super::shape::Shape;
+use super::shared::Shared;
 use crate::fe::model::Model;
 use crate::integrator::Weights;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
 use crate::math::{Mat2, Vec2, add_node_vec, node_vec, set_node_vec};
+use crate::system::step::Step;
 
 /// The massless nodes of a body, with the factor of `K_ss`. Those of a damped body follow the masses as above; those of an undamped one
 /// balance at the end of the step by (C.5) itself.
@@ -133,66 +135,144 @@ fn spring(model: &Model, node: usize, dofs: &[f64]) -> Vec2 {
     Vec2::new(x, y)
 }
 
-impl FlexBlock {
-    /// Moves the massless nodes of a damped body to where they balance under the forces of the iterate.
-    pub(super) fn follow_displacements(&mut self) {
-        let Self {
-            surface,
-            model,
-            is_fixed,
+/// The nodes without mass of an implicit body of small strain.
+#[derive(Debug)]
+pub(super) struct Following {
+    /// Their dofs, ascending, where the body is damped by stiffness; none elsewhere.
+    dofs: Vec<usize>,
+    /// What they follow the others by, once factorized.
+    surface: Option<FollowingSurface>,
+}
+
+impl Following {
+    pub fn new(shape: &Shape) -> Self {
+        let model = &shape.model;
+        let is_damped = model.rayleigh().stiffness > 0.0;
+        let follows = |dof: &usize| is_damped && model.is_massless(dof / 2);
+        Self {
+            dofs: (0..shape.n_dofs()).filter(follows).collect(),
+            surface: None,
+        }
+    }
+
+    /// Factorizes what the nodes follow by, where there are any.
+    ///
+    /// # Errors
+    /// If it is not positive definite.
+    pub fn factorize(&mut self, shape: &Shape) -> Result<(), CholeskyError> {
+        if self.surface.is_none() && shape.model.massless_support().next().is_some() {
+            self.surface = Some(FollowingSurface::new(&shape.model, &shape.is_fixed)?);
+        }
+        Ok(())
+    }
+
+    /// Begins a step of `dt` (s): nodes that follow have no history but where they are.
+    pub fn begin(
+        &mut self,
+        shape: &Shape,
+        displacement: &[f64],
+        dt: f64,
+        [u, rate]: [&mut [f64]; 2],
+    ) {
+        for &dof in &self.dofs {
+            u[dof] = displacement[dof];
+            rate[dof] = 0.0;
+        }
+        if let Some(surface) = &mut self.surface {
+            surface.begin(&shape.model, displacement, dt);
+        }
+    }
+
+    /// Goes back to where the step began, at `u`.
+    pub fn restart(&self, u: &[f64], [displacement, rate]: [&mut [f64]; 2]) {
+        for &dof in &self.dofs {
+            (displacement[dof], rate[dof]) = (u[dof], 0.0);
+        }
+    }
+
+    /// Makes their flexibility known from `node`.
+    pub fn prepare(&mut self, node: usize, is_fixed: &[bool]) {
+        if let Some(surface) = &mut self.surface {
+            surface.prepare(node, is_fixed);
+        }
+    }
+
+    /// Whether a dof follows others.
+    pub fn has(&self, dof: usize) -> bool {
+        self.dofs.binary_search(&dof).is_ok()
+    }
+
+    /// Displacement per increment where a massless node moves as far as its row tells: `u + β (u - u_q)/dt = w` (s²).
+    pub fn reach(step: &Step, damping: f64) -> f64 {
+        let Weights { b0, b1 } = step.weights;
+        (b0 + damping * b1) / (1.0 + damping / step.dt)
+    }
+
+    /// Moves the nodes by the increments, then to where they balance under the forces of the iterate.
+    ///
+    /// - `u`: displacements before the increment (m).
+    pub fn advance(&mut self, shared: &mut Shared, u: &[f64], increment: &[f64]) {
+        let (shape, now) = (&shared.shape, &mut shared.now);
+        let reach = Self::reach(&shared.step, shape.model.rayleigh().stiffness);
+        for &dof in &self.dofs {
+            let moved = reach * increment[dof];
+            now.displacement[dof] = u[dof] + moved;
+            now.rate[dof] = moved / shared.step.dt;
+        }
+        let Some(surface) = self.surface.as_mut().filter(|surface| surface.follows()) else {
+            return;
+        };
+        let (back, forces) = (
+            now.turn.transpose(),
+            [&shared.loads.force, &shared.contact.nodal],
+        );
+        let (lag, slowness) = (surface.lag, surface.slowness());
+        let displacement = &mut now.displacement;
+        surface.relax(
+            &shape.model,
+            &shape.is_fixed,
             displacement,
-            force,
-            contact_force,
-            turn,
-            ..
-        } = self;
-        if let Some(surface) = surface.as_mut().filter(|surface| surface.follows()) {
-            let back = turn.transpose();
-            let (lag, slowness) = (surface.lag, surface.slowness());
-            surface.relax(model, is_fixed, displacement, |node, start| {
-                let end = back * (node_vec(force, node) + node_vec(contact_force, node));
+            |node, start| {
+                let [applied, contact] = forces.map(|force| node_vec(force, node));
+                let end = back * (applied + contact);
                 (end + lag * start) / slowness
+            },
+        );
+    }
+
+    /// Gives the nodes of a damped body the rates `E u̇_m + (e' - e)/dt`.
+    pub fn follow_rates(&mut self, shared: &mut Shared) {
+        let (shape, now) = (&shared.shape, &mut shared.now);
+        if let Some(surface) = self.surface.as_mut().filter(|surface| surface.follows()) {
+            let model = &shape.model;
+            let (displacement, dt) = (&now.displacement, shared.step.dt);
+            surface.relax(model, &shape.is_fixed, &mut now.rate, |node, start| {
+                (spring(model, node, displacement) - start) / dt
             });
         }
     }
 
-    /// Whether the body has nodes without mass.
-    pub(super) fn has_massless_surface(&self) -> bool {
-        self.model.massless_support().next().is_some()
+    /// What the flexibility of the nodes adds to what `A⁻¹` has of it, which is damped by the weights of the masses, in the frame (1/kg).
+    pub fn beyond_answer(&self, shared: &Shared, at: usize, from: usize) -> Option<Mat2> {
+        let surface = self.surface.as_ref().filter(|_| !self.dofs.is_empty())?;
+        let b0 = shared.step.weights.b0;
+        let share = 1.0 / (b0 * surface.slowness()) - 1.0 / damped_reach(shared);
+        Some(share * surface.flexibility(at, from))
     }
 
-    /// What the springs between surface and masses give of the [compliance](FlexBlock::compliance) of velocities, `K_ss⁻¹/(b0 + β b1)`,
-    /// in world axes (1/kg): the rest is what the masses give that the surface rests on. Zero but between nodes without mass.
-    pub fn spring_compliance(&self, at: usize, from: usize) -> Mat2 {
+    /// What the springs between surface and masses give of the compliance of velocities, `K_ss⁻¹/(b0 + β b1)`, in world axes (1/kg): the
+    /// rest is what the masses give that the surface rests on. Zero but between nodes without mass.
+    pub fn spring_compliance(&self, shared: &Shared, at: usize, from: usize) -> Mat2 {
         let Some(surface) = &self.surface else {
             return Mat2::zeros();
         };
-        let Weights { b0, b1 } = self.step.weights;
-        let reach = b0 + self.model.rayleigh().stiffness * b1;
-        let local = surface.flexibility(at, from) / reach;
-        self.turn * local * self.turn.transpose()
+        let local = surface.flexibility(at, from) / damped_reach(shared);
+        shared.now.turn * local * shared.now.turn.transpose()
     }
+}
 
-    /// Whether a dof is one of a massless node of a damped body.
-    pub(super) fn is_following(&self, dof: usize) -> bool {
-        self.model.rayleigh().stiffness > 0.0 && self.model.is_massless(dof / 2)
-    }
-
-    /// Gives the massless nodes of a damped body the rates `E u̇_m + (e' - e)/dt`.
-    pub(super) fn follow_rates(&mut self) {
-        let Self {
-            surface,
-            model,
-            is_fixed,
-            displacement,
-            rate,
-            step,
-            ..
-        } = self;
-        if let Some(surface) = surface.as_mut().filter(|surface| surface.follows()) {
-            surface.relax(model, is_fixed, rate, |node, start| {
-                (spring(model, node, displacement) - start) / step.dt
-            });
-        }
-    }
+/// `b0 + β b1` (s²).
+fn damped_reach(shared: &Shared) -> f64 {
+    let Weights { b0, b1 } = shared.step.weights;
+    b0 + shared.shape.model.rayleigh().stiffness * b1
 }
