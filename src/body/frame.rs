@@ -3,7 +3,7 @@
 //! The elastic force is `R K u`, completed by the torque that makes the internal forces free of a resultant moment.
 
 use crate::fe::model::Model;
-use crate::math::{Vec2, atan2, cross, node_vec};
+use crate::math::{Vec2, atan2, cross, node_vec, rounding};
 
 /// What a body's frame may do, decided by its pins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -190,6 +190,6 @@ fn holds_rotation(rest: &[f64], is_fixed: &[bool]) -> bool {
     };
     let size = spread(0, &|_| true).max(spread(1, &|_| true));
     let far = rest.iter().fold(0.0f64, |far, x| far.max(x.abs()));
-    let least = 1e-9 * size + 4.0 * f64::EPSILON * far;
+    let least = rounding::SHARE * size + 4.0 * f64::EPSILON * far;
     (0..2).any(|axis| spread(1 - axis, &|node| is_fixed[2 * node + axis]) > least)
 }

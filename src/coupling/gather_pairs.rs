@@ -18,6 +18,7 @@ use super::walk::ClaimedPair;
 use super::ways::{self, Draft, RigidSurface};
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
+use crate::math::rounding;
 use crate::rapier::prelude::*;
 use crate::system::{Block, RigidBlock};
 use std::collections::HashMap;
@@ -113,7 +114,8 @@ impl PairGatherer {
             }
             ClaimedPair::FlexFlex(one, other) if claims.component_of_flex(one) == component => {
                 // The finer surface is the contactor; the first by place if they are equal.
-                let is_finer = claims.flex[other].edge < claims.flex[one].edge * (1.0 - 1e-9);
+                let is_finer =
+                    claims.flex[other].edge < claims.flex[one].edge * (1.0 - rounding::SHARE);
                 let (contactor, target) = if is_finer { (other, one) } else { (one, other) };
                 let blocks = [contactor, target].map(|flex| open.seats.flex_block(flex));
                 let [Some(points), Some(surface)] = blocks else {

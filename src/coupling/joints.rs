@@ -11,7 +11,7 @@ use crate::constraint::joint::{
     JointGrip, JointKey, JointLaw, JointMemory, JointOwner, JointRow, Measure, Spring,
 };
 use crate::kkt::Island;
-use crate::math::{Vec2, atan2, from_rapier, sin_cos};
+use crate::math::{Vec2, atan2, from_rapier, rounding, sin_cos};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use crate::system::{Block, Point, RigidMotion};
@@ -23,7 +23,7 @@ const RIGID_FROM: f64 = 10.0;
 const UNBOUNDED: f64 = 1e30;
 
 /// Range of a limit (m or rad) that leaves no motion.
-const NO_RANGE: f64 = 1e-9;
+const NO_RANGE: f64 = rounding::SHARE;
 
 /// Rows of a joint by what they stand for, so that impulses find back; see [`JointKey::row`].
 pub(super) mod slot {

@@ -9,7 +9,7 @@ use super::reading::link_weight_of;
 use super::sets::RapierSets;
 use super::shapes::pose_of;
 use crate::linalg::complementarity::{factorize_cholesky, solve_cholesky_in_place};
-use crate::math::{Vec2, cross, from_rapier, perp};
+use crate::math::{Vec2, cross, from_rapier, perp, rounding};
 use crate::rapier::prelude::*;
 use crate::system::LinkAnswer;
 use nalgebra::Matrix3;
@@ -365,7 +365,7 @@ impl Equations {
     pub fn solve(&self) -> Option<Solved> {
         let n = self.force.len();
         let mut factor = self.mass.clone();
-        factorize_cholesky(&mut factor, n, 1e-14).then(|| {
+        factorize_cholesky(&mut factor, n, rounding::FEW).then(|| {
             let mut acceleration = self.force.clone();
             solve_cholesky_in_place(&factor, n, &mut acceleration);
             Solved {

@@ -10,6 +10,7 @@ mod moments;
 
 pub use consistent::redistribute_consistent;
 
+use crate::math::rounding;
 use moments::Frame;
 
 /// Why the mass cannot be redistributed.
@@ -64,7 +65,7 @@ pub struct Redistribution {
 /// integration (its frequency grows with the root of 1 / 0.1, a factor 3).
 const SMALLEST_FACTOR: f64 = 0.1;
 /// A moment counts as kept within this part of `total x gyration radius^degree`: rounding over 1e5 nodes.
-const KEPT: f64 = 1e-11;
+const KEPT: f64 = rounding::SOLVED;
 
 /// Moves the mass of massless nodes inwards and restores the moments of the whole.
 ///

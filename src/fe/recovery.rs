@@ -5,7 +5,7 @@
 
 use super::element::{Element, ElementError, MAX_NODES, MAX_POINTS};
 use super::material::Material;
-use crate::math::{atan2, hypot, sin_cos};
+use crate::math::{atan2, hypot, rounding, sin_cos};
 
 /// The stress at a point (Pa).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -268,7 +268,7 @@ fn polynomial([xi, eta]: [f64; 2]) -> [f64; 4] {
 fn solve_in_place(matrix: &mut [[f64; 4]; 4], right: &mut [[f64; 4]; 4], n: usize) {
     let diagonal = [0, 1, 2, 3].map(|i| matrix[i][i]);
     for pivot in 0..n {
-        let independent = matrix[pivot][pivot] > 1e-10 * diagonal[pivot];
+        let independent = matrix[pivot][pivot] > rounding::ITERATED * diagonal[pivot];
         let scale = if independent {
             1.0 / matrix[pivot][pivot]
         } else {

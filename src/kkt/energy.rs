@@ -13,7 +13,7 @@ use super::island::{Island, SolveSettings};
 use super::joint_rows::{ActiveJoint, add_wrench};
 use super::summary::IslandSummary;
 use crate::constraint::joint::unit_wrench;
-use crate::math::Vec2;
+use crate::math::{Vec2, rounding};
 use crate::system::{Balance, Block, FlexBlock, Response, RigidBlock, RigidMotion};
 
 impl Island {
@@ -327,7 +327,7 @@ impl Island {
 }
 
 /// Energy error of one step by rounding, relative.
-const ROUND_OFF: f64 = 1e-12;
+const ROUND_OFF: f64 = rounding::SUM;
 
 /// Change of energy, relative, within which the integrator swings about it and gains nothing in the long run: of a body that turns freely,
 /// and of what rests on each other and rocks.

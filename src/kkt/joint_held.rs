@@ -10,12 +10,12 @@
 use super::island::Island;
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, JointLaw, unit_wrench};
-use crate::math::{Vec2, cross};
+use crate::math::{Vec2, cross, rounding};
 use crate::system::{Block, Response};
 
 /// Share of its own mobility below which a row is held by others already (-): exact rows leave rounding, and what moves at all moves by levers
 /// of the size of the bodies.
-const DEPENDENT: f64 = 1e-9;
+const DEPENDENT: f64 = rounding::SHARE;
 
 /// Wrenches on the two bodies of a contact.
 type Pair = [[f64; 3]; 2];

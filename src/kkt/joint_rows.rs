@@ -11,12 +11,12 @@ use super::island::{Island, SolveSettings};
 use super::joint_law::{Finish, resolve};
 use crate::constraint::joint::{JointGrip, JointRow, RememberedJoint, When, unit_wrench};
 use crate::linalg::complementarity::{RowKind, Status};
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, perp, rounding};
 use crate::system::{Block, Point, Response};
 
 /// Mobility of a row, relative to that across it, up to which nothing moves it (-): the square of a lever's rounding. Forces of any size would
 /// answer a row that points at the axis of what can only turn.
-const SINGULAR: f64 = 1e-16;
+const SINGULAR: f64 = rounding::SQUARE;
 
 /// A joint row at work.
 #[derive(Clone, Copy, Debug)]

@@ -6,14 +6,14 @@ use super::joint_rows::{ActiveJoint, add_wrench};
 use super::joint_system::Rows;
 use crate::constraint::joint::{JointGrip, Spring, When, unit_wrench};
 use crate::linalg::complementarity::{Problem, RowKind, Status};
-use crate::math::Vec2;
+use crate::math::{Vec2, rounding};
 use crate::system::{Block, Point, Response};
 
 /// Share of a soft row's velocity below which it is left to its multiplier.
 const LEFT_ALONE: f64 = 1e-3;
 
 /// Distance from its bound (m or rad) within which a limit that pushed in the last step has pushed all along.
-const STAYED: f64 = 1e-6;
+const STAYED: f64 = rounding::SINGLE;
 
 impl Island {
     /// Gives the rigid blocks the velocities that go with the forces of the position stage.

@@ -12,14 +12,14 @@ use super::island::{ActiveContact, Island, SolveSettings};
 use super::summary::IslandSummary;
 use crate::constraint::contact::{Candidate, ContactMemory, Kinematics, Remembered, Scene};
 use crate::linalg::complementarity::Status;
-use crate::math::{Vec2, exp};
+use crate::math::{Vec2, exp, rounding};
 use crate::system::{Block, Response};
 
 /// Rate at which bodies that were put into each other part (1/s): a third of the overlap in a step of 1/60 s.
 pub(super) const PARTING_RATE: f64 = 24.0;
 
 /// Round-off of gaps, relative to the extent of the scene.
-pub(super) const ROUND_OFF: f64 = 2e-12;
+pub(super) const ROUND_OFF: f64 = 2.0 * rounding::SUM;
 
 /// Multiple of the tolerance from which an overlap counts as put there.
 const OVERLAPPED: f64 = 1e7;
@@ -359,7 +359,7 @@ impl ActiveContact {
         let approach = kinematics
             .relative(blocks, |block, grip| block.start_velocity(grip))
             .dot(&kinematics.normal);
-        let limit = friction * remembered.normal * (1.0 - 1e-9);
+        let limit = friction * remembered.normal * (1.0 - rounding::SHARE);
         let tangential = if remembered.normal <= 0.0 {
             Status::Open
         } else if remembered.tangent >= limit {

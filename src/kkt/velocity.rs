@@ -17,7 +17,7 @@ use super::joint_system::Rows;
 use super::multipliers::prepare;
 use super::sparse::Asked;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, perp, rounding};
 use crate::system::{Block, Response};
 
 impl Island {
@@ -255,7 +255,7 @@ impl Island {
             let share = if contact.is_hard {
                 1.0
             } else {
-                contact.holds_velocity().max(1e-12)
+                contact.holds_velocity().max(rounding::SUM)
             };
             contact.parting[which] += softened - (1.0 - share) * self.diagonals[row] * impulse;
             contact.impulse[which] = impulse;
@@ -268,7 +268,7 @@ impl Island {
         for row in 0..n {
             let contact = &self.contacts[self.rows[row].contact];
             if !contact.is_hard {
-                let share = contact.holds_velocity().max(1e-12);
+                let share = contact.holds_velocity().max(rounding::SUM);
                 self.delassus[row * n + row] *= 1.0 + (1.0 - share) / share;
             }
         }

@@ -61,6 +61,7 @@ mod mix;
 #[cfg(feature = "serde-serialize")]
 pub(crate) mod ordered;
 mod real;
+pub(crate) mod rounding;
 mod sum;
 mod wide;
 

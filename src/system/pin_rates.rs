@@ -1,10 +1,10 @@
 //! Velocities of a rigid motion, and those that pins give to a body.
 
-use crate::math::{Vec2, node_vec, perp, set_node_vec};
+use crate::math::{Vec2, node_vec, perp, rounding, set_node_vec};
 use nalgebra::{Matrix3, Vector3};
 
 /// Share of the largest eigenvalue below which one says that the pins leave that motion free.
-const FREE: f64 = 1e-9;
+const FREE: f64 = rounding::SHARE;
 
 /// Velocities of a rigid motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -11,7 +11,7 @@ use super::surface::{
     Cone, SurfacePoint, closest_surface_point, faced_at_start, faces, facing_point,
 };
 use crate::constraint::geometry::{ConvexPart, Feature, Pose2, faced_separation, separation};
-use crate::math::{Vec2, perp, rotation};
+use crate::math::{Vec2, perp, rotation, rounding};
 use crate::system::{Block, FlexBlock, Grip, Point, RigidBlock};
 use std::sync::Arc;
 
@@ -80,7 +80,7 @@ impl Kinematics {
     pub fn is_massless(&self, blocks: &[Block]) -> bool {
         self.attachments()
             .iter()
-            .any(|a| a.weight.abs() > 1e-9 && blocks[a.block].is_massless(a.grip.point))
+            .any(|a| a.weight.abs() > rounding::SHARE && blocks[a.block].is_massless(a.grip.point))
     }
 
     /// Whether an explicit body is met through a node without mass, which a force moves at once, while it moves

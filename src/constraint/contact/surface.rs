@@ -1,6 +1,6 @@
 //! The deformed surface of a flexible block as a target: the boundary polyline, material on its left.
 
-use crate::math::{Vec2, cross, perp};
+use crate::math::{Vec2, cross, perp, rounding};
 use crate::system::FlexBlock;
 
 /// The point of a surface closest to a given one.
@@ -53,7 +53,8 @@ impl Cone {
     fn faces(&self, normal: Vec2) -> bool {
         let Self([one, other]) = self;
         let mean = one + other;
-        let is_within = -normal.dot(&mean) >= (1.0 + one.dot(other)) && mean.norm() > 1e-9;
+        let is_within =
+            -normal.dot(&mean) >= (1.0 + one.dot(other)) && mean.norm() > rounding::SHARE;
         is_within || one.dot(&normal).min(other.dot(&normal)) < -POINTING
     }
 }
@@ -154,7 +155,7 @@ fn crossing(along: [Vec2; 2], offset: [Vec2; 2]) -> f64 {
 }
 
 /// Part of a segment's length by which a point may miss it and still count as having come in through it.
-const ENTRY_SLOP: f64 = 1e-9;
+const ENTRY_SLOP: f64 = rounding::SHARE;
 
 /// The closest of the listed boundary segments or of their nodes, but for those that the point is behind and does not face.
 fn nearest_segment(
@@ -211,7 +212,7 @@ fn nearest_segment(
         return None;
     }
     let mean = own + outward(other);
-    let mean = if mean.norm() > 1e-9 {
+    let mean = if mean.norm() > rounding::SHARE {
         mean.normalize()
     } else {
         own
@@ -266,12 +267,12 @@ pub(super) fn faces(block: &FlexBlock, segment: usize, normal: Vec2, exactly: bo
         outward(boundary.previous_segment(segment)),
     ];
     let mean = normals[0] + normals[1];
-    let mean = if mean.norm() > 1e-9 {
+    let mean = if mean.norm() > rounding::SHARE {
         mean.normalize()
     } else {
         normals[0]
     };
-    let is_within = -normal.dot(&mean) >= normals[0].dot(&mean) - 1e-12;
+    let is_within = -normal.dot(&mean) >= normals[0].dot(&mean) - rounding::SUM;
     let turns_left = cross(normals[1], normals[0]) > 0.0;
     if exactly {
         return is_within && turns_left;

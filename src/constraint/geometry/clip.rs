@@ -1,7 +1,7 @@
 //! The edge that meets a reference face, cut to the width of that face, `0 <= t·(p - v) <= l`.
 
 use super::pair_axis::{Axis, Pair};
-use crate::math::Vec2;
+use crate::math::{Vec2, rounding};
 
 /// The edge of one part that faces the reference face of the other most, in the axes of that face.
 pub(super) struct IncidentEdge {
@@ -105,7 +105,7 @@ fn opposite_vertices(pair: &Pair, axis: Axis) -> [usize; 2] {
     for (face, other) in part.normals().iter().enumerate() {
         let alignment = normal.dot(other);
         // Of two edges that face it equally, the first: rounding must not choose for a box on its corner.
-        if alignment < best - 1e-9 {
+        if alignment < best - rounding::SHARE {
             best = alignment;
             vertices = part.face_vertices(face);
         }

@@ -5,7 +5,7 @@
 
 use super::separation::{TIE, from_face};
 use super::{ConvexPart, Feature, PairContact, Pose2, Separation, polygon_pair, separation};
-use crate::math::Vec2;
+use crate::math::{Vec2, rounding};
 
 /// Signed distance of a point (m) that went through the local places of `path`, the first at the beginning of the step.
 ///
@@ -169,4 +169,4 @@ pub fn crossing_overlap(
 }
 
 /// Overlap, relative to the smaller part's size, from which crossing edges count: below it they rest on each other.
-const CROSSED: f64 = 1e-6;
+const CROSSED: f64 = rounding::SINGLE;

@@ -1,14 +1,14 @@
 //! Cleaning of a polygon's outline, whose shoelace area `sum cross(v_i - v_0, v_{i+1} - v_0) / 2` is positive when
 //! counter-clockwise.
 
-use crate::math::{Vec2, cross};
+use crate::math::{Vec2, cross, rounding};
 
 /// Vertices closer than this fraction of the core's extent are one vertex.
-const COINCIDENT: f64 = 1e-12;
+const COINCIDENT: f64 = rounding::SUM;
 
 /// A vertex that turns left by less than this (rad) lies on a straight face: such kinks are noise of an `f32` source,
 /// and a dent among them would break convexity.
-const STRAIGHT: f64 = 1e-6;
+const STRAIGHT: f64 = rounding::SINGLE;
 
 /// Lower and upper corner of the bounding box of points (m).
 pub(super) fn bounds(points: impl Iterator<Item = Vec2>) -> (Vec2, Vec2) {

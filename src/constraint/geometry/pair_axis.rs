@@ -2,10 +2,10 @@
 //! the vertices `j` of the other, and their nearest vertices.
 
 use super::{ConvexPart, PairReference, Pose2};
-use crate::math::Vec2;
+use crate::math::{Vec2, rounding};
 
 /// Relative to the smaller part's size: lengths that differ by less are equal.
-const TIE: f64 = 1e-9;
+const TIE: f64 = rounding::SHARE;
 
 /// How much better, relative to the smaller part's size, another face must be to replace the reference face. Larger
 /// values make a kept face report the gap too small by this much.

@@ -7,14 +7,14 @@
 use super::entry::{Axis, ENTRY_SLOP, crossed_face, inside, thin_entry_face};
 use super::segment_query::direction_or;
 use super::{ConvexPart, Feature};
-use crate::math::{Vec2, cross, perp};
+use crate::math::{Vec2, cross, perp, rounding};
 
 /// Relative to the part's size: a point this near to a vertex has no direction from it.
-pub(super) const AT_VERTEX: f64 = 1e-12;
+pub(super) const AT_VERTEX: f64 = rounding::SUM;
 
 /// Relative to the part's size: features whose distances differ by less than this tie. A node flush with an edge breathes over it by some
 /// 1e-8 as forces change, and keeps its face: where node and vertex took turns, towers never came to rest.
-pub(super) const TIE: f64 = 1e-6;
+pub(super) const TIE: f64 = rounding::SINGLE;
 
 /// A point seen from a rounded convex part, in the part's local coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! Joint kinematics: one number of a relative position, and the row of `G` that changes it.
 
-use crate::math::{Vec2, cross, rotation};
+use crate::math::{Vec2, cross, rotation, rounding};
 use crate::system::{Block, Grip, Point};
 
 /// What a row measures of the separation `d = Σ w_i x_i` of its grips, the weights of which add up to zero, or of angles.
@@ -84,7 +84,7 @@ impl JointGrip {
 }
 
 /// Distance (m) below which a length has no direction.
-const NO_LENGTH: f64 = 1e-9;
+const NO_LENGTH: f64 = rounding::SHARE;
 
 impl Measure {
     /// Whether a couple holds the row instead of forces.

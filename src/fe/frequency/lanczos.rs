@@ -4,6 +4,7 @@
 //! `s` its eigenvector, bounds the distance to an eigenvalue of `A`. Rounding makes vectors lose their orthogonality only along
 //! eigenvectors already found, which repeats the largest value and does not change it.
 
+use crate::math::rounding;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// What the iteration needs to know.
@@ -61,7 +62,7 @@ pub(super) fn iterate(operator: &mut impl Operator, tolerance: f64) -> Found {
         diagonal.push(own);
         length = operator.inner(&next, &next).max(0.0).sqrt();
         // An invariant subspace: with a random start it holds the eigenvector looked for.
-        let is_exhausted = length <= 1e-14 * own.abs().max(last);
+        let is_exhausted = length <= rounding::FEW * own.abs().max(last);
         if is_exhausted || diagonal.len().is_multiple_of(BETWEEN_LOOKS) {
             let (eigenvalue, end) = largest_pair(&diagonal, &beside);
             found.eigenvalue = eigenvalue;

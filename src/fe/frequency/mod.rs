@@ -13,6 +13,7 @@ mod lanczos;
 use super::mass_matrix::MassMatrix;
 use super::model::{Model, ModelError};
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
+use crate::math::rounding;
 use lanczos::{Operator, iterate};
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use thiserror::Error;
@@ -100,7 +101,7 @@ pub fn frequency_bound(model: &Model, is_fixed: &[bool]) -> Result<f64, ModelErr
 }
 
 /// What an eigenvalue of a cell may exceed the largest one before it is computed: far above its rounding.
-const MARGIN: f64 = 1e-12;
+const MARGIN: f64 = rounding::SUM;
 
 /// Factor per node from the mass its cells lumped there to the mass it has now; empty for a consistent mass.
 fn mass_changes(model: &Model) -> Result<Vec<f64>, ModelError> {

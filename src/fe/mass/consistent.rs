@@ -9,13 +9,14 @@ use super::moments::Frame;
 use super::{KEPT, MassError, Redistribution, extremes, move_inwards};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::complementarity::solve_lu_in_place;
+use crate::math::rounding;
 
 /// A massive node keeps at least this part of its rows: `m_ij (p_i + p_j)/2` is positive definite while p hardly changes from
 /// node to node.
 const SMALLEST: f64 = 0.3;
 
 /// Loss of a pivot at which a condition is one of those before it.
-const DEPENDENT: f64 = 1e-9;
+const DEPENDENT: f64 = rounding::SHARE;
 
 const N_TERMS: usize = 4;
 

@@ -1,6 +1,6 @@
 //! Moments of nodal masses, and the polynomial that restores them: `sum_i m_i p(x_i) q(x_i) = target_q`.
 
-use crate::math::{atan2, sin_cos};
+use crate::math::{atan2, rounding, sin_cos};
 
 /// A term of p that differs from the terms before it by less than this part of itself is left out.
 const DEPENDENT: f64 = 1e-7;
@@ -40,7 +40,11 @@ impl Frame {
         let (long, short) = (radius(0), radius(1));
         let long = if long > 0.0 { long } else { 1.0 };
         // Nodes in a row have no width: what is left is rounding, and must not be blown up to size one.
-        let short = if short > 1e-9 * long { short } else { long };
+        let short = if short > rounding::SHARE * long {
+            short
+        } else {
+            long
+        };
         frame.radii = [long, short];
         frame
     }
@@ -104,7 +108,7 @@ impl Frame {
             let left = inner(&terms, term, term).sqrt();
             // The second bound is for terms that vanish on all massive nodes, such as Y on a row of them.
             let size = mass.iter().sum::<f64>().sqrt();
-            let independent = left > DEPENDENT * before && left > 1e-12 * size;
+            let independent = left > DEPENDENT * before && left > rounding::SUM * size;
             let scale = if independent { 1.0 / left } else { 0.0 };
             triangle[term][term] = if independent { left } else { 0.0 };
             terms.iter_mut().for_each(|row| row[term] *= scale);

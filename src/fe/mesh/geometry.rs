@@ -1,12 +1,12 @@
 //! Plane vectors and the area moments of a cell, `A = 1/2 ∮ (x dy - y dx)`.
 
 use super::CellKind;
-use crate::math::hypot;
+use crate::math::{hypot, rounding};
 
 /// Two lengths closer than this, relative to the diagonal of the bounding box, count as equal.
 ///
 /// Far above the rounding of coordinates (1e-16) and far below any useful edge.
-pub(super) const RELATIVE_TOLERANCE: f64 = 1e-10;
+pub(super) const RELATIVE_TOLERANCE: f64 = rounding::ITERATED;
 
 pub(super) fn sub(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] - b[0], a[1] - b[1]]

@@ -1,12 +1,13 @@
 //! Checks of nodes and cells: `det J > 0` at every node of every cell, one piece, no spare nodes.
 
+use crate::math::rounding;
 use std::collections::HashMap;
 
 use super::{Cells, MeshError, geometry};
 
 /// A Jacobian below this fraction of the squared longest side counts as zero: rounding of the
 /// coordinates leaves about 1e-16, and no usable cell comes near.
-const DEGENERATE: f64 = 1e-10;
+const DEGENERATE: f64 = rounding::ITERATED;
 
 pub(super) fn check_nodes(nodes: &[[f64; 2]]) -> Result<(), MeshError> {
     if nodes.is_empty() {

@@ -4,6 +4,7 @@
 //! the last block, bounds the distance of `θ` to an eigenvalue of `B`.
 
 use super::pencil::Pencil;
+use crate::math::rounding;
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Vectors that go through the solver at once.
@@ -13,7 +14,7 @@ pub(super) const BLOCK: usize = 4;
 const BETWEEN_LOOKS: usize = 2;
 
 /// What is left of a vector, when its parts along others are taken off twice, is its own above this share (-).
-const OWN: f64 = 1e-11;
+const OWN: f64 = rounding::SOLVED;
 
 /// Vectors orthonormal in `M`, with `M` times each.
 #[derive(Clone, Debug, Default)]

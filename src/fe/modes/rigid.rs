@@ -2,10 +2,11 @@
 
 use super::krylov::Basis;
 use super::pencil::Pencil;
+use crate::math::rounding;
 use nalgebra::{Matrix3, SymmetricEigen};
 
 /// A motion that moves held dofs by less than this of what it moves others by does not move them (-).
-const STILL: f64 = 1e-10;
+const STILL: f64 = rounding::ITERATED;
 
 /// Forces of a rigid motion are within so many roundings of their terms (-).
 const ROUNDINGS: f64 = 64.0;

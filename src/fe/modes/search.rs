@@ -4,12 +4,13 @@ use super::krylov::{BLOCK, Basis, Estimate, Search};
 use super::pencil::Pencil;
 use super::rigid::rigid_motions;
 use super::{Mode, Modes, ModesError};
+use crate::math::rounding;
 
 /// The first shift over the highest `ω²` (-).
 const FIRST_SHIFT: f64 = 1e-7;
 
 /// The least over the highest `ω²`, with four digits to spare (-).
-const LEAST_SHIFT: f64 = 1e-12;
+const LEAST_SHIFT: f64 = rounding::SUM;
 
 /// Shifts that are tried to come near the lowest `ω²` above 0.
 const MOST_SHIFTS: usize = 8;

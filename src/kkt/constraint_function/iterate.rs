@@ -14,7 +14,7 @@ use crate::kkt::multipliers::prepare;
 use crate::kkt::position::PARTING_RATE;
 use crate::kkt::summary::IslandSummary;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
-use crate::math::exp;
+use crate::math::{exp, rounding};
 use crate::system::{Block, Response};
 use std::f64::consts::FRAC_2_PI;
 
@@ -36,7 +36,7 @@ const ROWS_KEPT_FROM: usize = 2;
 const STRAYED: f64 = 2e5;
 
 /// Least length of a problem, of the size of its bodies.
-const LEAST_LENGTH: f64 = 1e-9;
+const LEAST_LENGTH: f64 = rounding::SHARE;
 
 /// What the iterations of a step go by.
 pub(in crate::kkt) struct Trial<'a> {

@@ -4,13 +4,14 @@
 
 use super::functions::{Value, normal, tangential};
 use crate::linalg::complementarity::{Problem, RowKind, solve_lu_in_place};
+use crate::math::rounding;
 
 /// Least `|∂w/∂λ|` and `|∂v/∂τ|` in the Jacobian: redundant rows (a rigid box on four points) have a singular `W` and share
 /// their load as it is. It changes steps by this share, and no solution.
-const FLOOR: f64 = 1e-10;
+const FLOOR: f64 = rounding::ITERATED;
 
 /// Loss of size of a pivot at which the Jacobian counts as singular.
-const SINGULAR: f64 = 1e-16;
+const SINGULAR: f64 = rounding::SQUARE;
 
 /// Halvings of a step.
 const MOST_HALVINGS: usize = 12;

@@ -7,7 +7,7 @@
 
 use super::{FeasiblePath, Way};
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, perp, rounding};
 use crate::path::{NearPair, Target};
 use crate::system::Point;
 
@@ -267,7 +267,7 @@ impl FeasiblePath {
 }
 
 /// Turn below which two normals are the same side (rad).
-const SAME: f64 = 1e-6;
+const SAME: f64 = rounding::SINGLE;
 
 /// Sine of the angle by which an edge may lean over a direction in which its end reaches farthest: bodies turn from pass to pass, and a corner that
 /// lies over an edge of the other body leans by half a right angle.

@@ -15,13 +15,14 @@ use super::problem::{Checked, RowKind, Status};
 use super::residual::{Measure, measure};
 use super::status::{fingerprint, identify, make_admissible};
 use super::{Answer, Outcome};
+use crate::math::rounding;
 
 /// A residual at which the answer is exact but for round-off.
-const EXACT: f64 = 1e-12;
+const EXACT: f64 = rounding::SUM;
 /// A residual that is good enough for statuses that no longer change.
-const GOOD: f64 = 1e-10;
+const GOOD: f64 = rounding::ITERATED;
 /// A row is redundant when less than this fraction of it is independent of the rows before.
-const RANK_TOLERANCE: f64 = 1e-11;
+const RANK_TOLERANCE: f64 = rounding::SOLVED;
 /// Systems above this size are solved by iteration first.
 const DIRECT_LIMIT: usize = 256;
 

@@ -9,19 +9,20 @@
 use super::dense::{dot, factorize_cholesky, solve_cholesky_in_place};
 use super::problem::{ComplementarityError, Problem, RowKind, Status};
 use super::{Outcome, Solver};
+use crate::math::rounding;
 
 /// Bilateral rows from which condensing pays.
 const LEAST: usize = 8;
 
 /// What must be left of a row's mobility once the bilateral rows hold (-); rows with less are redundant.
-const LEFT: f64 = 1e-9;
+const LEFT: f64 = rounding::SHARE;
 
 /// What must be left of a bilateral row's mobility once the others hold, where all bodies are alike (-), or they depend on each other: what single
 /// precision knows of the places they are made of moves them by its square.
-pub(crate) const INDEPENDENT: f64 = 1e-6;
+pub(crate) const INDEPENDENT: f64 = rounding::SINGLE;
 
 /// Rank tolerance of the bilateral rows.
-const RANK_TOLERANCE: f64 = 1e-11;
+const RANK_TOLERANCE: f64 = rounding::SOLVED;
 
 /// How often bilateral rows that depend on each other are solved with what they give way by, see [`give`].
 const ROUNDS: usize = 3;

@@ -7,12 +7,13 @@
 //! limit, if any, is a solution. Here it only has to come close enough for the active set to finish.
 
 use super::problem::Checked;
+use crate::math::rounding;
 use faer::traits::pulp::{Arch, Simd, WithSimd};
 
 /// Over-relaxation: above 1 for speed, well below 2 because friction adds a coupling of its own.
 pub(super) const RELAXATION: f64 = 1.2;
 /// A relative change per sweep below which nothing more will come.
-const STALLED: f64 = 1e-14;
+const STALLED: f64 = rounding::FEW;
 
 /// Sweeps over the rows, in place, at most `n_sweeps` times; returns how many were made.
 ///

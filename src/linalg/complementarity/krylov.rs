@@ -6,11 +6,12 @@
 //! Vorst 1992.)
 
 use super::dense::{add_scaled, dot};
+use crate::math::rounding;
 
 /// The residual, relative to the right-hand side, at which the iteration stops.
-const TOLERANCE: f64 = 1e-14;
+const TOLERANCE: f64 = rounding::FEW;
 /// The true residual, relative to the right-hand side, that counts as solved.
-const SOLVED: f64 = 1e-11;
+const SOLVED: f64 = rounding::SOLVED;
 
 /// Scratch vectors.
 #[derive(Debug, Clone, Default)]

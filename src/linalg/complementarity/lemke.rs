@@ -9,12 +9,13 @@
 
 use super::dense::add_scaled;
 use super::problem::{Checked, RowKind};
+use crate::math::rounding;
 use faer::traits::pulp::{Arch, Simd, WithSimd};
 
 /// Entries below this are no pivots; the tableau is scaled to unit diagonal.
-const SMALLEST_PIVOT: f64 = 1e-11;
+const SMALLEST_PIVOT: f64 = rounding::SOLVED;
 /// Ratios closer than this are equal.
-const TIE: f64 = 1e-12;
+const TIE: f64 = rounding::SUM;
 /// Problems with more nonnegative unknowns than this are left to the other solvers.
 const MAX_UNKNOWNS: usize = 480;
 

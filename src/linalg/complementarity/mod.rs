@@ -48,6 +48,7 @@ pub use residual::natural_map_residual;
 pub(crate) use condense::INDEPENDENT;
 pub(crate) use dense::{factorize_cholesky, solve_cholesky_in_place, solve_lu_in_place};
 
+use crate::math::rounding;
 use active_set::{ActiveSet, Redundancy};
 use condense::Condensed;
 use lemke::Lemke;
@@ -74,7 +75,7 @@ const CONTRADICTED: f64 = 1e-5;
 const MOST_SWEEPS: usize = 20_000;
 
 /// The [`natural_map_residual`] up to which sweeps that have stalled are the answer.
-const SWEPT: f64 = 1e-10;
+const SWEPT: f64 = rounding::ITERATED;
 
 /// The solver that found the answer. The last two are finished by an active-set solve if it improves them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -356,7 +357,7 @@ impl Solver {
         let now = measure(problem, trial, |row| problem.velocity(row, trial));
         // contacts that carry nothing start open: what is left is then independent
         self.status.fill(Status::Open);
-        let slack = 1e-9 * now.scale;
+        let slack = rounding::SHARE * now.scale;
         identify(
             problem,
             trial,

@@ -1,9 +1,10 @@
 //! The problem as data: `w = W p + b` and, on every row, a law between `p_i` and `w_i`.
 
+use crate::math::rounding;
 use thiserror::Error;
 
 /// Diagonal entries below this fraction of the largest one belong to rows that nothing can move.
-const IMMOVABLE: f64 = 1e-16;
+const IMMOVABLE: f64 = rounding::SQUARE;
 
 /// The law of one row, between its multiplier `p_i` and its velocity `w_i = (W p + b)_i`.
 ///

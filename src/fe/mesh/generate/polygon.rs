@@ -3,6 +3,7 @@
 //!
 //! Ruppert, J. Algorithms 18 (1995) 548–585, as implemented by the crate `spade`.
 
+use crate::math::rounding;
 use spade::{
     AngleLimit, ConstrainedDelaunayTriangulation, InsertionError, Point2, RefinementParameters,
     Triangulation,
@@ -139,7 +140,9 @@ fn sides(rings: &[Vec<[f64; 2]>]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> 
 
 /// Number of parts of a side; a part may exceed the target edge by rounding.
 fn n_parts(a: [f64; 2], b: [f64; 2], edge: f64) -> f64 {
-    (distance(a, b) / edge * (1.0 - 1e-9)).ceil().max(1.0)
+    (distance(a, b) / edge * (1.0 - rounding::SHARE))
+        .ceil()
+        .max(1.0)
 }
 
 /// Points of the rings with each side divided evenly, and the segments between them.

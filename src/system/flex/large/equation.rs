@@ -5,6 +5,7 @@ use crate::fe::material::Rayleigh;
 use crate::large::{Equation, Inertia, largest_row_sum};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
+use crate::math::rounding;
 use crate::system::step::Step;
 
 /// A residual that grows by more in one iteration has left the neighbourhood in which the factor means something.
@@ -56,7 +57,7 @@ pub(super) fn equation_of<'a>(
 }
 
 /// Share of the largest row of a matrix that is added to its diagonal where rounding has left it indefinite (-).
-const SHIFT: f64 = 1e-14;
+const SHIFT: f64 = rounding::FEW;
 
 /// Factorizes the tangent at the deformation last evaluated, or its definite part where it is not definite.
 ///

@@ -3,7 +3,9 @@
 use super::LargeStrain;
 use super::equation::total_decay;
 use crate::body::{FlexState, Frame, FrameMotion};
-use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rotation, set_node_vec, sum_over};
+use crate::math::{
+    Vec2, add_node_vec, cross, node_vec, perp, rotation, rounding, set_node_vec, sum_over,
+};
 use crate::system::flex::answer::Answer;
 use crate::system::flex::shape::Shape;
 use crate::system::flex::shared::Shared;
@@ -14,7 +16,7 @@ use crate::system::rigid_way::RigidWay;
 const MOST_TURN: f64 = 1e-4;
 
 /// Rounding of a sum of products (-).
-const ROUNDING: f64 = 1e-12;
+const ROUNDING: f64 = rounding::SUM;
 
 impl LargeStrain {
     /// Writes the velocities and the centre that go with the positions.

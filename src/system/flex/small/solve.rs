@@ -19,15 +19,15 @@
 use super::SmallStrain;
 use crate::body::Frame;
 use crate::integrator::Weights;
-use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, set_node_vec};
+use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rounding, set_node_vec};
 use crate::system::flex::following::Following;
 use crate::system::flex::shared::Shared;
 
 /// Turn in a step (rad) up to which the inertial terms of the displacements are no matter for the iterations.
-pub(super) const AT_REST: f64 = 1e-6;
+pub(super) const AT_REST: f64 = rounding::SINGLE;
 
 /// Turn (rad, of the part that matters) since the last whole solve up to which its frame still counts as the same.
-const SAME_ANGLE: f64 = 1e-11;
+const SAME_ANGLE: f64 = rounding::SOLVED;
 
 impl SmallStrain {
     /// Solves for the end of the step under the contact forces given, in the frame and with the inertial terms of the
