@@ -41,4 +41,4 @@ pub(crate) use record::{SetRecord, SetRecordError};
 pub use set::FlexBodySet;
 pub use state::{AppliedLoad, BodyEnergy, FlexState, FrameMotion, KnownLoads, Linearized};
 pub use surface::SurfacePick;
-pub(crate) use surface::contact_offset;
+pub(crate) use surface::{OFFSET, contact_offset};

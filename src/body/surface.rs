@@ -9,7 +9,7 @@ use crate::rapier::prelude::ColliderHandle;
 
 /// Offset between a flexible surface and what it touches, relative to its shortest edge at rest: far above rounding, far below what
 /// the mesh resolves. Between two hundredths and a thousandth of an edge no result depends on it but by its own size.
-const OFFSET: f64 = 1e-2;
+pub(crate) const OFFSET: f64 = 1e-2;
 
 /// Spacings of rapier's numbers, at the coordinates of the body, that an offset is never below: rapier holds poses in it.
 const SPACINGS: f64 = 8.0;

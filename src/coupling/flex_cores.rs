@@ -5,7 +5,7 @@
 //! how much a surface can be drawn inwards is told by the body at rest, whatever has crushed it since; which way each vertex goes, by the
 //! surface where the step begins.
 
-use super::inset::{inwards, most_inwards};
+use super::inset::{KEPT, inwards, most_inwards};
 use crate::body::contact_offset;
 use crate::kkt::Island;
 use crate::math::{Vec2, node_vec, perp, rotation};
@@ -17,11 +17,11 @@ use std::collections::HashMap;
 const FOLDED: f64 = 1.5;
 
 /// Share of an edge that drawing inwards may take where it has been crushed: twice as much as at rest.
-const LEFT: f64 = 0.5;
+const LEFT: f64 = 2.0 * KEPT;
 
-/// How often the rounding is doubled for a pair that overlaps by more than both have: up to a sixth of a cell. What is deeper is left to
-/// signed rows.
-const DOUBLINGS: u8 = 3;
+/// How often a rounding is doubled for a pair that overlaps by more than both have: up to a third of the width of rigid bodies that are as
+/// wide as each other, a sixth of a cell. What is deeper is left to signed rows.
+pub(super) const DOUBLINGS: u8 = 3;
 
 /// How a surface is drawn.
 #[derive(Clone, Copy, Debug, Default)]

@@ -51,7 +51,7 @@ fn bend(ring: &[Vec2], vertex: usize) -> f64 {
 const TIP: f64 = std::f64::consts::SQRT_2 - 1.0;
 
 /// Share of an edge that drawing inwards may take: a quarter leaves a core that is no sliver, whatever the polygon.
-const KEPT: f64 = 0.25;
+pub(super) const KEPT: f64 = 0.25;
 
 #[cfg(test)]
 mod tests {

@@ -7,6 +7,7 @@ use super::roster::Roster;
 use super::sets::RapierSets;
 use super::walk::ClaimedPair;
 use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
+use crate::constraint::geometry;
 use crate::math::{Vec2, from_rapier, node_vec};
 use crate::rapier::parry::query;
 use crate::rapier::prelude::*;
@@ -29,9 +30,8 @@ impl<'a> From<&'a RapierSets<'_>> for ReadSets<'a> {
     }
 }
 
-/// Depth over the length of a boundary segment from which bodies count as overlapping: bodies that were laid flush overlap by the
-/// rounding of rapier's numbers, and boxes at rest in rapier by a few thousandths of their size.
-pub(crate) const DEEP: f64 = 1e-2;
+/// Depth over the length of a boundary segment from which bodies count as overlapping: what has been put into each other, not what rests.
+pub(crate) const DEEP: f64 = geometry::DEEP;
 
 /// The pairs of this step in which a flexible body that has not been stepped before, or a rigid one that the user has inserted, moved or altered,
 /// overlaps what it meets.

@@ -7,7 +7,7 @@
 use super::candidates::{Names, part_bounds, world_pose};
 use super::references::References;
 use crate::constraint::contact::{Candidate, ContactKey, ContactLaw, Pair};
-use crate::constraint::geometry::{FaceOrVertex, PairContacts, Pose2, polygon_pair};
+use crate::constraint::geometry::{FaceOrVertex, PairContacts, Pose2, RESTING, polygon_pair};
 use crate::kkt::Island;
 use crate::math::Vec2;
 use crate::system::{Block, RigidBlock};
@@ -17,13 +17,13 @@ use crate::system::{Block, RigidBlock};
 /// bodies jam in more than a tenth of the steps of a random world.
 const FAR: f64 = 0.05;
 
-/// Multiple of the motion before an impact that a corner may make after it: the blow on one end of a free bar moves the
-/// other end twice as fast.
-const THROW: f64 = 3.0;
+/// Multiple of the motion before an impact that a corner may make after it: its own, and that of the other end of a free bar, which a blow
+/// on one end moves twice as fast.
+const THROW: f64 = 1.0 + 2.0;
 
-/// Turn within the step (rad), and slope of one face to the other, up to which faces meet flat: their own two points then say all,
-/// and the corners of equal boxes need not be told apart.
-const FLAT: f64 = 1e-3;
+/// Turn within the step (rad), and slope of one face to the other, up to which faces meet flat: both ends of a face then rest on the
+/// other, their own two points say all, and the corners of equal boxes need not be told apart.
+const FLAT: f64 = RESTING;
 
 /// Stands for the face in the key of a vertex that may meet any.
 const ANY_FACE: u32 = 0x7fff << 15;

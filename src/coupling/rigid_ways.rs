@@ -5,6 +5,7 @@
 
 use super::candidates::{Bounds, Names};
 use super::draft::{Draft, Guest, RigidSurface, swept};
+use super::flex_cores::DOUBLINGS;
 use super::outlines::Piece;
 use super::ways::{REACH_OF_WIDTH, SOFT_SHARE};
 use crate::constraint::contact::ContactLaw;
@@ -15,10 +16,6 @@ use std::collections::HashMap;
 /// Rounding of a rigid body's outline, relative to its width: what rapier leaves of boxes at rest in piles of thirty is one to five
 /// hundredths of their size for each pair.
 const ROUNDING: f64 = 2e-2;
-
-/// How often the rounding is doubled for a pair that overlaps by more than both have: up to a third of the width of bodies that are as wide
-/// as each other. What is deeper is left to signed rows.
-const DOUBLINGS: u8 = 3;
 
 /// A piece of a collider as a member of the path.
 #[derive(Clone, Copy, Debug)]

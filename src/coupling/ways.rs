@@ -4,24 +4,26 @@ use super::candidates::{Bounds, Names};
 use super::draft::Guest;
 pub(super) use super::draft::{Draft, RigidSurface};
 use super::flex_cores::{FlexCore, FlexCores, Inset, offset_of};
+use super::inset::KEPT;
 use super::outlines::Piece;
+use crate::body::OFFSET;
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::kkt::{Island, Way};
 use crate::math::rotation;
 use crate::system::{Block, FlexBlock};
 
-/// Reach of rows beyond the distance at which contact closes, relative to the margin: a tenth of an edge, as the offset is a hundredth.
-/// Between half of it and twice only the number of passes changes.
-const REACH: f64 = 10.0;
-
-/// Reach of rows between rigid bodies, relative to the thinner one's width.
+/// Reach of rows between rigid bodies, relative to the thinner one's width, and of a flexible body's, relative to its shortest edge: bodies are
+/// kept apart from whatever is nearer. Between half of it and twice only the number of passes changes.
 pub(super) const REACH_OF_WIDTH: f64 = 0.1;
+
+/// The same of a flexible body beyond the distance at which contact closes, relative to the margin, which is its offset.
+const REACH: f64 = REACH_OF_WIDTH / OFFSET;
 
 /// Share of a round body's radius that the path may use up.
 pub(super) const SOFT_SHARE: f64 = 0.5;
 
-/// Part of a core's width that it may be drawn inwards for a flexible body.
-const MOST_INWARDS: f64 = 0.125;
+/// Part of a core's width that it may be drawn inwards for a flexible body: both sides together take what an edge may lose.
+const MOST_INWARDS: f64 = 0.5 * KEPT;
 
 /// Keeps a flexible block apart from the pieces of a rigid collider near it; `reach` is how far around its swept box it may get (m).
 ///

@@ -17,9 +17,6 @@ pub const GAINED: f64 = 0.01;
 /// Energy gained in a step, relative to what there was and was brought, that no swing of stored accelerations explains (-).
 pub const DOUBLED: f64 = 1.0;
 
-/// Gap up to which bodies count as touching, relative to the margin (-).
-const TOUCHING: f64 = 1.0;
-
 impl Island {
     /// Whether a step that is not solved has gained energy.
     ///
@@ -86,7 +83,7 @@ impl Island {
         if !self.return_to_first_stop() {
             self.return_to_start(settings, memory, tolerance);
         }
-        let touching = TOUCHING * self.path.least_margin();
+        let touching = self.path.least_margin();
         for contact in &mut self.contacts {
             let is_near = contact.base.is_none_or(|base| base.gap <= touching);
             // Closed for the law of velocities, with no force of position to speak of.

@@ -22,7 +22,7 @@ use crate::system::Response;
 
 /// Share of rigid mobility below which bodies meet by their elasticity, and above which as rigid ones.
 const ELASTIC: f64 = 0.3;
-const RIGID: f64 = 0.7;
+const RIGID: f64 = 1.0 - ELASTIC;
 
 impl Island {
     /// How much of a contact's mobility within the step is that of the masses behind the surface, and how much that of rigid bodies, both

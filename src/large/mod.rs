@@ -41,8 +41,9 @@ pub(crate) use equation::{Equation, Evaluation, Inertia};
 pub use equilibrium::{LoadCase, LoadReport, LoadStepper};
 pub use error::LargeError;
 pub use motion::WorldMotion;
-pub(crate) use newton::largest_row_sum;
+pub(crate) use newton::{MOST_CUTS, SLOWEST, largest_row_sum};
 pub use settings::LargeSettings;
+pub(crate) use stepper::MOST_GROWTH;
 pub use stepper::{LargeStepper, StepWork};
 
 #[cfg(doc)]

@@ -11,10 +11,10 @@ use crate::linalg::cholesky::BlockCholesky;
 
 /// A residual of which an iteration leaves more than this asks for a new factor: within a tenth of the cheapest of the rules tried
 /// in swings of 126 to 8,442 dofs.
-const SLOWEST: f64 = 0.25;
+pub(crate) const SLOWEST: f64 = 0.25;
 
 /// An increment is cut to 1/64 before the attempt is given up: a direction that does not do for that is wrong.
-const MOST_CUTS: usize = 6;
+pub(crate) const MOST_CUTS: usize = 6;
 
 /// New factors in one attempt, after which its beginning was too far away.
 const MOST_FACTORS: usize = 12;

@@ -333,7 +333,7 @@ impl LargeStepper {
 
 /// A residual that grows fourfold in one iteration has left the neighbourhood in which the factor means something; the growth by the
 /// first increment of a body that turns, by the stretch `θ²/2` of straight ways, stays below.
-const MOST_GROWTH: f64 = 4.0;
+pub(crate) const MOST_GROWTH: f64 = 4.0;
 
 pub(super) fn require_finite(
     name: &'static str,

@@ -13,14 +13,11 @@ use super::islands::{Part, Progress, Solver, Task};
 use super::names::Names;
 use super::quality::Quality;
 use super::settings::FlexParameters;
-use super::solved::Entry;
+use super::solved::{Entry, FURTHER};
 use crate::body::FlexBodySet;
 use crate::coupling::Span;
 use crate::kkt::{DOUBLED, GAINED};
 use crate::system::Step;
-
-/// How often a part of the smallest length that has found no end is halved all the same: it would be left with another motion than its own.
-const FURTHER: usize = 3;
 
 impl Solver {
     /// Solves the step of one island, in parts if it must be.

@@ -87,8 +87,12 @@ impl SolvedPart<'_> {
     }
 }
 
-/// Parts of a step that are halved though they have the smallest length: what fails in more of them is jammed, and would fail in all.
-const MOST_FURTHER: usize = 8;
+/// How often a part of the smallest length that has found no end is halved all the same: it would be left with another motion than its own.
+pub(super) const FURTHER: usize = 3;
+
+/// Parts of a step that are halved though they have the smallest length: as many as one part makes that is halved so at every level. What fails
+/// in more of them is jammed, and would fail in all.
+const MOST_FURTHER: usize = 1 << FURTHER;
 
 /// What has been entered of one island, whose step may be taken in parts.
 pub(super) struct Entry {

@@ -10,7 +10,9 @@ use super::rigid_pair::{crossing, point_on_face, vertex_on_part};
 use super::surface::{
     Cone, SurfacePoint, closest_surface_point, faced_at_start, faces, facing_point,
 };
-use crate::constraint::geometry::{ConvexPart, Feature, Pose2, faced_separation, separation};
+use crate::constraint::geometry::{
+    ConvexPart, Feature, Pose2, RESTING, faced_separation, separation,
+};
 use crate::math::{Vec2, perp, rotation, rounding};
 use crate::system::{Block, FlexBlock, Grip, Point, RigidBlock};
 use std::sync::Arc;
@@ -379,7 +381,7 @@ fn buried_face(
     node: Vec2,
 ) -> Option<Feature> {
     let before = separation(&placed.part, node, None, None);
-    if before.distance > -BURIED * placed.part.width() {
+    if before.distance > -RESTING * placed.part.width() {
         return None;
     }
     let centre = motion.start().arm(body.start_centre()?);
@@ -391,9 +393,6 @@ fn buried_face(
     );
     Some(nearest.feature).filter(|feature| matches!(feature, Feature::Face(_)))
 }
-
-/// Depth, relative to a part's least thickness, from which a node counts as put into it.
-const BURIED: f64 = 1e-3;
 
 fn surface_of(
     scene: &Scene<'_>,

@@ -3,6 +3,7 @@
 //! The nearest face is the wrong one for what moves far within a step. The path of the vertex, straight as seen from the part,
 //! enters a convex polygon through the last of the face lines that it crosses inwards.
 
+use super::depth::{DEEP, RESTING};
 use super::separation::{TIE, from_face};
 use super::{ConvexPart, Feature, PairContact, Pose2, Separation, polygon_pair, separation};
 use crate::math::{Vec2, rounding};
@@ -33,7 +34,7 @@ pub fn entered_separation(part: &ConvexPart, path: &[Vec2], towards: Vec2) -> Se
         }
         if enters {
             deepest = deepest.max(depth(part, places[1]));
-        } else if is_in && deepest < THROUGH * part.width() {
+        } else if is_in && deepest < DEEP * part.width() {
             // It only slid off an edge.
             behind = None;
         } else if !is_in && behind.is_none() {
@@ -111,7 +112,7 @@ fn passed_face(part: &ConvexPart, start: Vec2, point: Vec2) -> Option<usize> {
         }
     }
     let middle = start + 0.5 * (enter + leave) * (point - start);
-    let is_deep = enter < leave && depth(part, middle) > THROUGH * part.width();
+    let is_deep = enter < leave && depth(part, middle) > DEEP * part.width();
     entry.filter(|_| is_deep)
 }
 
@@ -122,16 +123,13 @@ fn depth(part: &ConvexPart, point: Vec2) -> f64 {
     })
 }
 
-/// Depth, relative to the part's least thickness, from which a vertex on its way through a corner is met there.
-const THROUGH: f64 = 0.01;
-
 /// The face by which a point that began the step in a part, or on its surface, leaves it: the nearest if it is hardly inside,
 /// else, and among equally near ones, the one whose normal is nearest to `towards`; `None` for the zero vector.
 fn way_out(part: &ConvexPart, start: Vec2, towards: Vec2) -> Option<usize> {
     let faces = 0..part.normals().len();
     let depths = faces.clone().map(|face| part.face_distance(face, start));
     let nearest = depths.fold(f64::NEG_INFINITY, f64::max);
-    let slop = ON_SURFACE * part.width();
+    let slop = RESTING * part.width();
     let is_deep = part.width() == 0.0 || nearest < -slop;
     let mut best: Option<(f64, usize)> = None;
     for face in faces.filter(|&face| is_deep || part.face_distance(face, start) >= nearest - slop) {
@@ -142,9 +140,6 @@ fn way_out(part: &ConvexPart, start: Vec2, towards: Vec2) -> Option<usize> {
     }
     best.map(|(_, face)| face)
 }
-
-/// Depth, relative to a part's least thickness, to which a point rests on its surface.
-const ON_SURFACE: f64 = 1e-3;
 
 /// The deepest contact of two polygons that overlap although neither has a vertex in the other; `None` for all others.
 pub fn crossing_overlap(

@@ -1,17 +1,10 @@
 //! On which side of a part a point belongs, from where it was at the beginning of the step: the entry face is the last
 //! one that the path `start + t (point - start)` crosses inward.
 
+use super::depth::{RESTING, RESTING_THIN};
 use super::separation::{AT_VERTEX, TIE, from_face, from_vertex};
 use super::{ConvexPart, Feature, Separation};
 use crate::math::{Vec2, cross};
-
-/// How deep a point may lie at the beginning of a step and still count as outside, relative to the least thickness of
-/// a polygon. It covers the penetration that a resting contact keeps through rounding; larger values let points that
-/// come in close to a corner be taken for points that came through the other face.
-pub(super) const ENTRY_SLOP: f64 = 1e-3;
-
-/// The same for two-vertex cores, relative to the part's size, as they have no thickness.
-const ENTRY_SLOP_THIN: f64 = 1e-4;
 
 /// Start, direction and length of a two-vertex core.
 pub(super) struct Axis {
@@ -65,7 +58,7 @@ pub(super) fn thin_entry_face(
         return reference_face.filter(|_| undecided);
     };
     let [start_along, start_height] = axis.coordinates(start);
-    let slop = ENTRY_SLOP_THIN * part.size();
+    let slop = RESTING_THIN * part.size();
     if start_height.abs() <= slop && axis.spans(start_along, slop) && reference_face.is_some() {
         // Resting on the axis: its side is what it was, not what rounding makes of the start.
         return reference_face.filter(|_| is_opposite);
@@ -89,7 +82,7 @@ pub(super) fn inside(
 ) -> Separation {
     let n_faces = part.normals().len();
     let tie = TIE * part.size();
-    let slop = ENTRY_SLOP * part.width();
+    let slop = RESTING * part.width();
     let start_best = start.map_or(f64::INFINITY, |start| {
         let distances = (0..n_faces).map(|face| part.face_distance(face, start));
         distances.fold(f64::NEG_INFINITY, f64::max)
@@ -140,7 +133,7 @@ pub(super) fn crossed_face(
     reference: Option<Feature>,
 ) -> Option<usize> {
     let n_faces = part.normals().len();
-    let slop = ENTRY_SLOP * part.width();
+    let slop = RESTING * part.width();
     let (mut enter, mut leave) = (0.0, 1.0);
     let mut entry = None;
     let (mut start_best, mut start_face) = (f64::NEG_INFINITY, 0);

@@ -1,20 +1,12 @@
 //! The separating axis of two convex cores, `s = max_i min_j n_i·(w_j - v_i)` over the faces `i` of either core and
 //! the vertices `j` of the other, and their nearest vertices.
 
+use super::depth::{DEEP, RESTING_THIN};
 use super::{ConvexPart, PairReference, Pose2};
 use crate::math::{Vec2, rounding};
 
 /// Relative to the smaller part's size: lengths that differ by less are equal.
 const TIE: f64 = rounding::SHARE;
-
-/// How much better, relative to the smaller part's size, another face must be to replace the reference face. Larger
-/// values make a kept face report the gap too small by this much.
-const PREFERENCE: f64 = 1e-4;
-
-/// Overlap, relative to the smaller part's size, beyond which the normal may no longer turn by more than a right
-/// angle. Smaller overlaps are resting contacts, which may slide around a sharp tip. Half or twice of this value changes
-/// no result of the tests; without a limit, a box pressed through a thin part comes out on its other side.
-const DEEP: f64 = 1e-2;
 
 /// Two parts in place; index 0 is `a`, 1 is `b`.
 pub(super) struct Pair<'p> {
@@ -132,7 +124,7 @@ impl<'p> Pair<'p> {
         } else {
             best
         };
-        let is_kept = kept.separation >= best.separation - PREFERENCE * self.size;
+        let is_kept = kept.separation >= best.separation - RESTING_THIN * self.size;
         Some(if is_kept { kept } else { best })
     }
 

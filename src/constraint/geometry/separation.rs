@@ -4,7 +4,8 @@
 //! What the instantaneous distance cannot tell, the point's position at the beginning of the step does: through which
 //! face it came in, on which side of a thin part it belongs, and whether it passed right through.
 
-use super::entry::{Axis, ENTRY_SLOP, crossed_face, inside, thin_entry_face};
+use super::depth::RESTING;
+use super::entry::{Axis, crossed_face, inside, thin_entry_face};
 use super::segment_query::direction_or;
 use super::{ConvexPart, Feature};
 use crate::math::{Vec2, cross, perp, rounding};
@@ -69,7 +70,7 @@ pub fn faced_separation(
     start: Vec2,
     faces: impl Fn(Vec2) -> bool,
 ) -> Option<Separation> {
-    let slop = ENTRY_SLOP * part.width();
+    let slop = RESTING * part.width();
     let n_faces = if part.width() > 0.0 && !part.is_half_space() {
         part.normals().len()
     } else {

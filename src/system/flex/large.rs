@@ -20,14 +20,14 @@ mod motion;
 mod path;
 mod reference;
 
-use self::equation::{MOST_GROWTH, equation_of, factorize};
+use self::equation::{equation_of, factorize};
 use self::led::Led;
 use self::motion::resolve;
 use self::reference::{Reference, is_near};
 use super::shared::Shared;
 use crate::body::{FlexState, Frame, Linearized};
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel};
-use crate::large::Evaluation;
+use crate::large::{Evaluation, MOST_CUTS, MOST_GROWTH, SLOWEST};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::CholeskyError;
 use crate::math::{Mat2, cross, node_vec, rotation, set_node_vec};
@@ -35,12 +35,6 @@ use std::sync::Arc;
 
 /// Residual over the largest load or inertia force that ends the iterations (-): momentum is balanced beyond that by a shift of the whole body.
 const TOLERANCE: f64 = 1e-8;
-
-/// A residual of which an iteration leaves more than this asks for a new factor.
-const SLOWEST: f64 = 0.25;
-
-/// An increment is cut to 1/64 before the iterations are given up.
-const MOST_CUTS: usize = 6;
 
 /// What is told of an end that was not found: further than any that may count.
 const NOT_FOUND: f64 = 1e3;

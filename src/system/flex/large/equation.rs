@@ -2,14 +2,11 @@
 
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Form, Linearization};
 use crate::fe::material::Rayleigh;
-use crate::large::{Equation, Inertia, largest_row_sum};
+use crate::large::{Equation, Inertia, MOST_GROWTH, largest_row_sum};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
 use crate::math::rounding;
 use crate::system::step::Step;
-
-/// A residual that grows by more in one iteration has left the neighbourhood in which the factor means something.
-pub(super) const MOST_GROWTH: f64 = 4.0;
 
 /// What a factorization has found.
 pub(super) struct Factored {

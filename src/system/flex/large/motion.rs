@@ -1,7 +1,7 @@
 //! The end of a step of a body of large strain: velocities, accelerations, ways back to its beginning, and the state to commit.
 
-use super::LargeStrain;
 use super::equation::total_decay;
+use super::{LargeStrain, TOLERANCE};
 use crate::body::{FlexState, Frame, FrameMotion};
 use crate::math::{
     Vec2, add_node_vec, cross, node_vec, perp, rotation, rounding, set_node_vec, sum_over,
@@ -11,9 +11,6 @@ use crate::system::flex::shape::Shape;
 use crate::system::flex::shared::Shared;
 use crate::system::pin_rates::RigidRates;
 use crate::system::rigid_way::RigidWay;
-
-/// Turn that the tolerance of the iterations may leave (rad).
-const MOST_TURN: f64 = 1e-4;
 
 /// Rounding of a sum of products (-).
 const ROUNDING: f64 = rounding::SUM;
@@ -261,7 +258,9 @@ impl LargeStrain {
             polar += mass * factor * middle.dot(&arm);
         }
         // A body that turns by half a circle within the step has no such middles.
-        let rest = Some(couple / polar).filter(|turn| turn.abs() <= MOST_TURN);
+        // Half of the digits that the tolerance gives: what is more is no remainder of the iterations.
+        let most = TOLERANCE.sqrt();
+        let rest = Some(couple / polar).filter(|turn| turn.abs() <= most);
         let turn = rest.unwrap_or(0.0);
         for node in 0..shared.shape.arms.node_mass.len() {
             let arm = node_vec(&shared.now.position, node) - centre;
