@@ -1,6 +1,7 @@
 //! Building: a description is checked, assembled and given its initial motion.
 
-use super::builder::{ContactInertia, FlexBodyBuilder};
+use super::builder::FlexBodyBuilder;
+use super::contact_inertia::ContactInertia;
 use super::error::BuildError;
 use super::flex_body::FlexBody;
 use super::frame::{Frame, frame_of};

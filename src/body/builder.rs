@@ -1,5 +1,6 @@
 //! The description of a flexible body.
 
+use super::contact_inertia::ContactInertia;
 use super::contact_settings::ContactSettings;
 use super::materials::{Materials, Region};
 use super::pin::Pin;
@@ -14,20 +15,6 @@ use crate::rapier::prelude::{
     ActiveCollisionTypes, ActiveEvents, ActiveHooks, CoefficientCombineRule, InteractionGroups,
 };
 use std::sync::Arc;
-
-/// Whether the contact boundary of a body carries inertia.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum ContactInertia {
-    /// The mass of the boundary moves to the nodes inside (Khenous, Laborde, Renard 2008), so that an impact conserves
-    /// energy. A body without inside nodes, or with a consistent mass, keeps its inertia.
-    #[default]
-    Redistributed,
-    /// Only these nodes give their mass away, which may be a consistent one: for bodies one element thick, and for impacts on a
-    /// known part of the boundary.
-    RedistributedAt(Vec<usize>),
-    /// Every node keeps its mass; contacts get impulses at velocity level.
-    Kept,
-}
 
 /// Builds a [`FlexBody`](super::FlexBody).
 ///

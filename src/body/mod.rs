@@ -3,6 +3,7 @@
 mod attachment;
 mod build;
 mod builder;
+mod contact_inertia;
 mod contact_settings;
 mod critical;
 mod error;
@@ -27,7 +28,8 @@ pub use attachment::{
     Attachment, AttachmentBuilder, AttachmentError, AttachmentHandle, AttachmentKind,
     AttachmentTarget,
 };
-pub use builder::{ContactInertia, FlexBodyBuilder};
+pub use builder::FlexBodyBuilder;
+pub use contact_inertia::ContactInertia;
 pub use contact_settings::ContactSettings;
 pub use error::{BuildError, FlexBodyError};
 pub use flex_body::FlexBody;

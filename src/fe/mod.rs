@@ -25,6 +25,7 @@ mod massless;
 pub mod material;
 pub mod mesh;
 pub mod model;
+mod model_description;
 #[cfg(feature = "serde-serialize")]
 pub(crate) mod model_record;
 pub mod modes;

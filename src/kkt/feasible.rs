@@ -3,6 +3,7 @@
 mod around;
 mod kept;
 mod meetings;
+mod members;
 mod own;
 mod retreat;
 mod rows;
@@ -10,78 +11,15 @@ mod straight;
 
 pub(super) use self::kept::KeptBase;
 use self::meetings::Meeting;
+pub(crate) use self::members::Way;
+use self::members::{BlockBase, Carrier, SurfacePoint};
 use self::own::OwnWay;
 use self::retreat::LastWay;
 use self::straight::straight_part;
-use crate::constraint::contact::{ContactLaw, ContactMemory, Owner};
-use crate::math::{Vec2, rotation};
+use crate::constraint::contact::ContactMemory;
+use crate::math::Vec2;
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};
-use crate::system::{Block, FlexBlock, Point, RigidMotion};
-
-/// Two members that are kept apart.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Way {
-    /// Both members.
-    pub members: [usize; 2],
-    /// Their names in contact keys.
-    pub owners: [Owner; 2],
-    /// Friction and restitution.
-    pub law: ContactLaw,
-    /// Distance of cores at which contact closes (m).
-    pub closing: f64,
-    /// The part of it that the path may use up (m).
-    pub margin: f64,
-    /// Reach of the rows beyond that distance (m).
-    pub reach: f64,
-}
-
-/// A member: its block, and whether that is flexible.
-#[derive(Clone, Copy, Debug)]
-struct Carrier {
-    block: usize,
-    is_flex: bool,
-}
-
-/// A point of a surface.
-#[derive(Clone, Copy, Debug)]
-struct SurfacePoint {
-    /// Its place on its block.
-    point: Point,
-    /// Its name in contact keys.
-    name: u32,
-    /// From a core's vertex to the corner or node that it stands for, in body axes (m).
-    corner: Vec2,
-    /// Radius by which the core is rounded there (m).
-    round: f64,
-}
-
-impl SurfacePoint {
-    /// Where it is, with the node that it stands for there (m) and the axes of its body turned by `angle` (rad).
-    fn beside(&self, node: Vec2, angle: f64) -> Vec2 {
-        if self.round == 0.0 {
-            return node;
-        }
-        node - rotation(angle) * self.corner
-    }
-}
-
-/// Where a block is at the base; of a flexible one its frame, and where its nodes begin among those of all.
-#[derive(Clone, Copy, Debug, Default)]
-struct BlockBase {
-    centre: Vec2,
-    angle: f64,
-    nodes: Option<usize>,
-}
-
-impl BlockBase {
-    fn motion(&self) -> RigidMotion {
-        RigidMotion {
-            centre: self.centre,
-            angle: self.angle,
-            ..RigidMotion::default()
-        }
-    }
-}
+use crate::system::{Block, FlexBlock, Point};
 
 /// Surfaces that are led along a feasible path, with their buffers.
 #[derive(Debug, Default)]

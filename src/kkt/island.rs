@@ -1,194 +1,23 @@
 //! An island: blocks that touch, with the candidates between them, solved as one system.
 
-use super::constraint_function::{ContactMethod, Newton};
+pub use super::active_contact::ActiveContact;
+pub(super) use super::active_contact::AtBase;
+use super::constraint_function::Newton;
 use super::delassus::RowDirection;
 use super::feasible::FeasiblePath;
 use super::follow::Stage;
-use super::impact::ImpactTreatment;
 use super::joint_rows::ActiveJoint;
+pub use super::settings::{KktError, SolveSettings};
 use super::sparse::Sparse;
 use super::summary::IslandSummary;
 use crate::constraint::contact::{
-    Candidate, ContactKey, ContactMemory, Kinematics, PlacedPart, Remembered, Scene,
+    Candidate, ContactKey, ContactMemory, Kinematics, PlacedPart, Scene,
 };
 use crate::constraint::joint::{JointGrip, JointRow};
-use crate::linalg::complementarity::{ComplementarityError, Method, RowKind, Solver, Status};
-use crate::linalg::cone::ConeError;
+use crate::linalg::complementarity::{RowKind, Solver, Status};
 use crate::math::{Vec2, cross};
-use crate::path::NearPair;
 use crate::system::{Block, FlexBlock, Grip, Point};
 use std::collections::HashMap;
-use thiserror::Error;
-
-/// Why an island cannot be solved.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum KktError {
-    /// A rigid body is too light for the springs that an explicit body meets it with.
-    #[error(
-        "rigid block {block} is so light that on the surface of an explicit flexible body it vibrates faster than the step of {dt} s resolves: shorten the step below {critical} s, make the body heavier, keep the inertia of the surface (`ContactInertia::Kept`), or choose beta0 > 0"
-    )]
-    LightPartner {
-        /// Its index among the blocks of the island; whoever gathered the island knows its handle.
-        block: usize,
-        /// The step asked for (s).
-        dt: f64,
-        /// The longest stable step (s).
-        critical: f64,
-    },
-    /// The contact problem holds numbers that are not finite.
-    #[error(transparent)]
-    Contact(#[from] ComplementarityError),
-    /// The sparse contact problem holds numbers that are not finite.
-    #[error(transparent)]
-    Cone(#[from] ConeError),
-}
-
-/// Settings of a solve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolveSettings {
-    /// Step length (s), of the part that is solved.
-    pub dt: f64,
-    /// Length of the whole step (s).
-    pub whole: f64,
-    /// What a multiplier moves, over `A⁻¹` (s²): the Beta-2 weight `b0`, or `dt²` for the forward increment.
-    pub b0: f64,
-    /// Beta-2 weight `b1` (s).
-    pub b1: f64,
-    /// Whether multipliers act wholly within the step, so that none goes on.
-    pub is_within: bool,
-    /// Whether `β0 = 0`, so that multipliers act at the forward increment.
-    pub is_explicit: bool,
-    /// Whether steps that are too long for a partner are taken all the same.
-    pub insists: bool,
-    /// What is done on impact.
-    pub impact: ImpactTreatment,
-    /// How the laws of contact are enforced.
-    pub contact: ContactMethod,
-    /// The solver that contact problems are given to first.
-    pub solver: Method,
-    /// Approach velocity below which restitution is ignored (m/s).
-    pub restitution_threshold: f64,
-    /// Most Newton iterations.
-    pub max_newton: usize,
-    /// Whether what is not solved is cut into halves, so that where it ends does not matter.
-    pub may_be_cut: bool,
-    /// What counts as one unit of length in the scene (m).
-    pub length_unit: f64,
-}
-
-/// A contact of the working set: its kinematics, multipliers and state.
-#[derive(Clone, Copy, Debug)]
-pub struct ActiveContact {
-    /// Index of the candidate.
-    pub candidate: usize,
-    /// The row that the forces act along, with the gap beyond the allowance at the last iterate.
-    pub kinematics: Kinematics,
-    /// Geometry at the last iterate.
-    pub(super) measured: Kinematics,
-    /// The row that the multipliers acted along when the last iterate was found.
-    pub(super) applied: Kinematics,
-    /// Multipliers of the position stage, normal and tangential (N).
-    pub multiplier: [f64; 2],
-    /// Impulse of the velocity stage, normal and tangential (N s).
-    pub impulse: [f64; 2],
-    /// What the lasting force counts beyond its time (N s).
-    pub(super) late: [f64; 2],
-    /// Force of the acceleration stage (N).
-    pub(super) settled: [f64; 2],
-    /// Relative velocity along the normal and the tangent after the velocity stage (m/s).
-    pub(super) parting: [f64; 2],
-    /// Status of the normal and of the friction row.
-    pub status: [Status; 2],
-    /// Whether it is one of rigid bodies only.
-    pub is_hard: bool,
-    /// Whether some grip carries no inertia.
-    pub is_massless: bool,
-    /// Whether its multiplier alone decides its velocity: no impulse of the velocity stage follows.
-    pub is_settled: bool,
-    /// Gap and relative motion `Σ w u` at the last measurement, from which gaps are extrapolated where the
-    /// geometry has no answer or keeps changing.
-    pub(super) known: Option<(f64, Vec2)>,
-    /// How far apart the bodies are where geometry has no gap but a force acts, 0 elsewhere (m).
-    pub(super) apart: f64,
-    /// Whether geometry has no gap, so that no force may act.
-    pub(super) is_lost: bool,
-    /// How often it has been let go for that within the step.
-    pub(super) losses: u8,
-    /// Tangential motion since the beginning of the step (m).
-    pub slip: f64,
-    /// The part of it that was gone on rows that this one has taken the force over from, less what its own row tells of that (m).
-    pub(super) slip_before: f64,
-    /// Share of the contact that is shorter than the step, 0 to 1 (-): the springs of the surface do not give way within it.
-    pub unresolved: f64,
-    /// Share of the contact in which the bodies meet as rigid ones within the step, 0 to 1 (-).
-    pub rigid: f64,
-    /// How far the row gives way to its own force in the problem solved, along its normal and its tangent (m/N).
-    pub(super) yielding: [f64; 2],
-    /// How far a force of its own moves it within the step, along its normal and its tangent, where that is known (m/N).
-    pub(super) mobility: Option<[f64; 2]>,
-    /// Approach velocity at the beginning of the step, `n·v` (m/s).
-    pub approach: f64,
-    /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and
-    /// by. The solver's gap counts from here.
-    pub allowance: f64,
-    /// What the contact was in the last step.
-    pub remembered: Remembered,
-    /// Where the contact was at the base of the path; `None` for signed rows, which know no path.
-    pub(super) base: Option<AtBase>,
-}
-
-/// A contact at the base of the feasible path.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct AtBase {
-    /// Distance beyond the one at which the contact closes (m).
-    pub gap: f64,
-    /// Motion of the material points against each other since the beginning of the step (m); of vertices that are held together, from
-    /// where they are.
-    pub moved: Vec2,
-    /// The near pair.
-    pub near: NearPair,
-    /// Whether it stands for two vertices that are held together.
-    pub is_meeting: bool,
-}
-
-impl ActiveContact {
-    /// Force over the step: the multiplier, or for contacts of rigid bodies the impulse over the step length (N).
-    pub fn force(&self, dt: f64) -> [f64; 2] {
-        if self.is_hard {
-            self.impulse.map(|impulse| impulse / dt)
-        } else {
-            let sum = |axis| self.multiplier[axis] + (self.impulse[axis] + self.late[axis]) / dt;
-            [sum(0), sum(1)]
-        }
-    }
-
-    /// The force that is left in the stored accelerations (N).
-    pub fn lasting(&self) -> [f64; 2] {
-        [0, 1].map(|axis| self.multiplier[axis] + self.settled[axis])
-    }
-
-    /// How far the velocity stage holds the contact's relative velocity, 0 to 1 (-): masses that meet would ring at every
-    /// mesh's highest frequency; a massless surface only where the step is longer than the impact.
-    pub(super) fn holds_velocity(&self) -> f64 {
-        if self.is_settled {
-            0.0
-        } else if self.is_massless {
-            self.unresolved
-        } else {
-            1.0
-        }
-    }
-
-    /// The gap (m).
-    pub fn gap(&self) -> f64 {
-        self.kinematics.gap + self.allowance
-    }
-
-    /// Whether the contact carries or would carry a force.
-    pub fn is_closed(&self) -> bool {
-        self.multiplier[0] > 0.0
-    }
-}
 
 /// A set of blocks and candidates, and the buffers to solve them.
 #[derive(Debug, Default)]

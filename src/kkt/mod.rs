@@ -6,6 +6,7 @@
 //!    acceleration; contacts through massless surfaces need it only where the impact is shorter than the step;
 //! 3. energy stage: velocities give back the energy that contact would add.
 
+mod active_contact;
 mod calm;
 mod closing;
 mod constraint_function;
@@ -30,6 +31,7 @@ mod momentum;
 mod multipliers;
 mod partner;
 mod position;
+mod settings;
 mod sparse;
 mod summary;
 mod together;

@@ -5,3 +5,4 @@ pub mod cholesky;
 pub mod complementarity;
 pub mod cone;
 pub(crate) mod lu;
+mod pattern;

@@ -1,10 +1,11 @@
 //! The books of a step: what solved islands are entered into, before anything is committed.
 
 use super::clock::Clock;
+use super::entries::{ContactReport, JointReport};
 use super::names::Names;
 use super::outcome::Outcome;
 use super::quality::{Quality, Unsolved};
-use super::report::{ContactReport, JointReport, StepReport};
+use super::report::StepReport;
 use super::solved::{Entry, SolvedPart};
 use crate::body::FlexBodySet;
 use crate::coupling::{EventBook, Memory};

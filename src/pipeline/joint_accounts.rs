@@ -1,8 +1,9 @@
 //! Accounts of joints and attachments: their reactions, in the report and on the attachments.
 
+use super::entries::JointReport;
 use super::names::Names;
 use super::participant::Held;
-use super::report::{JointReport, StepReport};
+use super::report::StepReport;
 use super::solved::SolvedPart;
 use crate::body::{AttachmentTarget, FlexBodySet};
 use crate::coupling::RapierSets;

@@ -7,6 +7,7 @@ mod clock;
 mod cutback;
 #[cfg(feature = "debug-render")]
 mod debug_render;
+mod entries;
 mod error;
 mod flex_pipeline;
 mod islands;
@@ -28,13 +29,14 @@ mod unsolved;
 
 #[cfg(feature = "debug-render")]
 pub use debug_render::FlexDebugRender;
+pub use entries::{ContactReport, EnergyReport, JointReport, StageTimes};
 pub use error::StepError;
 pub use flex_pipeline::FlexPipeline;
 pub use notes::InsertionNote;
 pub use overbent::Overbent;
 pub use participant::{Held, Participant};
 pub use quality::{Quality, Unsolved};
-pub use report::{ContactReport, EnergyReport, JointReport, StageTimes, StepReport};
+pub use report::StepReport;
 pub use settings::FlexParameters;
 #[cfg(feature = "serde-serialize")]
 pub use snapshot::{Snapshot, SnapshotError};

@@ -1,7 +1,7 @@
 //! A part of an island's step as it was solved, and what is read off it.
 
+use super::entries::ContactReport;
 use super::names::Names;
-use super::report::ContactReport;
 use crate::constraint::contact::{ContactMemory, Remembered};
 use crate::constraint::joint::JointMemory;
 use crate::coupling::{PressedPoint, Seats, Span};

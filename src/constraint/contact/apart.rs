@@ -4,7 +4,7 @@
 //! touch: this tells whether they do.
 
 use super::candidate::{Candidate, Pair};
-use super::kinematics::{PlacedPart, Scene, flex_of, rigid_of};
+use super::scene::{PlacedPart, Scene, flex_of, rigid_of};
 use crate::constraint::geometry::separation;
 use crate::math::Vec2;
 use crate::system::{FlexBlock, Point};

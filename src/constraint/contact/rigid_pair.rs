@@ -2,7 +2,8 @@
 //! by.
 
 use super::candidate::{Candidate, Pair};
-use super::kinematics::{Kinematics, Scene, rigid_of};
+use super::kinematics::Kinematics;
+use super::scene::{Scene, rigid_of};
 use crate::constraint::geometry::{
     Feature, PairContact, Pose2, crossing_overlap, entered_separation, start_separation,
 };

@@ -1,12 +1,115 @@
 //! How far the laws of a contact are from holding, measured at an iterate.
 
 use super::{LET_GO, moved, slip};
-use crate::constraint::contact::{Candidate, Kinematics, Scene};
+use crate::constraint::contact::{Candidate, Kinematics, Remembered, Scene};
 use crate::kkt::island::{ActiveContact, AtBase};
 use crate::linalg::complementarity::Status;
-use crate::math::Vec2;
+use crate::math::{Vec2, rounding};
+use crate::system::Block;
 
 impl ActiveContact {
+    /// Where the step began with an overlap beyond `slop`, leaves the share `kept` of it for now.
+    pub(super) fn allow_overlap(
+        &mut self,
+        kept: f64,
+        slop: f64,
+        candidate: &Candidate,
+        scene: &Scene<'_>,
+    ) {
+        if candidate.began_outside(scene, &self.kinematics, slop) {
+            return;
+        }
+        let (began, is_clear) = match candidate.start_gap(scene) {
+            Some(began) => (began, true),
+            None => self.estimated_start(slop, scene.blocks),
+        };
+        // What mostly came within the step is an impact, where a turn blurs its beginning.
+        let is_overlap = began < -slop && (is_clear || began < 0.5 * self.kinematics.gap);
+        if is_overlap {
+            self.allowance = kept * began;
+            self.kinematics.gap -= self.allowance;
+            self.measured.gap = self.kinematics.gap;
+            self.known = self.known.map(|(gap, at)| (gap - self.allowance, at));
+        }
+    }
+
+    /// The gap that the step began with as its motion tells (m), and whether a turn does not blur it.
+    fn estimated_start(&self, slop: f64, blocks: &[Block]) -> (f64, bool) {
+        let Kinematics { gap, normal, .. } = self.kinematics;
+        // Along the levers, and as the points really moved: a turning body may have come by either.
+        let travelled = self.kinematics.relative(blocks, |block, grip| {
+            block.position(grip.point) - block.start_position(grip.point)
+        });
+        let [linear, travelled] =
+            [moved(&self.kinematics, blocks), travelled].map(|path| normal.dot(&path));
+        let is_clear = (linear - travelled).abs() <= slop;
+        (gap - linear.min(travelled), is_clear)
+    }
+
+    pub(in crate::kkt) fn new(
+        candidate: usize,
+        kinematics: Kinematics,
+        remembered: Remembered,
+        friction: f64,
+        blocks: &[Block],
+    ) -> Self {
+        let approach = kinematics
+            .relative(blocks, |block, grip| block.start_velocity(grip))
+            .dot(&kinematics.normal);
+        let limit = friction * remembered.normal * (1.0 - rounding::SHARE);
+        let tangential = if remembered.normal <= 0.0 {
+            Status::Open
+        } else if remembered.tangent >= limit {
+            Status::SlipPositive
+        } else if remembered.tangent <= -limit {
+            Status::SlipNegative
+        } else {
+            Status::Stick
+        };
+        let normal = if remembered.normal > 0.0 {
+            Status::Stick
+        } else {
+            Status::Open
+        };
+        Self {
+            candidate,
+            is_hard: kinematics.is_rigid(blocks),
+            is_settled: kinematics.is_explicit(blocks),
+            is_massless: kinematics.is_massless(blocks),
+            kinematics,
+            measured: kinematics,
+            applied: kinematics,
+            // Without friction there is no row that would take back what friction was.
+            multiplier: [
+                remembered.normal,
+                if friction > 0.0 {
+                    remembered.tangent
+                } else {
+                    0.0
+                },
+            ],
+            impulse: [0.0; 2],
+            late: [0.0; 2],
+            settled: [0.0; 2],
+            parting: [0.0; 2],
+            status: [normal, tangential],
+            allowance: 0.0,
+            known: Some((kinematics.gap, moved(&kinematics, blocks))),
+            apart: 0.0,
+            losses: 0,
+            is_lost: false,
+            slip: 0.0,
+            slip_before: 0.0,
+            unresolved: 0.0,
+            rigid: 0.0,
+            yielding: [0.0; 2],
+            mobility: None,
+            approach,
+            remembered,
+            base: None,
+        }
+    }
+
     /// Follows gap and slip from the base, from where the points have moved `onward`; returns how far the laws are from holding (m).
     pub(super) fn measure_from(&mut self, base: AtBase, onward: Vec2, friction: f64) -> f64 {
         let Kinematics { normal, .. } = self.kinematics;

@@ -20,14 +20,17 @@
 //! | `follower` | forces that turn with the body, and their derivative |
 //! | `bordered` | the factor and the system above |
 //! | `corrector` | Newton's iteration on it |
+//! | `report` | [`PathPoint`], [`LimitPoint`], [`PathReport`] |
 //! | `stepper` | [`PathStepper`]: increments, limit points, ends |
 
 mod bordered;
 mod case;
 mod corrector;
 mod follower;
+mod report;
 mod stepper;
 
 pub use case::{PathCase, PathEnd, PathSettings};
 pub use follower::FollowerForce;
-pub use stepper::{LimitPoint, PathPoint, PathReport, PathStepper};
+pub use report::{LimitPoint, PathPoint, PathReport};
+pub use stepper::PathStepper;

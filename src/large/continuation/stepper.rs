@@ -3,6 +3,7 @@
 use super::bordered::{Row, dot};
 use super::case::{PathCase, PathEnd, PathSettings};
 use super::corrector::{Corrector, Point};
+use super::report::{LimitPoint, PathPoint, PathReport};
 use crate::fe::finite_strain::FiniteStrainModel;
 use crate::large::LargeError;
 use crate::large::stepper::require_finite;
@@ -20,48 +21,6 @@ const FLAT: f64 = 1e-7;
 
 /// Points that are tried for it.
 const MOST_TRIES: usize = 30;
-
-/// Where the load factor turns round.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LimitPoint {
-    /// The load factor there (-).
-    pub factor: f64,
-    /// Whether it is the largest near by, or the smallest.
-    pub is_maximum: bool,
-    /// Where the nodes are there (m).
-    pub positions: Vec<f64>,
-}
-
-/// The point that an increment has reached.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathPoint {
-    /// The load factor (-).
-    pub factor: f64,
-    /// Its rate along the path (-): negative while the load falls.
-    pub rate: f64,
-    /// Whether the body would stay there under dead loads and fixed places: the symmetric part of the tangent is definite. If that changes without
-    /// a limit point, another path crosses.
-    pub is_stable: bool,
-    /// Limit points passed so far.
-    pub n_limit_points: usize,
-}
-
-/// What a path has taken so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PathReport {
-    /// Increments.
-    pub n_increments: usize,
-    /// Increments that were halved.
-    pub n_cutbacks: usize,
-    /// Iterations, failed attempts included.
-    pub n_iterations: usize,
-    /// Factorizations.
-    pub n_factorizations: usize,
-    /// Points that ended above the tolerance, where residuals are rounding of the positions.
-    pub n_at_rounding: usize,
-    /// The largest residual left by the others, over the largest load or reaction (-).
-    pub residual: f64,
-}
 
 /// Follows the equilibria of one body of large strain along a path of loads and places, past limit points and snaps.
 ///

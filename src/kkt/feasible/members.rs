@@ -1,0 +1,70 @@
+//! Members of the path: ways between them, their points, and where their blocks are at the base.
+
+use crate::constraint::contact::{ContactLaw, Owner};
+use crate::math::{Vec2, rotation};
+use crate::system::{Point, RigidMotion};
+
+/// Two members that are kept apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    /// Both members.
+    pub members: [usize; 2],
+    /// Their names in contact keys.
+    pub owners: [Owner; 2],
+    /// Friction and restitution.
+    pub law: ContactLaw,
+    /// Distance of cores at which contact closes (m).
+    pub closing: f64,
+    /// The part of it that the path may use up (m).
+    pub margin: f64,
+    /// Reach of the rows beyond that distance (m).
+    pub reach: f64,
+}
+
+/// A member: its block, and whether that is flexible.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Carrier {
+    pub block: usize,
+    pub is_flex: bool,
+}
+
+/// A point of a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SurfacePoint {
+    /// Its place on its block.
+    pub point: Point,
+    /// Its name in contact keys.
+    pub name: u32,
+    /// From a core's vertex to the corner or node that it stands for, in body axes (m).
+    pub corner: Vec2,
+    /// Radius by which the core is rounded there (m).
+    pub round: f64,
+}
+
+impl SurfacePoint {
+    /// Where it is, with the node that it stands for there (m) and the axes of its body turned by `angle` (rad).
+    pub fn beside(&self, node: Vec2, angle: f64) -> Vec2 {
+        if self.round == 0.0 {
+            return node;
+        }
+        node - rotation(angle) * self.corner
+    }
+}
+
+/// Where a block is at the base; of a flexible one its frame, and where its nodes begin among those of all.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct BlockBase {
+    pub centre: Vec2,
+    pub angle: f64,
+    pub nodes: Option<usize>,
+}
+
+impl BlockBase {
+    pub fn motion(&self) -> RigidMotion {
+        RigidMotion {
+            centre: self.centre,
+            angle: self.angle,
+            ..RigidMotion::default()
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! What a solve is asked for, and why there may be none.
+
+use super::constraint_function::ContactMethod;
+use super::impact::ImpactTreatment;
+use crate::linalg::complementarity::{ComplementarityError, Method};
+use crate::linalg::cone::ConeError;
+use thiserror::Error;
+
+/// Why an island cannot be solved.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum KktError {
+    /// A rigid body is too light for the springs that an explicit body meets it with.
+    #[error(
+        "rigid block {block} is so light that on the surface of an explicit flexible body it vibrates faster than the step of {dt} s resolves: shorten the step below {critical} s, make the body heavier, keep the inertia of the surface (`ContactInertia::Kept`), or choose beta0 > 0"
+    )]
+    LightPartner {
+        /// Its index among the blocks of the island; whoever gathered the island knows its handle.
+        block: usize,
+        /// The step asked for (s).
+        dt: f64,
+        /// The longest stable step (s).
+        critical: f64,
+    },
+    /// The contact problem holds numbers that are not finite.
+    #[error(transparent)]
+    Contact(#[from] ComplementarityError),
+    /// The sparse contact problem holds numbers that are not finite.
+    #[error(transparent)]
+    Cone(#[from] ConeError),
+}
+
+/// Settings of a solve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolveSettings {
+    /// Step length (s), of the part that is solved.
+    pub dt: f64,
+    /// Length of the whole step (s).
+    pub whole: f64,
+    /// What a multiplier moves, over `A⁻¹` (s²): the Beta-2 weight `b0`, or `dt²` for the forward increment.
+    pub b0: f64,
+    /// Beta-2 weight `b1` (s).
+    pub b1: f64,
+    /// Whether multipliers act wholly within the step, so that none goes on.
+    pub is_within: bool,
+    /// Whether `β0 = 0`, so that multipliers act at the forward increment.
+    pub is_explicit: bool,
+    /// Whether steps that are too long for a partner are taken all the same.
+    pub insists: bool,
+    /// What is done on impact.
+    pub impact: ImpactTreatment,
+    /// How the laws of contact are enforced.
+    pub contact: ContactMethod,
+    /// The solver that contact problems are given to first.
+    pub solver: Method,
+    /// Approach velocity below which restitution is ignored (m/s).
+    pub restitution_threshold: f64,
+    /// Most Newton iterations.
+    pub max_newton: usize,
+    /// Whether what is not solved is cut into halves, so that where it ends does not matter.
+    pub may_be_cut: bool,
+    /// What counts as one unit of length in the scene (m).
+    pub length_unit: f64,
+}
