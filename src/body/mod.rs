@@ -1,28 +1,27 @@
 //! Flexible bodies: how they are described, what they remember, and the set that holds them.
 
+mod access;
+mod analysis;
 mod attachment;
 mod build;
 mod builder;
 mod contact_inertia;
 mod contact_settings;
-mod critical;
 mod error;
 mod flex_body;
 mod frame;
 mod handle;
-mod kept_motion;
 mod materials;
 mod pin;
 #[cfg(feature = "serde-serialize")]
 mod record;
 mod set;
-mod small_strain;
 mod state;
 mod steering;
 mod stillness;
-mod stress;
 mod surface;
 
+pub(crate) use access::KeptMotion;
 pub(crate) use attachment::{Anchor, Choice, Plan, Shift};
 pub use attachment::{
     Attachment, AttachmentBuilder, AttachmentError, AttachmentHandle, AttachmentKind,
@@ -35,7 +34,6 @@ pub use error::{BuildError, FlexBodyError};
 pub use flex_body::FlexBody;
 pub use frame::{Arms, Frame, frame_of};
 pub use handle::FlexBodyHandle;
-pub(crate) use kept_motion::KeptMotion;
 pub use materials::Region;
 pub use pin::Pin;
 #[cfg(feature = "serde-serialize")]

@@ -1,11 +1,16 @@
-//! What is asked of the surface of a body: which part of which body a query has hit, what lies inside, what presses, how far it stays from others.
+//! What is asked of the surface of a body: which part of which body a query has hit, what lies inside, what presses, how far it stays from others, and
+//! how it meets them.
 
+use super::contact_settings::ContactSettings;
+use super::error::{FlexBodyError, check_held};
 use super::flex_body::FlexBody;
 use super::handle::FlexBodyHandle;
 use super::set::FlexBodySet;
 use crate::fe::model::Model;
 use crate::math::{REAL_EPSILON, Vec2, node_vec};
-use crate::rapier::prelude::ColliderHandle;
+use crate::rapier::prelude::{
+    ActiveCollisionTypes, ActiveEvents, ActiveHooks, ColliderHandle, InteractionGroups,
+};
 
 /// Offset between a flexible surface and what it touches, relative to its shortest edge at rest: far above rounding, far below what
 /// the mesh resolves. Between two hundredths and a thousandth of an edge no result depends on it but by its own size.
@@ -143,6 +148,77 @@ impl FlexBody {
         let positions = self.positions();
         let extent = positions.iter().fold(0.0f64, |most, x| most.max(x.abs()));
         contact_offset(self.model(), extent)
+    }
+
+    /// Sets how the surface meets others, from the next step on.
+    ///
+    /// Rapier's collider is given what differs from the settings before; what the user has set on the collider itself stays.
+    ///
+    /// # Errors
+    /// If a coefficient or the skin is negative, or no finite number that rapier's precision holds; nothing is then changed.
+    pub fn set_contact_settings(&mut self, settings: ContactSettings) -> Result<(), FlexBodyError> {
+        let numbers = [
+            settings.friction,
+            settings.restitution,
+            settings.contact_skin,
+        ];
+        check_held("the contact settings", &numbers)?;
+        if let Some(&value) = numbers.iter().find(|&&value| value < 0.0) {
+            return Err(FlexBodyError::Negative(value));
+        }
+        if settings.contact_force_event_threshold.is_nan() {
+            return Err(FlexBodyError::NotFinite("the contact settings"));
+        }
+        self.change_contact(|contact| *contact = settings);
+        Ok(())
+    }
+
+    /// Sets which colliders the body meets, from the next step on.
+    pub fn set_collision_groups(&mut self, groups: InteractionGroups) {
+        self.change_contact(|contact| contact.collision_groups = groups);
+    }
+
+    /// Sets which of the colliders it meets the body pushes, from the next step on.
+    pub fn set_solver_groups(&mut self, groups: InteractionGroups) {
+        self.change_contact(|contact| contact.solver_groups = groups);
+    }
+
+    /// Sets which types of rigid bodies the body meets, from the next step on.
+    pub fn set_active_collision_types(&mut self, types: ActiveCollisionTypes) {
+        self.change_contact(|contact| contact.active_collision_types = types);
+    }
+
+    /// Sets which of the user's hooks are asked about the body, from the next step on.
+    pub fn set_active_hooks(&mut self, hooks: ActiveHooks) {
+        self.change_contact(|contact| contact.active_hooks = hooks);
+    }
+
+    /// Sets which events are reported, from the next step on.
+    pub fn set_active_events(&mut self, events: ActiveEvents) {
+        self.change_contact(|contact| contact.active_events = events);
+    }
+
+    /// Makes the body a sensor, which touches nothing, or a solid one again, from the next step on.
+    pub fn set_sensor(&mut self, is_sensor: bool) {
+        self.change_contact(|contact| contact.is_sensor = is_sensor);
+    }
+
+    /// Changes settings; what rapier's collider must be told wakes the body.
+    fn change_contact(&mut self, change: impl FnOnce(&mut ContactSettings)) {
+        change(&mut self.contact);
+        self.is_disturbed |= self.contact != self.carrier_contact;
+    }
+
+    /// The settings that rapier's collider was given last and those it should have, if they differ.
+    pub(crate) fn take_new_contact(&mut self) -> Option<[ContactSettings; 2]> {
+        let given = std::mem::replace(&mut self.carrier_contact, self.contact);
+        (given != self.contact).then_some([given, self.contact])
+    }
+
+    /// Takes over solver groups that were set on rapier's collider.
+    pub(crate) fn adopt_solver_groups(&mut self, groups: InteractionGroups) {
+        self.contact.solver_groups = groups;
+        self.carrier_contact.solver_groups = groups;
     }
 }
 

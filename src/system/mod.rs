@@ -9,7 +9,6 @@ mod link_response;
 mod moments;
 mod pin_rates;
 mod rigid_block;
-mod rigid_energy;
 mod rigid_load;
 mod rigid_motion;
 mod rigid_way;

@@ -27,6 +27,7 @@ mod bordered;
 mod case;
 mod corrector;
 mod follower;
+mod length;
 mod report;
 mod stepper;
 

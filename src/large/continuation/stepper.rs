@@ -3,11 +3,11 @@
 use super::bordered::{Row, dot};
 use super::case::{PathCase, PathEnd, PathSettings};
 use super::corrector::{Corrector, Point};
+use super::length::{length, weights};
 use super::report::{LimitPoint, PathPoint, PathReport};
 use crate::fe::finite_strain::FiniteStrainModel;
 use crate::large::LargeError;
 use crate::large::stepper::require_finite;
-use crate::math::node_vec;
 use std::sync::Arc;
 
 /// Iterations that an increment should take: fewer make the next one longer.
@@ -380,25 +380,4 @@ impl PathStepper {
         let point = self.point.clone();
         self.corrector.evaluate_at(&point)
     }
-}
-
-/// Masses over the whole mass and the square of the radius of gyration.
-fn weights(model: &FiniteStrainModel) -> Vec<f64> {
-    let (rest, masses) = (model.rest_positions(), model.masses());
-    let whole: f64 = masses.iter().sum();
-    let origin = node_vec(rest, 0);
-    let arm = |node: usize| node_vec(rest, node) - origin;
-    let nodes = || masses.iter().enumerate();
-    let centre = nodes()
-        .map(|(node, mass)| *mass * arm(node))
-        .sum::<crate::math::Vec2>()
-        / whole;
-    let squares = nodes().map(|(node, mass)| mass * (arm(node) - centre).norm_squared());
-    let moment: f64 = squares.sum();
-    masses.iter().flat_map(|mass| [mass / moment; 2]).collect()
-}
-
-fn length(weights: &[f64], along: &[f64]) -> f64 {
-    let squares = weights.iter().zip(along).map(|(w, x)| w * x * x);
-    squares.sum::<f64>().sqrt()
 }

@@ -1,7 +1,9 @@
-//! What a step keeps of a body: its motion, put back if it is only tried, and notes.
+//! What a step takes from a body and leaves on it: its loads, its motion, put back if it is only tried, and notes.
 
 use super::flex_body::FlexBody;
 use super::state::FlexState;
+use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
+use std::borrow::Cow;
 
 /// What a step changes of a body.
 #[derive(Clone, Debug)]
@@ -109,5 +111,81 @@ impl FlexBody {
             true => self.n_unfinished.saturating_add(1),
             false => 0,
         };
+    }
+
+    pub(crate) fn bind(&mut self, carrier: RigidBodyHandle, collider: ColliderHandle) {
+        self.carrier = carrier;
+        self.collider = collider;
+    }
+
+    pub(crate) fn set_quarantined(&mut self, is_quarantined: bool) {
+        self.is_quarantined = is_quarantined;
+        self.is_disturbed = true;
+        // What it was struck with may be what it is sick of.
+        self.nodal_impulse.fill(0.0);
+    }
+
+    /// Takes what motion is left when the body falls asleep.
+    pub(crate) fn stop(&mut self) {
+        self.state.stop();
+    }
+
+    /// Forces on nodes in a step of length `dt` (s), what strikes them in it included, interleaved (N).
+    pub(crate) fn forces_over(&self, dt: f64) -> Cow<'_, [f64]> {
+        if self.nodal_impulse.iter().all(|impulse| *impulse == 0.0) {
+            return Cow::Borrowed(&self.nodal_force);
+        }
+        let pairs = self.nodal_force.iter().zip(&self.nodal_impulse);
+        pairs.map(|(force, impulse)| force + impulse / dt).collect()
+    }
+
+    pub(crate) fn prescribed(&self) -> &[f64] {
+        &self.prescribed
+    }
+
+    /// The motion, to commit a step to it; from then on the body is started.
+    pub(crate) fn state_mut(&mut self) -> &mut FlexState {
+        self.is_started = true;
+        &mut self.state
+    }
+
+    pub(crate) fn is_started(&self) -> bool {
+        self.is_started
+    }
+
+    /// Lets the first step give the body its initial accelerations, from its nodal forces and prescribed displacements.
+    /// `give` returns whether it could. They last if the step is committed: one that fails starts the body anew.
+    pub(crate) fn start_with(
+        &mut self,
+        give: impl FnOnce(&mut FlexState, &[f64], &[f64], &[f64]) -> bool,
+    ) {
+        if !give(
+            &mut self.state,
+            &self.nodal_force,
+            &self.prescribed,
+            &self.reaction,
+        ) || !self.state.has_finite_accelerations()
+        {
+            self.state.clear_accelerations();
+        }
+    }
+
+    /// Takes back what [`FlexBody::start_with`] gave, if no step has been committed since.
+    pub(crate) fn forget_start(&mut self) {
+        if !self.is_started {
+            self.state.clear_accelerations();
+        }
+    }
+
+    pub(crate) fn contact_force_mut(&mut self) -> &mut [f64] {
+        &mut self.contact_force
+    }
+
+    pub(crate) fn reactions(&self) -> &[f64] {
+        &self.reaction
+    }
+
+    pub(crate) fn reaction_mut(&mut self) -> &mut [f64] {
+        &mut self.reaction
     }
 }

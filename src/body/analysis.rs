@@ -1,10 +1,22 @@
-//! What the material of a body bears: at quadrature points, and smoothed at nodes.
+//! What a body can be asked beyond its motion: what its material bears, how far its strains are from small, what has flowed, and its
+//! natural frequencies.
+//!
+//! The strain of an edge `ΔX` whose ends move apart by `Δu` is
+//!
+//! ```text
+//! (|ΔX + Δu|² - |ΔX|²) / 2|ΔX|² = ΔX·Δu / |ΔX|² + ½ |Δu|² / |ΔX|².
+//! ```
+//!
+//! Small strains are the first term, measured in the body's one frame. The second is what they leave out: `1 - cos φ` where the material has
+//! turned by `φ` against the frame, `½ ε²` where it is stretched by `ε`.
 
 use super::flex_body::FlexBody;
 use crate::fe::finite_strain::FiniteStrainModel;
+use crate::fe::frequency::frequency_bound;
 use crate::fe::model::ModelError;
+use crate::fe::modes::{Modes, ModesError, lowest_modes, lowest_modes_at};
 use crate::fe::recovery::{PointState, Stress, Stretch};
-use crate::math::sin_cos;
+use crate::math::{hypot, node_vec, sin_cos};
 
 impl FlexBody {
     /// Strains `[e_xx, e_yy, g_xy]` (-) and stresses (Pa) at the quadrature points of a cell, in the body's frame.
@@ -153,5 +165,113 @@ impl FlexBody {
             Ok(states.map(|state| state.stretch.as_stress()).collect())
         })?;
         Ok(components.into_iter().map(Stretch::from_stress).collect())
+    }
+
+    /// Largest strain that small strains leave out at an edge of a cell (-).
+    ///
+    /// The lengths of the body are wrong by as much. A bent part that has turned by 0.14 rad against the rest of the body has 0.01; a strip that
+    /// is held at both ends carries as a string from `(thickness / length)²` on, which the body does not know of.
+    ///
+    /// Zero for bodies of large strain, which leave nothing out.
+    pub fn neglected_strain(&self) -> f64 {
+        if self.large.is_some() {
+            return 0.0;
+        }
+        let rest = self.model.mesh().nodes();
+        let u = self.local_displacements();
+        let mut largest = 0.0f64;
+        for cell in self.model.mesh().cells() {
+            let corners = cell.corners();
+            let mut from = corners[corners.len() - 1];
+            for &to in corners {
+                let ([x, y], [from_x, from_y]) = (rest[to], rest[from]);
+                let length = (x - from_x) * (x - from_x) + (y - from_y) * (y - from_y);
+                let apart = (node_vec(u, to) - node_vec(u, from)).norm_squared();
+                largest = largest.max(0.5 * apart / length);
+                from = to;
+            }
+        }
+        largest
+    }
+
+    pub(super) fn elastic_energy(&self) -> f64 {
+        let state = &self.state;
+        match &self.large {
+            Some(large) => large.energy_after(&state.position, &state.flowed).stored,
+            None => self.model.elastic_energy(self.local_displacements()),
+        }
+    }
+
+    /// Accumulated plastic strains `∫ √(2/3) |dp|` at the quadrature points of a cell (-), of a four-node cell at its middle; none of a material that
+    /// does not flow.
+    ///
+    /// # Panics
+    /// If the cell does not exist.
+    pub fn plastic_strains(&self, cell: usize) -> Vec<f64> {
+        let flowed = &self.state.flowed;
+        match &self.large {
+            Some(large) if !flowed.is_empty() => {
+                let points = flowed[large.points_of(cell)].iter();
+                points.map(|point| point.strain).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The largest accumulated plastic strain anywhere (-); zero of what has never flowed.
+    pub fn max_plastic_strain(&self) -> f64 {
+        let strains = self.state.flowed.iter().map(|point| point.strain);
+        strains.fold(0.0, f64::max)
+    }
+
+    /// What plastic flow has dissipated since the body was built (J).
+    pub fn plastic_dissipation(&self) -> f64 {
+        self.state.flow_energy
+    }
+
+    /// [`Self::neglected_strain`] where it is beyond `limit`: most bodies tell by their largest displacement that it is not.
+    pub(crate) fn neglected_beyond(&self, limit: f64) -> Option<f64> {
+        if self.large.is_some() {
+            return None;
+        }
+        let all = self.local_displacements().iter();
+        let reach = all.fold(0.0f64, |reach, u| reach.max(u.abs()));
+        // Two ends, two components each.
+        let bound = 4.0 * (reach / self.model.shortest_edge()).powi(2);
+        if bound <= limit {
+            return None;
+        }
+        Some(self.neglected_strain()).filter(|neglected| *neglected > limit)
+    }
+
+    /// An upper bound of the largest natural frequency of the body as it is held (rad/s), with nodes without mass held too,
+    /// as a contact may; a step by central difference may last `2 / ω`.
+    ///
+    /// With stiffness damping it is `ω (√(1 + ζ²) + ζ)`, `ζ = β ω / 2`: that of an undamped body with the same critical
+    /// step, where damping takes its rate from the half step before.
+    ///
+    /// The first call costs one small eigenvalue problem per cell.
+    pub fn explicit_frequency(&self) -> f64 {
+        *self.frequency.get_or_init(|| {
+            let bound = frequency_bound(self.model(), self.fixed_dofs());
+            let omega = bound.unwrap_or(f64::INFINITY);
+            let ratio = 0.5 * self.model().rayleigh().stiffness * omega;
+            omega * (ratio + hypot(ratio, 1.0))
+        })
+    }
+
+    /// The `n_modes` lowest natural modes of the body as it is pinned, known to `tolerance`; see [`lowest_modes`].
+    ///
+    /// Of a body of small strain in its frame, whatever its place; of one of large strain about where it is now and in the world's axes, which
+    /// is meant for equilibria. Contacts, joints, attachments and damping are left out.
+    ///
+    /// # Errors
+    /// [`ModesError`], as of [`lowest_modes`] and [`lowest_modes_at`].
+    pub fn natural_modes(&self, n_modes: usize, tolerance: f64) -> Result<Modes, ModesError> {
+        let is_fixed = self.fixed_dofs();
+        match self.large() {
+            Some(large) => lowest_modes_at(large, self.positions(), is_fixed, n_modes, tolerance),
+            None => lowest_modes(self.model(), is_fixed, n_modes, tolerance),
+        }
     }
 }
