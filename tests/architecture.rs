@@ -65,11 +65,7 @@ const IN_CIRCLES: [&str; 5] = ["body", "fe", "kkt", "path", "system"];
 const MOST_ROOMS: usize = 3;
 
 /// Types that still have more, and how many: let these numbers fall.
-const TOO_WIDE: [(&str, usize); 3] = [
-    ("FeasiblePath", 7),
-    ("FlexBody", 8),
-    ("Island", 28),
-];
+const TOO_WIDE: [(&str, usize); 3] = [("FeasiblePath", 7), ("FlexBody", 5), ("Island", 23)];
 
 /// One source file: code with comments, literals and test modules blanked out, line by line as in the file.
 struct Source {

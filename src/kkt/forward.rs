@@ -14,7 +14,9 @@
 
 use super::delassus::{RowDirection, assemble};
 use super::island::{ActiveContact, Island, KktError, SolveSettings};
+use super::partner::check_partners;
 use super::summary::IslandSummary;
+use super::work::{end_energy, kinetic_energy, start_energy};
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::RowKind;
 use crate::math::Vec2;
@@ -35,7 +37,7 @@ impl Island {
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
         if !settings.insists {
-            self.check_partners(settings)?;
+            check_partners(&mut self.blocks, &self.contacts, settings.dt)?;
         }
         self.gather_wrenches(|contact| contact.kinematics.is_quasi_static());
         self.set_soft_forces();
@@ -76,11 +78,11 @@ impl Island {
             return;
         }
         let gain = self.shadow_gain(settings);
-        let now = self.kinetic_energy();
+        let now = kinetic_energy(&self.blocks);
         self.add_switches(-1.0);
-        let without = self.kinetic_energy();
+        let without = kinetic_energy(&self.blocks);
         self.add_switches(2.0);
-        let twice = self.kinetic_energy();
+        let twice = kinetic_energy(&self.blocks);
         let curvature = 0.5 * (without + twice) - now;
         let slope = 0.5 * (without - twice);
         let part = part_to_take([curvature, slope, gain]);
@@ -146,7 +148,10 @@ impl Island {
             let drag = 0.5 * (contact.multiplier[1] + contact.remembered.tangent);
             gain -= drag * contact.slip;
         }
-        for (end, start) in self.end_energy().iter().zip(self.start_energy()) {
+        for (end, start) in end_energy(&self.blocks)
+            .iter()
+            .zip(start_energy(&self.blocks))
+        {
             gain += end - start;
         }
         for block in &self.blocks {

@@ -6,6 +6,7 @@
 use super::island::{Island, KktError, SolveSettings};
 use super::position::PARTING_RATE;
 use super::summary::IslandSummary;
+use super::work::{applied_work, end_energy};
 use crate::constraint::contact::ContactMemory;
 use crate::linalg::complementarity::Status;
 use crate::math::are_held;
@@ -27,7 +28,7 @@ impl Island {
         // What stands together where the step began has gained nothing.
         let is_unsolved = summary.is_cut || summary.is_stopped && !self.path.is_empty();
         // Forces that no solution gave do no work to count on: neither of joints nor of driven bodies.
-        let supply = self.applied_work().max(0.0);
+        let supply = applied_work(&self.blocks).max(0.0);
         let gain = after - before - supply;
         let share = GAINED * settings.dt / settings.whole;
         is_unsolved && (gain.is_nan() || gain > share * (before + supply))
@@ -112,7 +113,7 @@ impl Island {
         summary.gap_violation = self.gap_violation();
         settings.treatment().finish(self, settings, summary)?;
         summary.work = self.actual_work(settings) + self.joint_work(settings);
-        summary.end_energy = self.end_energy();
+        summary.end_energy = end_energy(&self.blocks);
         Ok(())
     }
 }

@@ -6,10 +6,13 @@ use super::constraint_function::Newton;
 use super::delassus::RowDirection;
 use super::feasible::FeasiblePath;
 use super::follow::Stage;
+use super::joined::Joined;
 use super::joint_rows::ActiveJoint;
+use super::joint_twist::Twists;
 pub use super::settings::{KktError, SolveSettings};
 use super::sparse::Sparse;
 use super::summary::IslandSummary;
+use super::work::{end_energy, external_work, load_energy, start_energy};
 use crate::constraint::contact::{
     Candidate, ContactKey, ContactMemory, Kinematics, PlacedPart, Scene,
 };
@@ -73,8 +76,7 @@ pub struct Island {
     pub(super) joint_rows: Vec<usize>,
     pub(super) joint_slot: Vec<usize>,
     pub(super) joint_answer: Vec<f64>,
-    /// Stiffness against turning by the joints' forces, by block (N m/rad), then the torque that it made (N m).
-    pub(super) twists: Vec<f64>,
+    pub(super) twists: Twists,
     pub(super) is_working: Vec<bool>,
     pub(super) rows: Vec<RowDirection>,
     pub(super) kinds: Vec<RowKind>,
@@ -83,8 +85,7 @@ pub struct Island {
     /// What the multipliers move every row by, and its own share of that per unit.
     pub(super) responses: Vec<f64>,
     pub(super) diagonals: Vec<f64>,
-    /// Pairs of blocks that joints hold, in order.
-    pub(super) joined: Vec<[usize; 2]>,
+    pub(super) joined: Joined,
     /// How far every joint row of the problem gives way by itself.
     pub(super) joint_gives: Vec<f64>,
     pub(super) sparse: Sparse,
@@ -156,12 +157,12 @@ impl Island {
         if settings.may_be_cut && summary.is_unsolved() {
             return Ok(summary);
         }
-        let before = self.start_energy();
-        let loads = self.external_work();
+        let before = start_energy(&self.blocks);
+        let loads = external_work(&self.blocks, &self.contacts);
         let treatment = settings.treatment();
         summary.start_energy = before;
         let mut contacts = self.contacts.iter();
-        summary.load_energy = self.load_energy();
+        summary.load_energy = load_energy(&self.blocks);
         summary.is_parting = contacts.any(|contact| contact.allowance < 0.0) || self.closes();
         let finished = treatment.finish(self, settings, &mut summary);
         let is_unsolved = summary.is_unsolved();
@@ -173,7 +174,7 @@ impl Island {
         }
         self.settle_damping(settings);
         let joint_work = self.joint_work(settings);
-        summary.end_energy = self.end_energy();
+        summary.end_energy = end_energy(&self.blocks);
         let stretched = self.stretched_by_closing(&summary);
         let allowance = loads + joint_work + stretched;
         summary.work = self.actual_work(settings) + joint_work + stretched;

@@ -1,6 +1,8 @@
 //! Contacts between bodies that a joint holds: both may hold the same motion.
 
-use super::island::{ActiveContact, Island};
+use super::active_contact::ActiveContact;
+use super::joint_rows::ActiveJoint;
+use crate::constraint::joint::JointGrip;
 
 /// Share of its own mobility by which a contact between bodies that a joint holds gives way to its impulse (-).
 ///
@@ -9,28 +11,33 @@ use super::island::{ActiveContact, Island};
 /// a thousandth of that, and rounding, of 10⁻⁹ `v`, ends in a millionth of the impulse that stops it.
 pub(super) const JOINED: f64 = 1e-3;
 
-impl Island {
+/// Pairs of blocks that joints hold, in order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Joined(Vec<[usize; 2]>);
+
+impl Joined {
     /// Whether a contact is between blocks that a joint holds.
-    pub(super) fn is_joined(&self, contact: &ActiveContact) -> bool {
+    pub fn has(&self, contact: &ActiveContact) -> bool {
         let [one, .., other] = contact.kinematics.attachments() else {
             return false;
         };
         let pair = [one.block.min(other.block), one.block.max(other.block)];
-        self.joined.binary_search(&pair).is_ok()
+        self.0.binary_search(&pair).is_ok()
     }
 
-    /// Lists the pairs of blocks that joints hold.
-    pub(super) fn list_joined(&mut self) {
-        for tie in &self.ties {
-            let grips = &self.joint_grips[tie.row.grips.0..tie.row.grips.1];
+    /// Lists the pairs anew.
+    pub fn list(&mut self, ties: &[ActiveJoint], grips: &[JointGrip]) {
+        self.0.clear();
+        for tie in ties {
+            let grips = &grips[tie.row.grips.0..tie.row.grips.1];
             for (at, one) in grips.iter().enumerate() {
                 let others = grips[..at].iter().map(|grip| grip.block);
                 let others = others.filter(|&other| other != one.block);
-                self.joined
-                    .extend(others.map(|other| [other.min(one.block), other.max(one.block)]));
+                let pairs = others.map(|other| [other.min(one.block), other.max(one.block)]);
+                self.0.extend(pairs);
             }
         }
-        self.joined.sort_unstable();
-        self.joined.dedup();
+        self.0.sort_unstable();
+        self.0.dedup();
     }
 }

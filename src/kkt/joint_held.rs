@@ -7,7 +7,7 @@
 //! Whether there is such a motion is asked of joints that are closed: anchors that are apart, as they are within a step, would give the
 //! motion of their distance.
 
-use super::island::Island;
+use super::joint_rows::ActiveJoint;
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, JointLaw, unit_wrench};
 use crate::math::{Vec2, cross, rounding};
@@ -20,9 +20,16 @@ const DEPENDENT: f64 = rounding::SHARE;
 /// Wrenches on the two bodies of a contact.
 type Pair = [[f64; 3]; 2];
 
-impl Island {
+/// Joints and what they hold on to.
+pub(super) struct JointHold<'a> {
+    pub blocks: &'a [Block],
+    pub ties: &'a [ActiveJoint],
+    pub grips: &'a [JointGrip],
+}
+
+impl JointHold<'_> {
     /// Whether joints leave the two rigid bodies of a contact no motion against each other.
-    pub(super) fn is_held_by_joints(&self, row: &Kinematics) -> bool {
+    pub fn holds(&self, row: &Kinematics) -> bool {
         if self.ties.is_empty() {
             return false;
         }
@@ -109,7 +116,7 @@ impl Island {
         let tie = &self.ties[tie];
         let is_turn = tie.row.measure.is_turn();
         let mut sum = Pair::default();
-        let grips = &self.joint_grips[tie.row.grips.0..tie.row.grips.1];
+        let grips = &self.grips[tie.row.grips.0..tie.row.grips.1];
         let point = self.middle(grips.iter().map(|grip| (grip.block, grip.lever)));
         for grip in grips {
             if let Some(slot) = bodies.iter().position(|body| *body == Some(grip.block)) {

@@ -7,8 +7,11 @@
 //!
 //! *Soft* rows, with a flexible block, act as (C.5) says, along rows that follow the iterates as those of contacts do.
 
+use super::active_contact::ActiveContact;
 use super::island::{Island, SolveSettings};
+use super::joint_held::JointHold;
 use super::joint_law::{Finish, resolve};
+use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, JointRow, RememberedJoint, When, unit_wrench};
 use crate::linalg::complementarity::{RowKind, Status};
 use crate::math::{Vec2, perp, rounding};
@@ -115,10 +118,10 @@ impl Island {
     /// Puts every joint row to work, with the multipliers of the last step.
     pub(super) fn open_joints(&mut self, settings: &SolveSettings) {
         if !self.ties.is_empty() {
-            self.relax_turns();
+            self.twists.relax(&mut self.blocks);
         }
         self.ties.clear();
-        self.joined.clear();
+        self.joined.list(&[], &[]);
         if self.joints.is_empty() {
             return;
         }
@@ -170,8 +173,34 @@ impl Island {
         self.applied_grips.clear();
         self.applied_grips.extend_from_slice(&self.joint_grips);
         self.list_holders();
-        self.list_joined();
-        self.stiffen_turns(settings);
+        self.joined.list(&self.ties, &self.joint_grips);
+        let joints = (&self.ties[..], &self.joint_grips[..]);
+        let last = |tie: &ActiveJoint| tie.row.last_multiplier();
+        self.twists
+            .stiffen(&mut self.blocks, joints, settings, last);
+    }
+
+    /// Gives the blocks the stiffness of the forces of this iterate, where those of the last step were far off, as in an impact.
+    pub(super) fn restiffen_turns(&mut self, settings: &SolveSettings) {
+        self.twists.relax(&mut self.blocks);
+        let joints = (&self.ties[..], &self.joint_grips[..]);
+        let now = |tie: &ActiveJoint| tie.multiplier;
+        self.twists.stiffen(&mut self.blocks, joints, settings, now);
+    }
+
+    /// Whether joints leave the two rigid bodies of a contact no motion against each other.
+    pub(super) fn is_held_by_joints(&self, row: &Kinematics) -> bool {
+        let hold = JointHold {
+            blocks: &self.blocks,
+            ties: &self.ties,
+            grips: &self.joint_grips,
+        };
+        hold.holds(row)
+    }
+
+    /// Whether a contact is between blocks that a joint holds.
+    pub(super) fn is_joined(&self, contact: &ActiveContact) -> bool {
+        self.joined.has(contact)
     }
 
     /// Makes the compliances of all rows' nodes known again, which bodies of large strain forget with their factors.

@@ -5,52 +5,52 @@
 //! that are turned by the share `s = 1 - 1/K` of the step's own turn; then `K (1 - s) = 1`, stable for any `K`, and what the step
 //! does not resolve is damped. The stiffness is that of the last step's forces, so that the problem stays linear.
 
-use super::island::{Island, SolveSettings};
 use super::joint_rows::ActiveJoint;
-use crate::constraint::joint::{JointLaw, unit_wrench};
+use super::settings::SolveSettings;
+use crate::constraint::joint::{JointGrip, JointLaw, unit_wrench};
 use crate::system::Block;
 
 /// `dt² Σ r·F / I` up to which turning is resolved.
 const RESOLVED: f64 = 1.0;
 
-impl Island {
-    /// Finds the stiffness that the last step's forces give against turning, and gives the blocks their share of it.
-    pub(super) fn stiffen_turns(&mut self, settings: &SolveSettings) {
-        self.stiffen_by(settings, |tie| tie.row.last_multiplier());
-    }
+/// Stiffness against turning by the joints' forces, by block (N m/rad), then the torque that it made (N m).
+#[derive(Clone, Debug, Default)]
+pub(super) struct Twists(Vec<f64>);
 
-    /// The same from the forces of this iterate, where those of the last step were far off, as in an impact.
-    pub(super) fn restiffen_turns(&mut self, settings: &SolveSettings) {
-        self.relax_turns();
-        self.stiffen_by(settings, |tie| tie.multiplier);
-    }
-
-    fn stiffen_by(&mut self, settings: &SolveSettings, multiplier: impl Fn(&ActiveJoint) -> f64) {
-        self.twists.clear();
-        self.twists.resize(self.blocks.len(), 0.0);
+impl Twists {
+    /// Finds the stiffness that forces give against turning, and gives the blocks their share of it.
+    pub fn stiffen(
+        &mut self,
+        blocks: &mut [Block],
+        (ties, grips): (&[ActiveJoint], &[JointGrip]),
+        settings: &SolveSettings,
+        multiplier: impl Fn(&ActiveJoint) -> f64,
+    ) {
+        self.0.clear();
+        self.0.resize(blocks.len(), 0.0);
         let scale = 2.0 * settings.b0 / (settings.dt * settings.dt);
         let mut first = 0;
-        while first < self.ties.len() {
-            let owner = self.ties[first].row.key.owner;
-            let rest = self.ties[first..].iter();
+        while first < ties.len() {
+            let owner = ties[first].row.key.owner;
+            let rest = ties[first..].iter();
             let last = first + rest.take_while(|tie| tie.row.key.owner == owner).count();
             // What holds the turn itself needs no more.
-            let is_hinge = !self.ties[first..last].iter().any(|tie| {
+            let is_hinge = !ties[first..last].iter().any(|tie| {
                 tie.row.measure.is_turn() && matches!(tie.row.law, JointLaw::Rigid { .. })
             });
-            for tie in self.ties[first..last]
+            for tie in ties[first..last]
                 .iter()
                 .filter(|tie| is_hinge && tie.is_hard)
             {
                 let force = scale * multiplier(tie);
-                for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {
+                for grip in &grips[tie.row.grips.0..tie.row.grips.1] {
                     let [x, y, _] = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
-                    self.twists[grip.block] += force * (grip.lever.x * x + grip.lever.y * y);
+                    self.0[grip.block] += force * (grip.lever.x * x + grip.lever.y * y);
                 }
             }
             first = last;
         }
-        for (block, twist) in self.blocks.iter_mut().zip(&self.twists) {
+        for (block, twist) in blocks.iter_mut().zip(&self.0) {
             if let Block::Rigid(block) = block {
                 let ratio = settings.dt * settings.dt * twist * block.turning_mobility();
                 if ratio > RESOLVED {
@@ -62,9 +62,9 @@ impl Island {
         }
     }
 
-    /// Takes the stiffness back; what torque it made (N m) is noted.
-    pub(super) fn relax_turns(&mut self) {
-        for (block, twist) in self.blocks.iter_mut().zip(&mut self.twists) {
+    /// Takes the stiffness back; what torque it made is noted.
+    pub fn relax(&mut self, blocks: &mut [Block]) {
+        for (block, twist) in blocks.iter_mut().zip(&mut self.0) {
             *twist = match block {
                 Block::Rigid(block) => block.relax(),
                 Block::Flex(_) => 0.0,
@@ -73,8 +73,8 @@ impl Island {
     }
 
     /// Gives the velocities that go with the torques of the stiffness.
-    pub(super) fn kick_turns(&mut self, settings: &SolveSettings) {
-        for (block, torque) in self.blocks.iter_mut().zip(&self.twists) {
+    pub fn kick(&self, blocks: &mut [Block], settings: &SolveSettings) {
+        for (block, torque) in blocks.iter_mut().zip(&self.0) {
             if let Block::Rigid(block) = block
                 && *torque != 0.0
             {

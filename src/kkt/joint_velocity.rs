@@ -4,9 +4,10 @@ use super::island::{Island, KktError, SolveSettings};
 use super::joint_law::{Finish, bounded};
 use super::joint_rows::{ActiveJoint, add_wrench};
 use super::joint_system::Rows;
+use super::unresolved::share_of;
 use crate::constraint::joint::{JointGrip, Spring, When, unit_wrench};
 use crate::linalg::complementarity::{Problem, RowKind, Status};
-use crate::math::{Vec2, rounding};
+use crate::math::rounding;
 use crate::system::{Block, Point, Response};
 
 /// Share of a soft row's velocity below which it is left to its multiplier.
@@ -21,7 +22,7 @@ impl Island {
         if self.ties.is_empty() {
             return;
         }
-        self.kick_turns(settings);
+        self.twists.kick(&mut self.blocks, settings);
         self.aim_joints_at_end();
         for index in 0..self.ties.len() {
             let tie = &mut self.ties[index];
@@ -78,7 +79,7 @@ impl Island {
                 actual += at.weight * from.weight * along.dot(&(compliance * along));
             }
         }
-        Self::share_of(rigid, actual)
+        share_of(rigid, actual)
     }
 
     fn end_grips_of(&self, tie: &ActiveJoint) -> &[JointGrip] {
@@ -378,34 +379,6 @@ impl Island {
                 block.settle_damping();
             }
         }
-    }
-
-    /// Leaves the forces of soft joints on the flexible blocks.
-    pub(super) fn publish_joint_forces(&mut self, dt: f64) {
-        for tie in self.ties.iter().filter(|tie| !tie.is_hard) {
-            let force = tie.force(dt) * tie.row.sign;
-            for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {
-                if let (Block::Flex(block), Point::Node(node)) =
-                    (&mut self.blocks[grip.block], grip.point)
-                {
-                    let share: Vec2 = force * grip.weight * tie.direction;
-                    block.add_contact_force(node, share, grip.lever);
-                }
-            }
-        }
-    }
-
-    /// Mean force of a joint row over the step in the world, on the side of positive weights, or its torque (N or N m).
-    pub fn joint_force(&self, tie: &ActiveJoint, dt: f64) -> (Vec2, f64) {
-        let force = tie.force(dt);
-        if tie.row.measure.is_turn() {
-            return (Vec2::zeros(), force);
-        }
-        if !tie.is_hard {
-            return (force * tie.row.sign * tie.direction, 0.0);
-        }
-        let sum = (tie.kick * tie.direction + tie.impulse * tie.end) / dt;
-        (sum, 0.0)
     }
 }
 

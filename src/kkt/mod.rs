@@ -15,6 +15,7 @@ mod energy;
 mod feasible;
 mod follow;
 mod forward;
+mod gathered;
 mod gentle;
 mod group;
 mod impact;
@@ -37,6 +38,7 @@ mod summary;
 mod together;
 mod unresolved;
 mod velocity;
+mod work;
 
 pub use constraint_function::{ConstraintFunction, ContactMethod, EpsilonError};
 pub(crate) use feasible::Way;

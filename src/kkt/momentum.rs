@@ -6,10 +6,10 @@
 //! velocities of the whole group rigidly, which changes no relative velocity at any contact.
 
 use super::island::{Island, SolveSettings};
-use super::joint_rows::add_wrench;
+use super::joint_rows::{ActiveJoint, add_wrench};
 use crate::constraint::joint::unit_wrench;
 use crate::math::{Vec2, cross, perp};
-use crate::system::{Block, Moments, Step};
+use crate::system::{Block, Moments, Point, Step};
 
 /// Forces of flexible bodies on a rigid one that these keep in their stored accelerations.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -107,6 +107,34 @@ impl Island {
             );
         }
         self.publish_joint_forces(dt);
+    }
+
+    /// Leaves the forces of soft joints on the flexible blocks.
+    pub(super) fn publish_joint_forces(&mut self, dt: f64) {
+        for tie in self.ties.iter().filter(|tie| !tie.is_hard) {
+            let force = tie.force(dt) * tie.row.sign;
+            for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {
+                if let (Block::Flex(block), Point::Node(node)) =
+                    (&mut self.blocks[grip.block], grip.point)
+                {
+                    let share: Vec2 = force * grip.weight * tie.direction;
+                    block.add_contact_force(node, share, grip.lever);
+                }
+            }
+        }
+    }
+
+    /// Mean force of a joint row over the step in the world, on the side of positive weights, or its torque (N or N m).
+    pub fn joint_force(&self, tie: &ActiveJoint, dt: f64) -> (Vec2, f64) {
+        let force = tie.force(dt);
+        if tie.row.measure.is_turn() {
+            return (Vec2::zeros(), force);
+        }
+        if !tie.is_hard {
+            return (force * tie.row.sign * tie.direction, 0.0);
+        }
+        let sum = (tie.kick * tie.direction + tie.impulse * tie.end) / dt;
+        (sum, 0.0)
     }
 
     /// Restores the angular momentum of every group of free bodies that touch, each other or themselves.

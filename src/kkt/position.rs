@@ -82,7 +82,7 @@ impl Island {
         }
         if !self.ties.is_empty() {
             self.prepare_joints();
-            self.relax_turns();
+            self.twists.relax(&mut self.blocks);
         }
         for block in &mut self.blocks {
             if let Block::Flex(block) = block {

@@ -8,6 +8,7 @@
 use super::group::Group;
 use super::island::{Island, SolveSettings};
 use super::summary::IslandSummary;
+use super::work::end_energy;
 use crate::math::Vec2;
 use crate::system::{Block, Moments, RigidMotion, RigidRates, RigidWay};
 
@@ -167,7 +168,7 @@ impl Island {
         let swings = self.blocks.iter().map(|block| block.swing()[1]);
         (summary.swing, summary.pending) = (swings.sum(), 0.0);
         summary.work = self.actual_work(settings);
-        summary.end_energy = self.end_energy();
+        summary.end_energy = end_energy(&self.blocks);
     }
 
     /// For each block the first one of those that it touches or is joined with, directly or by others.

@@ -15,56 +15,54 @@
 //! The masses next to the contact count, not those of the whole body: a board that is pinned has no rigid motion and resolves no impact of its
 //! cells for that.
 
-use super::island::{Island, SolveSettings};
+use super::settings::SolveSettings;
 use crate::constraint::contact::Kinematics;
 use crate::math::Mat2;
-use crate::system::Response;
+use crate::system::{Block, Response};
 
 /// Share of rigid mobility below which bodies meet by their elasticity, and above which as rigid ones.
 const ELASTIC: f64 = 0.3;
 const RIGID: f64 = 1.0 - ELASTIC;
 
-impl Island {
-    /// How much of a contact's mobility within the step is that of the masses behind the surface, and how much that of rigid bodies, both
-    /// mapped to [0, 1].
-    pub(super) fn unresolved_shares(
-        &self,
-        kinematics: &Kinematics,
-        settings: &SolveSettings,
-    ) -> [f64; 2] {
-        let normal = kinematics.normal;
-        let along = |of: Mat2| normal.dot(&(of * normal));
-        let (mut rigid, mut actual, mut springs) = (0.0, 0.0, 0.0);
-        // A body that meets itself has no rigid motion against itself.
-        let is_own = kinematics.is_own();
-        for a in kinematics.attachments() {
-            let block = &self.blocks[a.block];
-            if !is_own {
-                rigid += a.weight.abs() * block.rigid_mobility(a.grip, normal);
-            }
-            for b in kinematics.attachments() {
-                if a.block == b.block {
-                    let weight = a.weight * b.weight;
-                    actual += weight * along(block.compliance(a.grip, b.grip, Response::Velocity));
-                    springs += weight * along(block.spring_compliance(a.grip, b.grip));
-                }
+/// How much of a contact's mobility within the step is that of the masses behind the surface, and how much that of rigid bodies, both
+/// mapped to [0, 1].
+pub(super) fn unresolved_shares(
+    blocks: &[Block],
+    kinematics: &Kinematics,
+    settings: &SolveSettings,
+) -> [f64; 2] {
+    let normal = kinematics.normal;
+    let along = |of: Mat2| normal.dot(&(of * normal));
+    let (mut rigid, mut actual, mut springs) = (0.0, 0.0, 0.0);
+    // A body that meets itself has no rigid motion against itself.
+    let is_own = kinematics.is_own();
+    for a in kinematics.attachments() {
+        let block = &blocks[a.block];
+        if !is_own {
+            rigid += a.weight.abs() * block.rigid_mobility(a.grip, normal);
+        }
+        for b in kinematics.attachments() {
+            if a.block == b.block {
+                let weight = a.weight * b.weight;
+                actual += weight * along(block.compliance(a.grip, b.grip, Response::Velocity));
+                springs += weight * along(block.spring_compliance(a.grip, b.grip));
             }
         }
-        if actual <= 0.0 {
-            return [0.0; 2];
-        }
-        let resolved = settings.b0 / (settings.b1 * settings.dt);
-        [
-            smooth_step(1.0 - springs / actual, [resolved, 1.0]),
-            Self::share_of(rigid, actual),
-        ]
     }
+    if actual <= 0.0 {
+        return [0.0; 2];
+    }
+    let resolved = settings.b0 / (settings.b1 * settings.dt);
+    [
+        smooth_step(1.0 - springs / actual, [resolved, 1.0]),
+        share_of(rigid, actual),
+    ]
+}
 
-    /// Maps the share that rigid mobility has of a mobility to [0, 1].
-    pub(super) fn share_of(rigid: f64, actual: f64) -> f64 {
-        let share = if actual > 0.0 { rigid / actual } else { 0.0 };
-        smooth_step(share, [ELASTIC, RIGID])
-    }
+/// Maps the share that rigid mobility has of a mobility to [0, 1].
+pub(super) fn share_of(rigid: f64, actual: f64) -> f64 {
+    let share = if actual > 0.0 { rigid / actual } else { 0.0 };
+    smooth_step(share, [ELASTIC, RIGID])
 }
 
 /// From 0 up to the first bound to 1 from the second on, without a kink; 0 if the bounds leave no room.
@@ -83,7 +81,7 @@ mod tests {
     use crate::fe::material::LinearElastic;
     use crate::integrator::Beta2;
     use crate::math::Vec2;
-    use crate::system::{Block, FlexBlock, FlexLoad, Grip, Point, Step};
+    use crate::system::{FlexBlock, FlexLoad, Grip, Point, Step};
     use std::sync::Arc;
 
     const DT: f64 = 1e-2;

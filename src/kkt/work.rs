@@ -1,0 +1,191 @@
+//! Energies of blocks, and the work that is done on them.
+
+use super::active_contact::ActiveContact;
+use super::joint_rows::{ActiveJoint, add_wrench};
+use crate::constraint::joint::{JointGrip, unit_wrench};
+use crate::math::Vec2;
+use crate::system::{Balance, Block, FlexBlock, RigidBlock, RigidMotion};
+
+/// Grips of joints as the last iterate was found, and at the end of the step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WorkGrips<'a> {
+    pub start: &'a [JointGrip],
+    pub end: &'a [JointGrip],
+}
+
+/// Kinetic and elastic energy at the beginning of the step (J).
+pub(super) fn start_energy(blocks: &[Block]) -> [f64; 2] {
+    sum_energy(blocks, FlexBlock::start_balance, RigidBlock::start)
+}
+
+/// Kinetic and elastic energy at its end (J).
+pub(super) fn end_energy(blocks: &[Block]) -> [f64; 2] {
+    sum_energy(blocks, FlexBlock::end_balance, RigidBlock::current)
+}
+
+/// Kinetic and elastic energy of all blocks (J).
+fn sum_energy(
+    blocks: &[Block],
+    balance: impl Fn(&FlexBlock) -> Balance,
+    motion: impl Fn(&RigidBlock) -> &RigidMotion,
+) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    for block in blocks {
+        match block {
+            Block::Flex(block) => {
+                let balance = balance(block);
+                sum[0] += balance.kinetic;
+                sum[1] += balance.elastic;
+            }
+            Block::Rigid(block) => sum[0] += block.kinetic_energy(motion(block)),
+        }
+    }
+    sum
+}
+
+/// What plastic flow dissipates in the step, which is in the elastic energy of its end (J).
+pub(super) fn flow_energy(blocks: &[Block]) -> f64 {
+    let flows = blocks.iter().map(|block| match block {
+        Block::Flex(block) => block.flow_energy(),
+        Block::Rigid(_) => 0.0,
+    });
+    flows.sum()
+}
+
+/// Work of applied forces (J).
+pub(super) fn applied_work(blocks: &[Block]) -> f64 {
+    let works = blocks.iter().map(|block| match block {
+        Block::Flex(block) => block.applied_work(),
+        Block::Rigid(block) => block.applied_work(),
+    });
+    works.sum()
+}
+
+/// Kinetic energy that the loads would give to the blocks at rest if nothing held them, and what energies are not known by (J).
+pub(super) fn load_energy(blocks: &[Block]) -> f64 {
+    let energies = blocks.iter().map(|block| match block {
+        Block::Flex(block) => block.load_energy() + block.rounding_energy(),
+        Block::Rigid(block) => block.load_energy(),
+    });
+    energies.sum()
+}
+
+/// Work of applied forces and of the contact forces of driven bodies, prescribed ones and links of multibodies (J).
+pub(super) fn actual_work(blocks: &[Block], contacts: &[ActiveContact], dt: f64) -> f64 {
+    let mut work = applied_work(blocks);
+    for contact in contacts {
+        let [normal, tangent] = contact.force(dt);
+        let kinematics = &contact.kinematics;
+        let force = normal * kinematics.normal + tangent * kinematics.tangent();
+        for a in kinematics.attachments() {
+            let block = &blocks[a.block];
+            if matches!(block, Block::Rigid(block) if block.is_driven()) {
+                let moved = block.position(a.grip.point) - block.start_position(a.grip.point);
+                work -= a.weight * force.dot(&moved);
+            }
+        }
+    }
+    work
+}
+
+/// Work of the joints on what is not driven from outside (J): nothing but for motors, springs and driven bodies.
+pub(super) fn joint_work(
+    blocks: &[Block],
+    ties: &[ActiveJoint],
+    grips: WorkGrips<'_>,
+    dt: f64,
+) -> f64 {
+    let mut work = 0.0;
+    for tie in ties {
+        if tie.closing != 0.0 {
+            // Ends that are drawn together move against each other: work is what the driven ones do.
+            work -= driven_work(blocks, tie, grips.start, dt);
+            continue;
+        }
+        let is_turn = tie.row.measure.is_turn();
+        let (first, last) = tie.row.grips;
+        for at in first..last {
+            let grip = &grips.start[at];
+            match &blocks[grip.block] {
+                Block::Rigid(block) if block.is_driven() => {}
+                Block::Rigid(block) if tie.is_hard => {
+                    let mut impulse = [0.0; 3];
+                    let kept = unit_wrench(grip, tie.direction, is_turn);
+                    let end = unit_wrench(&grips.end[at], tie.end, is_turn);
+                    add_wrench(&mut impulse, tie.kick, kept);
+                    add_wrench(&mut impulse, tie.impulse, end);
+                    work += block.work_of(impulse);
+                }
+                block => {
+                    let moved = block.position(grip.point) - block.start_position(grip.point);
+                    let force = tie.force(dt) * tie.row.sign;
+                    work += force * grip.weight * tie.direction.dot(&moved);
+                }
+            }
+        }
+    }
+    work
+}
+
+/// What a joint's mean force does on driven bodies that it holds (J).
+fn driven_work(blocks: &[Block], tie: &ActiveJoint, grips: &[JointGrip], dt: f64) -> f64 {
+    let (first, last) = tie.row.grips;
+    let force = tie.force(dt) * tie.row.sign;
+    let driven = grips[first..last]
+        .iter()
+        .filter(|grip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_driven()));
+    let works = driven.map(|grip| {
+        let block = &blocks[grip.block];
+        let moved = block.position(grip.point) - block.start_position(grip.point);
+        force * grip.weight * tie.direction.dot(&moved)
+    });
+    works.sum()
+}
+
+/// Work done on the island by applied forces and, at most, by moving driven bodies (J).
+pub(super) fn external_work(blocks: &[Block], contacts: &[ActiveContact]) -> f64 {
+    let mut work = applied_work(blocks);
+    for contact in contacts {
+        let driven: Vec2 = contact
+            .kinematics
+            .attachments()
+            .iter()
+            .filter(|a| matches!(&blocks[a.block], Block::Rigid(block) if block.is_driven()))
+            .map(|a| {
+                let block = &blocks[a.block];
+                block.position(a.grip.point) - block.start_position(a.grip.point)
+            })
+            .sum();
+        let force = contact.multiplier[0].max(contact.remembered.normal);
+        let drag = contact.multiplier[1]
+            .abs()
+            .max(contact.remembered.tangent.abs());
+        work += driven.norm() * (force + drag);
+    }
+    work
+}
+
+/// The momentum of all blocks if each moved along one line with its kinetic energy (N s).
+pub(super) fn momentum_at_most(blocks: &[Block]) -> f64 {
+    let momenta = blocks.iter().map(|block| {
+        let (mass, energy) = match block {
+            Block::Flex(block) => (block.mass(), block.kinetic_energy()),
+            Block::Rigid(block) => {
+                let [x, y, _] = block.mass();
+                (x.max(y), block.kinetic_energy(block.current()))
+            }
+        };
+        (2.0 * mass * energy).sqrt()
+    });
+    momenta.sum()
+}
+
+pub(super) fn kinetic_energy(blocks: &[Block]) -> f64 {
+    blocks
+        .iter()
+        .map(|block| match block {
+            Block::Flex(block) => block.kinetic_energy(),
+            Block::Rigid(block) => block.kinetic_energy(block.current()),
+        })
+        .sum()
+}
