@@ -2,8 +2,9 @@
 
 use super::contact_inertia::ContactInertia;
 use super::contact_settings::ContactSettings;
-use super::materials::{Materials, Region};
+use super::materials::Materials;
 use super::pin::Pin;
+use super::region::Region;
 use crate::fe::element::Element;
 use crate::fe::finite_strain::InnerPressure;
 use crate::fe::material::Material;

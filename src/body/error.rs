@@ -1,7 +1,7 @@
 //! What can be wrong with the description of a body, or with the handle that names it.
 
 use super::handle::FlexBodyHandle;
-use super::materials::Region;
+use super::region::Region;
 use crate::fe::finite_strain::FiniteStrainError;
 use crate::fe::material::MaterialError;
 use crate::fe::mesh::MeshError;

@@ -1,53 +1,18 @@
 //! Materials of a body: one, and others in regions of its mesh.
 
 use super::error::BuildError;
+use super::region::Region;
 use crate::fe::material::Material;
 use crate::fe::mesh::Mesh;
-use std::fmt;
 use std::sync::Arc;
 
-/// A region of a mesh, by its number or its name: [`Mesh::with_regions`], [`Mesh::with_region_name`].
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Region {
-    /// By number.
-    Number(u32),
-    /// By name.
-    Name(String),
-}
-
-impl From<u32> for Region {
-    fn from(number: u32) -> Self {
-        Self::Number(number)
-    }
-}
-
-impl From<&str> for Region {
-    fn from(name: &str) -> Self {
-        Self::Name(name.to_owned())
-    }
-}
-
-impl fmt::Display for Region {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Number(number) => write!(f, "{number}"),
-            Self::Name(name) => write!(f, "`{name}`"),
-        }
-    }
-}
-
-impl Region {
-    /// Its number in a mesh.
-    pub(super) fn number_in(&self, mesh: &Mesh) -> Result<u32, BuildError> {
-        let found = match self {
-            Self::Number(number) => Some(*number).filter(|own| mesh.regions().contains(own)),
-            Self::Name(name) => mesh.region_named(name),
-        };
-        found.ok_or_else(|| BuildError::NoRegion {
-            region: self.clone(),
-            known: mesh.regions(),
-        })
-    }
+/// The number of a region in a mesh.
+pub(super) fn number_of(region: &Region, mesh: &Mesh) -> Result<u32, BuildError> {
+    let found = region.found_in(mesh);
+    found.ok_or_else(|| BuildError::NoRegion {
+        region: region.clone(),
+        known: mesh.regions(),
+    })
 }
 
 /// What a builder was given.
@@ -67,7 +32,7 @@ impl Materials {
         let mut own = Vec::new();
         for (region, material) in self.regions {
             material.validate()?;
-            own.push((region.number_in(mesh)?, material));
+            own.push((number_of(&region, mesh)?, material));
         }
         if let Some(main) = self.main {
             main.validate()?;

@@ -15,6 +15,7 @@ mod materials;
 mod pin;
 #[cfg(feature = "serde-serialize")]
 mod record;
+mod region;
 mod set;
 mod state;
 mod steering;
@@ -34,10 +35,10 @@ pub use error::{BuildError, FlexBodyError};
 pub use flex_body::FlexBody;
 pub use frame::{Arms, Frame, frame_of};
 pub use handle::FlexBodyHandle;
-pub use materials::Region;
 pub use pin::Pin;
 #[cfg(feature = "serde-serialize")]
 pub(crate) use record::{SetRecord, SetRecordError};
+pub use region::Region;
 pub use set::FlexBodySet;
 pub use state::{AppliedLoad, BodyEnergy, FlexState, FrameMotion, KnownLoads, Linearized};
 pub use surface::SurfacePick;

@@ -4,7 +4,8 @@ use super::build::check_range;
 use super::error::{BuildError, FlexBodyError, check_finite, check_held};
 use super::flex_body::FlexBody;
 use super::frame::Arms;
-use super::materials::Region;
+use super::materials::number_of;
+use super::region::Region;
 use super::state::FlexState;
 use super::stillness::Stillness;
 use crate::fe::finite_strain::{
@@ -197,7 +198,7 @@ impl FlexBody {
         material: impl Material + 'static,
     ) -> Result<(), BuildError> {
         material.validate()?;
-        let region = region.into().number_in(self.mesh())?;
+        let region = number_of(&region.into(), self.mesh())?;
         self.remake(|description| {
             description.regions.retain(|(own, _)| *own != region);
             description.regions.push((region, Arc::new(material)));

@@ -2,6 +2,7 @@ use super::*;
 use crate::constraint::joint::{
     JointGrip, JointKey, JointLaw, JointOwner, JointRow, Measure, RememberedJoint,
 };
+use crate::kkt::Island;
 use crate::kkt::joint_law::Finish;
 use crate::kkt::together::tests::{flexible, island_of, random_motion, rigid};
 use crate::linalg::complementarity::{RowKind, Status};
