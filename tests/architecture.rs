@@ -651,6 +651,93 @@ fn elementary_functions_have_one_place() {
     assert_none(&violations);
 }
 
+/// Where small numbers are settings, ranges of what may be asked for, or the smallest that may be divided by; and what is still to be told from
+/// `math::rounding`.
+const SMALL_ELSEWHERE: [&str; 14] = [
+    "body/build.rs",
+    "constraint/geometry/segment_query.rs",
+    "fe/frequency/mod.rs",
+    "fe/material/",
+    "fe/modes/search.rs",
+    "integrator/beta2.rs",
+    "io/",
+    "kkt/constraint_function/mod.rs",
+    "kkt/follow",
+    "kkt/sparse",
+    "linalg/cone/",
+    "math/rounding.rs",
+    "nonlinear/newton.rs",
+    "path/",
+];
+
+/// Literals of `code` that are a billionth or less, with their offsets.
+fn tiny_literals(code: &str) -> Vec<(usize, String)> {
+    let tiny = |(at, _): (usize, &str)| {
+        let exponent: String = code[at + 2..]
+            .chars()
+            .take_while(char::is_ascii_digit)
+            .collect();
+        let mantissa = code[..at]
+            .chars()
+            .rev()
+            .take_while(|&c| is_word(c) || c == '.');
+        let mantissa: String = mantissa.collect();
+        let is_number = mantissa.ends_with(|c: char| c.is_ascii_digit());
+        let is_tiny = exponent.parse::<u32>().is_ok_and(|exponent| exponent >= 9);
+        (is_number && is_tiny).then(|| {
+            (
+                at,
+                format!("{}e-{exponent}", mantissa.chars().rev().collect::<String>()),
+            )
+        })
+    };
+    code.match_indices("e-").filter_map(tiny).collect()
+}
+
+#[test]
+fn roundings_have_one_place() {
+    let mut violations = Vec::new();
+    for source in &sources() {
+        let mut exempt = SMALL_ELSEWHERE.iter().chain(&TELLERS);
+        let tests = source.module.iter().any(|part| part == "tests");
+        if tests || exempt.any(|start| source.name.starts_with(start)) {
+            continue;
+        }
+        for (at, literal) in tiny_literals(&source.code) {
+            violations.push(format!(
+                "src/{}:{}: `{literal}`: name what it rounds, `math::rounding`",
+                source.name,
+                source.line_of(at)
+            ));
+        }
+    }
+    assert_none(&violations);
+    let found = tiny_literals("x > 1e-9 && y < 2.5e-12 && z == 1e-8 && value-10 > e-11");
+    let found: Vec<String> = found.into_iter().map(|(_, literal)| literal).collect();
+    assert_eq!(found, ["1e-9", "2.5e-12"]);
+}
+
+/// Values of judgement, `math::judged`: let this number fall. `pipeline/sensitivity` asks what depends on them. Those of `linalg/cone`, `path`,
+/// `kkt/follow` and `kkt/sparse` are still to be declared.
+const MOST_JUDGED: usize = 36;
+
+#[test]
+fn values_of_judgement_are_counted() {
+    let all = sources();
+    let declared = all
+        .iter()
+        .map(|source| source.code.matches("Judged::new(").count());
+    let n: usize = declared.sum();
+    assert!(
+        n <= MOST_JUDGED,
+        "{n} values of judgement: derive the new ones"
+    );
+    assert!(
+        n == MOST_JUDGED,
+        "only {n} values of judgement are left: lower the number"
+    );
+}
+
 #[test]
 fn no_source_file_outgrows_a_reader() {
     let violations: Vec<String> = sources()

@@ -7,14 +7,14 @@ use super::flex_body::FlexBody;
 use super::handle::FlexBodyHandle;
 use super::set::FlexBodySet;
 use crate::fe::model::Model;
-use crate::math::{REAL_EPSILON, Vec2, node_vec};
+use crate::math::{REAL_EPSILON, Vec2, judged::Judged, node_vec};
 use crate::rapier::prelude::{
     ActiveCollisionTypes, ActiveEvents, ActiveHooks, ColliderHandle, InteractionGroups,
 };
 
 /// Offset between a flexible surface and what it touches, relative to its shortest edge at rest: far above rounding, far below what
 /// the mesh resolves. Between two hundredths and a thousandth of an edge no result depends on it but by its own size.
-pub(crate) const OFFSET: f64 = 1e-2;
+pub(crate) const OFFSET: Judged = Judged::new("body::OFFSET", 1e-2);
 
 /// Spacings of rapier's numbers, at the coordinates of the body, that an offset is never below: rapier holds poses in it.
 const SPACINGS: f64 = 8.0;

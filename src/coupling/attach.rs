@@ -5,7 +5,7 @@ use crate::body::{
     Anchor, Attachment, AttachmentBuilder, AttachmentError, AttachmentHandle, AttachmentKind,
     AttachmentTarget, Choice, FlexBody, FlexBodySet, Plan, Shift,
 };
-use crate::math::{Vec2, is_held, node_vec};
+use crate::math::{Vec2, is_held, judged::Judged, node_vec};
 use crate::rapier::prelude::*;
 
 impl FlexBodySet {
@@ -175,7 +175,7 @@ fn extent(body: &FlexBody) -> f64 {
 }
 
 /// Change of length, relative, that a weld may ask of a boundary segment (-): half of it is gone, or as much again and half is added.
-const MOST_STRAIN: f64 = 0.5;
+const MOST_STRAIN: Judged = Judged::new("coupling::MOST_STRAIN", 0.5);
 
 /// Refuses to hold neighbouring nodes at places that are much nearer to each other, or farther apart, than the nodes: what is between them
 /// would be crushed or torn.

@@ -8,7 +8,7 @@ use crate::body::{
     BuildError, ContactSettings, FlexBody, FlexBodyBuilder, FlexBodyError, FlexBodyHandle,
     FlexBodySet,
 };
-use crate::math::{node_vec, to_rapier};
+use crate::math::{node_vec, rounding, to_rapier};
 use crate::rapier::parry::shape::{Polyline, PolylineFlags};
 use crate::rapier::prelude::*;
 
@@ -205,7 +205,11 @@ pub(crate) fn is_carried(body: &FlexBody, bodies: &RigidBodySet, colliders: &Col
 
 /// How far the surface in rapier may lag behind a body at rest, over the size of the coordinates: every write wakes what touches it,
 /// and a body at rest still moves by rounding.
-const LAG: f64 = if size_of::<Real>() == 4 { 1e-7 } else { 1e-9 };
+const LAG: f64 = if size_of::<Real>() == 4 {
+    1e-7
+} else {
+    rounding::SHARE
+};
 
 /// Whether these vertices are where the nodes are, but for a `share` of their coordinates.
 fn is_placed(body: &FlexBody, vertices: &[Vector], share: f64) -> bool {

@@ -8,16 +8,16 @@
 use super::inset::{KEPT, inwards, most_inwards};
 use crate::body::contact_offset;
 use crate::kkt::Island;
-use crate::math::{Vec2, node_vec, perp, rotation};
+use crate::math::{Vec2, judged::Judged, node_vec, perp, rotation};
 use crate::system::{Block, FlexBlock};
 use std::collections::HashMap;
 
 /// How much farther than at rest a vertex may go inwards, relative to the edges beside it, until these count as folded: a straight surface by
 /// 96°.
-const FOLDED: f64 = 1.5;
+const FOLDED: Judged = Judged::new("coupling::FOLDED", 1.5);
 
 /// Share of an edge that drawing inwards may take where it has been crushed: twice as much as at rest.
-const LEFT: f64 = 2.0 * KEPT;
+const LEFT: Judged = KEPT.times(2.0);
 
 /// How often a rounding is doubled for a pair that overlaps by more than both have: up to a third of the width of rigid bodies that are as
 /// wide as each other, a sixth of a cell. What is deeper is left to signed rows.

@@ -1,6 +1,6 @@
 //! Outlines drawn inwards: each edge moved by the same distance into the material.
 
-use crate::math::{Vec2, cross, perp};
+use crate::math::{Vec2, cross, judged::Judged, perp};
 
 /// A convex polygon drawn inwards by up to `offset` (m), over `inset`; returns by how much: never so far that an edge would vanish.
 pub(super) fn draw_inwards(vertices: &[Vec2], offset: f64, inset: &mut Vec<Vec2>) -> f64 {
@@ -51,7 +51,7 @@ fn bend(ring: &[Vec2], vertex: usize) -> f64 {
 const TIP: f64 = std::f64::consts::SQRT_2 - 1.0;
 
 /// Share of an edge that drawing inwards may take: a quarter leaves a core that is no sliver, whatever the polygon.
-pub(super) const KEPT: f64 = 0.25;
+pub(super) const KEPT: Judged = Judged::new("coupling::KEPT", 0.25);
 
 #[cfg(test)]
 mod tests {

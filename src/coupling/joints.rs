@@ -11,13 +11,13 @@ use crate::constraint::joint::{
     JointGrip, JointKey, JointLaw, JointMemory, JointOwner, JointRow, Measure, Spring,
 };
 use crate::kkt::Island;
-use crate::math::{Vec2, atan2, from_rapier, rounding, sin_cos};
+use crate::math::{Vec2, atan2, from_rapier, judged::Judged, rounding, sin_cos};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use crate::system::{Block, Point, RigidMotion};
 
 /// Oscillations per step (-) from which a soft axis is rigid: no step of any length resolves them.
-const RIGID_FROM: f64 = 10.0;
+const RIGID_FROM: Judged = Judged::new("coupling::RIGID_FROM", 10.0);
 
 /// A force no joint needs: from here on there is no bound (N).
 const UNBOUNDED: f64 = 1e30;

@@ -9,13 +9,14 @@ use super::places::travel_of;
 use super::sets::RapierSets;
 use super::unlisted::Listed;
 use crate::body::FlexBodySet;
+use crate::math::judged::Judged;
 use crate::rapier::math::Real;
 
 /// By how much more the boxes grow than they were left by: with more members the motion is another one.
-const MORE: Real = 1.5;
+const MORE: Judged = Judged::new("coupling::MORE", 1.5);
 
 /// How far beyond their boxes members are thrown where a step has to be cut, relative to the farthest way that one of them was to go in it.
-const THROWN: Real = 0.25;
+const THROWN: Judged = Judged::new("coupling::THROWN", 0.25);
 
 impl Claims {
     /// By how much members have left the boxes they were looked for in (m).

@@ -1,15 +1,18 @@
 //! What resists the motion of a multibody at once: springs, motors, limits, and contacts with what does not move.
 
 use super::multibody::{Equations, Pace, Solved, Tree};
+use super::reading::DOMINATED;
 use super::sets::RapierSets;
-use crate::math::{Vec2, from_rapier, perp};
+use crate::math::{Vec2, from_rapier, judged::Judged, perp};
 use crate::rapier::prelude::*;
 
-/// Stiffness of what gives no way, in multiples of the mass that it holds over `c dt²`.
-const HELD: f64 = 1e6;
+/// Stiffness of what gives no way, in multiples of the mass that it holds over `c dt²`: as much as outweighs all that is felt.
+fn held() -> f64 {
+    1.0 / DOMINATED.get()
+}
 
 /// Share of the friction there may be below which a contact sticks.
-const STICKS: f64 = 0.99;
+const STICKS: Judged = Judged::new("coupling::STICKS", 0.99);
 
 /// How a multibody will move, and what it answers to more forces.
 #[derive(Clone, Debug)]
@@ -259,6 +262,6 @@ impl Tree {
 impl Pace {
     /// Stiffness that holds a mass.
     fn held(self, weight: f64) -> f64 {
-        HELD * weight / (self.share * self.dt * self.dt)
+        held() * weight / (self.share * self.dt * self.dt)
     }
 }

@@ -8,7 +8,7 @@ use super::sets::RapierSets;
 use super::walk::ClaimedPair;
 use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
 use crate::constraint::geometry;
-use crate::math::{Vec2, from_rapier, node_vec};
+use crate::math::{Vec2, from_rapier, judged::Judged, node_vec};
 use crate::rapier::parry::query;
 use crate::rapier::prelude::*;
 
@@ -31,7 +31,7 @@ impl<'a> From<&'a RapierSets<'_>> for ReadSets<'a> {
 }
 
 /// Depth over the length of a boundary segment from which bodies count as overlapping: what has been put into each other, not what rests.
-pub(crate) const DEEP: f64 = geometry::DEEP;
+pub(crate) const DEEP: Judged = geometry::DEEP;
 
 /// The pairs of this step in which a flexible body that has not been stepped before, or a rigid one that the user has inserted, moved or altered,
 /// overlaps what it meets.

@@ -7,7 +7,7 @@ use crate::body::FlexBodyHandle;
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
 use crate::linalg::cholesky::CholeskyError;
-use crate::math::{Vec2, atan2, from_rapier, is_held};
+use crate::math::{Vec2, atan2, from_rapier, is_held, judged::Judged};
 use crate::rapier::prelude::*;
 use crate::system::{RigidBlock, RigidLoad, RigidMotion};
 use thiserror::Error;
@@ -99,7 +99,7 @@ pub(super) fn prescribed_block(body: &RigidBody, dt: f64, span: Span) -> RigidBl
 /// Share of its inertia by which a body of negative dominance is felt by those that dominate it.
 ///
 /// Mass ratios of a million are solved to full precision, and what falls with all its forces scaled falls as before.
-const DOMINATED: f64 = 1e-6;
+pub(super) const DOMINATED: Judged = Judged::new("coupling::DOMINATED", 1e-6);
 
 /// Mass, forces and damping of a dynamic body.
 pub(super) fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
@@ -116,7 +116,7 @@ pub(super) fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
         f64::from(body.angular_damping()),
     );
     let scale = if body.dominance_group() < 0 {
-        DOMINATED
+        DOMINATED.get()
     } else {
         1.0
     };

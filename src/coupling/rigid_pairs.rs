@@ -9,13 +9,13 @@ use super::references::References;
 use crate::constraint::contact::{Candidate, ContactKey, ContactLaw, Pair};
 use crate::constraint::geometry::{FaceOrVertex, PairContacts, Pose2, RESTING, polygon_pair};
 use crate::kkt::Island;
-use crate::math::Vec2;
+use crate::math::{Vec2, judged::Judged};
 use crate::system::{Block, RigidBlock};
 
 /// Motion within the step, relative to the smaller part's size, from which other features may meet than faced each other.
 /// The tests hold from 0.7 to 1.4 times this value; at half, a heavy box on two light ones needs a linearised step, and at twice,
 /// bodies jam in more than a tenth of the steps of a random world.
-const FAR: f64 = 0.05;
+const FAR: Judged = Judged::new("coupling::FAR", 0.05);
 
 /// Multiple of the motion before an impact that a corner may make after it: its own, and that of the other end of a free bar, which a blow
 /// on one end moves twice as fast.
@@ -23,7 +23,7 @@ const THROW: f64 = 1.0 + 2.0;
 
 /// Turn within the step (rad), and slope of one face to the other, up to which faces meet flat: both ends of a face then rest on the
 /// other, their own two points say all, and the corners of equal boxes need not be told apart.
-const FLAT: f64 = RESTING;
+const FLAT: Judged = RESTING;
 
 /// Stands for the face in the key of a vertex that may meet any.
 const ANY_FACE: u32 = 0x7fff << 15;

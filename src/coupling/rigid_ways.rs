@@ -10,12 +10,13 @@ use super::outlines::Piece;
 use super::ways::{REACH_OF_WIDTH, SOFT_SHARE};
 use crate::constraint::contact::ContactLaw;
 use crate::kkt::{Island, Way};
+use crate::math::judged::Judged;
 use crate::rapier::prelude::ColliderHandle;
 use std::collections::HashMap;
 
 /// Rounding of a rigid body's outline, relative to its width: what rapier leaves of boxes at rest in piles of thirty is one to five
 /// hundredths of their size for each pair.
-const ROUNDING: f64 = 2e-2;
+const ROUNDING: Judged = Judged::new("coupling::ROUNDING", 2e-2);
 
 /// A piece of a collider as a member of the path.
 #[derive(Clone, Copy, Debug)]
@@ -148,14 +149,14 @@ impl RigidCores {
             return None;
         };
         let surface = &way.surfaces[side];
-        let least = ROUNDING * width;
+        let least = ROUNDING.get() * width;
         let rounding = f64::from(1u32 << doublings) * least;
         let closing = self.draft.draw_core((vertices, *radius), surface, rounding);
         if closing <= 0.0 {
             return None;
         }
         let (margin, width) = if *radius > 0.0 || vertices.len() < 3 {
-            (SOFT_SHARE * radius, 2.0 * radius)
+            (SOFT_SHARE.get() * radius, 2.0 * radius)
         } else {
             (closing.min(least), *width)
         };

@@ -7,14 +7,14 @@ use super::landing::Landing;
 use super::quarantine::is_out;
 use super::sets::RapierSets;
 use crate::body::{FlexBody, FlexBodySet};
-use crate::math::from_rapier;
+use crate::math::{from_rapier, judged::Judged};
 use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::Aabb;
 use crate::rapier::prelude::*;
 
 /// How far a node of a body at rest is at most from where it was, over the body's size: displacements and forces are then those of equilibrium to
 /// some digits more than rapier's single precision has. Rapier's own threshold, 5 cm/s, would freeze a beam that swings.
-const STILL: f64 = 1e-8;
+const STILL: Judged = Judged::new("coupling::STILL", 1e-8);
 
 /// Part of the time until sleep at which the timer of a body that moves is set back: not in every step, for rapier then looks at
 /// the body again.

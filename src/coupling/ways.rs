@@ -9,21 +9,23 @@ use super::outlines::Piece;
 use crate::body::OFFSET;
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::kkt::{Island, Way};
-use crate::math::rotation;
+use crate::math::{judged::Judged, rotation};
 use crate::system::{Block, FlexBlock};
 
 /// Reach of rows between rigid bodies, relative to the thinner one's width, and of a flexible body's, relative to its shortest edge: bodies are
 /// kept apart from whatever is nearer. Between half of it and twice only the number of passes changes.
-pub(super) const REACH_OF_WIDTH: f64 = 0.1;
+pub(super) const REACH_OF_WIDTH: Judged = Judged::new("coupling::REACH_OF_WIDTH", 0.1);
 
 /// The same of a flexible body beyond the distance at which contact closes, relative to the margin, which is its offset.
-const REACH: f64 = REACH_OF_WIDTH / OFFSET;
+fn reach_of_margin() -> f64 {
+    REACH_OF_WIDTH / OFFSET.get()
+}
 
 /// Share of a round body's radius that the path may use up.
-pub(super) const SOFT_SHARE: f64 = 0.5;
+pub(super) const SOFT_SHARE: Judged = Judged::new("coupling::SOFT_SHARE", 0.5);
 
 /// Part of a core's width that it may be drawn inwards for a flexible body: both sides together take what an edge may lose.
-const MOST_INWARDS: f64 = 0.5 * KEPT;
+const MOST_INWARDS: Judged = KEPT.times(0.5);
 
 /// Keeps a flexible block apart from the pieces of a rigid collider near it; `reach` is how far around its swept box it may get (m).
 ///
@@ -87,7 +89,7 @@ fn lead_pieces(
             law,
             closing: closing.distance + own.round + law.skin,
             margin: closing.margin,
-            reach: REACH * closing.margin,
+            reach: reach_of_margin() * closing.margin,
         };
         if !island.path.add_way(way) {
             island.path.truncate(first);
@@ -153,7 +155,7 @@ pub(super) fn flex_flex(
                 law,
                 closing: closing + law.skin,
                 margin,
-                reach: REACH * offset,
+                reach: reach_of_margin() * offset,
             };
             let is_added = match needs_room {
                 true => island.path.add_roomy_way(way),
@@ -198,7 +200,7 @@ pub(super) fn flex_own(
         law,
         closing,
         margin,
-        reach: REACH * margin,
+        reach: reach_of_margin() * margin,
     };
     clearance > 0.0 && island.path.add_own_way(way, body, clearance)
 }
@@ -230,12 +232,12 @@ fn draw(
             margin: offset,
         });
     };
-    let inwards = offset.min(MOST_INWARDS * width);
+    let inwards = offset.min(MOST_INWARDS.get() * width);
     let distance = draft.draw_core((vertices, *radius), surface, inwards);
     let bounds = draft.bounds(surface, island)?.loosened(distance);
     let is_near = bounds.intersects(&guest.near);
     let margin = if *radius > 0.0 || vertices.len() < 3 {
-        offset.min(SOFT_SHARE * radius)
+        offset.min(SOFT_SHARE.get() * radius)
     } else {
         distance
     };

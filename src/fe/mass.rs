@@ -10,7 +10,8 @@ mod moments;
 
 pub use consistent::redistribute_consistent;
 
-use crate::math::rounding;
+use crate::fe::LEAST_LEFT;
+use crate::math::{judged::Judged, rounding};
 use moments::Frame;
 
 /// Why the mass cannot be redistributed.
@@ -63,7 +64,7 @@ pub struct Redistribution {
 
 /// A massive node keeps at least this part of what it carries: one with less would set the step of explicit
 /// integration (its frequency grows with the root of 1 / 0.1, a factor 3).
-const SMALLEST_FACTOR: f64 = 0.1;
+const SMALLEST_FACTOR: Judged = LEAST_LEFT;
 /// A moment counts as kept within this part of `total x gyration radius^degree`: rounding over 1e5 nodes.
 const KEPT: f64 = rounding::SOLVED;
 

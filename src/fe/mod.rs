@@ -16,6 +16,12 @@
 //!
 //! SI units throughout; the strain order is `[e_xx, e_yy, g_xy]` with engineering shear.
 
+use crate::math::judged::Judged;
+
+/// What is left of something that must not vanish, mass, bending or area, relative to what it has (-): a tenth, so that what grows with its
+/// inverse, frequencies by its root, stays within sight.
+pub(crate) const LEAST_LEFT: Judged = Judged::new("fe::LEAST_LEFT", 0.1);
+
 pub mod element;
 pub mod finite_strain;
 pub mod frequency;

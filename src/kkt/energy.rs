@@ -15,7 +15,7 @@ use super::summary::IslandSummary;
 use super::work::{
     WorkGrips, actual_work, flow_energy, joint_work, kinetic_energy, momentum_at_most,
 };
-use crate::math::rounding;
+use crate::math::{judged::Judged, rounding};
 use crate::system::{Block, Response};
 
 impl Island {
@@ -64,7 +64,7 @@ impl Island {
         let gain =
             kinetic + elastic - summary.start_energy[0] - summary.start_energy[1] - allowance;
         *reserve -= gain;
-        let band = if touches { ROUND_OFF } else { SWING };
+        let band = if touches { ROUND_OFF } else { SWING.get() };
         // What is there by mistake is no measure of it.
         let had = summary.start_energy[0] + summary.start_energy[1] + allowance.abs();
         let debt = -*reserve - band * (kinetic + elastic).min(had);
@@ -183,7 +183,7 @@ const ROUND_OFF: f64 = rounding::SUM;
 
 /// Change of energy, relative, within which the integrator swings about it and gains nothing in the long run: of a body that turns freely,
 /// and of what rests on each other and rocks.
-const SWING: f64 = 1e-3;
+const SWING: Judged = Judged::new("kkt::SWING", 1e-3);
 
 /// The root nearer to zero of `curvature s² + slope s + excess = 0`, or the lowest point of the parabola.
 fn step_of_parabola(curvature: f64, slope: f64, excess: f64) -> f64 {

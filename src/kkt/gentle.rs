@@ -9,14 +9,14 @@ use super::summary::IslandSummary;
 use super::work::{applied_work, end_energy};
 use crate::constraint::contact::ContactMemory;
 use crate::linalg::complementarity::Status;
-use crate::math::are_held;
+use crate::math::{are_held, judged::Judged};
 use crate::system::Block;
 
 /// Energy beyond what there was and what loads have done that tells of forces that are none (-): as much as the tests of energy allow.
-pub const GAINED: f64 = 0.01;
+pub const GAINED: Judged = Judged::new("kkt::GAINED", 0.01);
 
 /// Energy gained in a step, relative to what there was and was brought, that no swing of stored accelerations explains (-).
-pub const DOUBLED: f64 = 1.0;
+pub const DOUBLED: Judged = Judged::new("kkt::DOUBLED", 1.0);
 
 impl Island {
     /// Whether a step that is not solved has gained energy.
@@ -44,7 +44,7 @@ impl Island {
             Block::Rigid(block) => block.mass()[0].max(block.mass()[1]),
         });
         let parting = 2.0 * masses.sum::<f64>() * (PARTING_RATE * deepest).powi(2);
-        let most = (1.0 + DOUBLED) * summary.brought() + parting;
+        let most = (1.0 + DOUBLED.get()) * summary.brought() + parting;
         let may_touch = !self.path.is_empty() || !self.contacts.is_empty();
         may_touch && summary.end_energy[0] > most
     }
@@ -176,7 +176,7 @@ mod tests {
         let mut island = balls(true);
         island.margin = MARGIN;
         // Both at twice the pace at which so much parts.
-        let parting = |way: f64| 2.0 * 0.5 * 2.0 * (2.0 * PARTING_RATE * way).powi(2);
+        let parting = |way: f64| 2.0 * 0.5 * 2.0 * (2.0 * PARTING_RATE.get() * way).powi(2);
         let at_margin = parting(MARGIN);
         for (more, is_thrown) in [(-40.0, false), (-0.1, false), (0.1, true), (1e20, true)] {
             summary.end_energy = [40.0 + at_margin + more, 1e3];

@@ -3,13 +3,14 @@
 use super::active_contact::ActiveContact;
 use super::joint_rows::ActiveJoint;
 use crate::constraint::joint::JointGrip;
+use crate::math::judged::{Judged, NEGLIGIBLE};
 
 /// Share of its own mobility by which a contact between bodies that a joint holds gives way to its impulse (-).
 ///
 /// Boxes that are hinged at the middle of faces that touch press at both ends of these while the hinge pulls, with forces of any size that change nothing as
 /// long as levers stay what they are. They turn within the step, and such forces did work: energy grew by 10⁵. What approaches with `v` so goes on with
 /// a thousandth of that, and rounding, of 10⁻⁹ `v`, ends in a millionth of the impulse that stops it.
-pub(super) const JOINED: f64 = 1e-3;
+pub(super) const JOINED: Judged = NEGLIGIBLE;
 
 /// Pairs of blocks that joints hold, in order.
 #[derive(Clone, Debug, Default)]

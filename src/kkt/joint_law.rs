@@ -2,12 +2,10 @@
 
 use super::island::SolveSettings;
 use super::position::PARTING_RATE;
+use crate::constraint::geometry::RESTING;
 use crate::constraint::joint::{JointLaw, JointRow, Spring};
 use crate::linalg::complementarity::RowKind;
 use crate::math::exp;
-
-/// Violation at the beginning of a step (m or rad) beyond which a joint closes over several steps: someone has put it there.
-const SLACK: f64 = 1e-3;
 
 /// What the velocity stage does about a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,11 +50,16 @@ pub(super) fn resolve(
     } else {
         1.0
     };
+    // Ends that are farther apart than what rests on each other have been put there: they close over several steps.
+    let slack = match row.measure.is_turn() {
+        true => RESTING.get(),
+        false => RESTING * settings.length_unit,
+    };
     match row.law {
         JointLaw::Rigid { goal, rate } => {
             let (goal, rate) = (row.sign * goal, row.sign * rate);
             let off = start + settings.dt * rate - goal;
-            let [left, closing] = closed(row, off, off.abs() > SLACK, settings.dt);
+            let [left, closing] = closed(row, off, off.abs() > slack, settings.dt);
             Resolved {
                 goal: goal + left,
                 target: goal,
@@ -69,7 +72,7 @@ pub(super) fn resolve(
         JointLaw::Limit { bound } => {
             let bound = row.sign * bound;
             let off = start - bound;
-            let [left, closing] = closed(row, off.min(0.0), off < -SLACK, settings.dt);
+            let [left, closing] = closed(row, off.min(0.0), off < -slack, settings.dt);
             Resolved {
                 goal: bound + left,
                 target: bound,

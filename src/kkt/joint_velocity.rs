@@ -7,11 +7,14 @@ use super::joint_system::Rows;
 use super::unresolved::share_of;
 use crate::constraint::joint::{JointGrip, Spring, When, unit_wrench};
 use crate::linalg::complementarity::{Problem, RowKind, Status};
-use crate::math::rounding;
+use crate::math::{
+    judged::{Judged, NEGLIGIBLE},
+    rounding,
+};
 use crate::system::{Block, Point, Response};
 
 /// Share of a soft row's velocity below which it is left to its multiplier.
-const LEFT_ALONE: f64 = 1e-3;
+const LEFT_ALONE: Judged = NEGLIGIBLE;
 
 /// Distance from its bound (m or rad) within which a limit that pushed in the last step has pushed all along.
 const STAYED: f64 = rounding::SINGLE;

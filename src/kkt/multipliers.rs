@@ -8,7 +8,7 @@ use super::sparse::Asked;
 use super::summary::IslandSummary;
 use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{INDEPENDENT, Problem, RowKind};
-use crate::math::Vec2;
+use crate::math::{Vec2, rounding};
 use crate::system::{Block, Point, Response};
 
 /// Multiple of the tolerance by which redundant rows may contradict each other.
@@ -208,7 +208,7 @@ impl Island {
             }
         }
         let residual = AVERAGED * velocity / (largest.sqrt() * scale);
-        residual.clamp(1e-12, 1e-6)
+        residual.clamp(rounding::SUM, rounding::SINGLE)
     }
 
     /// `b -= W p`: what the rows would be without the multipliers they were measured under.

@@ -11,17 +11,17 @@ use super::follow::Passed;
 use super::island::{ActiveContact, Island, SolveSettings};
 use super::summary::IslandSummary;
 use crate::constraint::contact::{ContactMemory, Kinematics};
-use crate::math::{Vec2, exp, rounding};
+use crate::math::{Vec2, exp, judged::Judged, rounding};
 use crate::system::{Block, Response};
 
 /// Rate at which bodies that were put into each other part (1/s): a third of the overlap in a step of 1/60 s.
-pub(super) const PARTING_RATE: f64 = 24.0;
+pub(super) const PARTING_RATE: Judged = Judged::new("kkt::PARTING_RATE", 24.0);
 
 /// Round-off of gaps, relative to the extent of the scene.
 pub(super) const ROUND_OFF: f64 = 2.0 * rounding::SUM;
 
 /// Multiple of the tolerance from which an overlap counts as put there.
-const OVERLAPPED: f64 = 1e7;
+const OVERLAPPED: Judged = Judged::new("kkt::OVERLAPPED", 1e7);
 
 /// Times that a contact without a gap is let go within a step.
 const LET_GO: u8 = 2;

@@ -17,12 +17,11 @@
 
 use super::settings::SolveSettings;
 use crate::constraint::contact::Kinematics;
-use crate::math::Mat2;
+use crate::math::{Mat2, judged::Judged};
 use crate::system::{Block, Response};
 
-/// Share of rigid mobility below which bodies meet by their elasticity, and above which as rigid ones.
-const ELASTIC: f64 = 0.3;
-const RIGID: f64 = 1.0 - ELASTIC;
+/// Share of rigid mobility below which bodies meet by their elasticity; as rigid ones above what is left of the whole.
+const ELASTIC: Judged = Judged::new("kkt::ELASTIC", 0.3);
 
 /// How much of a contact's mobility within the step is that of the masses behind the surface, and how much that of rigid bodies, both
 /// mapped to [0, 1].
@@ -62,7 +61,7 @@ pub(super) fn unresolved_shares(
 /// Maps the share that rigid mobility has of a mobility to [0, 1].
 pub(super) fn share_of(rigid: f64, actual: f64) -> f64 {
     let share = if actual > 0.0 { rigid / actual } else { 0.0 };
-    smooth_step(share, [ELASTIC, RIGID])
+    smooth_step(share, [ELASTIC.get(), 1.0 - ELASTIC.get()])
 }
 
 /// From 0 up to the first bound to 1 from the second on, without a kink; 0 if the bounds leave no room.

@@ -6,6 +6,7 @@ use super::stepper::require_finite;
 use super::{LargeError, LargeSettings};
 use crate::fe::finite_strain::{FiniteStrainModel, Form};
 use crate::fe::material::hyperelastic::PlasticState;
+use crate::math::judged::Judged;
 use std::sync::Arc;
 
 /// From where to where loads and held dofs go.
@@ -44,7 +45,7 @@ pub struct LoadReport {
 
 /// Growth of the residual in one iteration beyond which half of an increment of a body that flows is taken back: of 1.2, 1.5, 2 and 3 the one that
 /// needs the fewest iterations in limit loads.
-const MOST_GROWTH: f64 = 1.5;
+const MOST_GROWTH: Judged = Judged::new("large::MOST_GROWTH", 1.5);
 
 /// Finds equilibria of one body of large strain by load control.
 ///
@@ -209,7 +210,11 @@ impl LoadStepper {
             is_held: case.is_held,
             // An increment of bending stretches straight ways first, at any growth of the residual. What flows beyond its yield stress is far from
             // what its tangent tells.
-            most_growth: if flows { MOST_GROWTH } else { f64::INFINITY },
+            most_growth: if flows {
+                MOST_GROWTH.get()
+            } else {
+                f64::INFINITY
+            },
         };
         if ahead == 0.0 && flows {
             self.newton.follow_held(&equation, &mut self.end);

@@ -43,7 +43,7 @@ pub use error::LargeError;
 pub use motion::WorldMotion;
 pub(crate) use newton::{MOST_CUTS, SLOWEST, largest_row_sum};
 pub use settings::LargeSettings;
-pub(crate) use stepper::MOST_GROWTH;
+pub(crate) use stepper::most_growth;
 pub use stepper::{LargeStepper, StepWork};
 
 #[cfg(doc)]

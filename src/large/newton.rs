@@ -8,10 +8,11 @@ use super::turn::turn;
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Form, Inadmissible, Linearization};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::BlockCholesky;
+use crate::math::judged::Judged;
 
 /// A residual of which an iteration leaves more than this asks for a new factor: within a tenth of the cheapest of the rules tried
 /// in swings of 126 to 8,442 dofs.
-pub(crate) const SLOWEST: f64 = 0.25;
+pub(crate) const SLOWEST: Judged = Judged::new("large::SLOWEST", 0.25);
 
 /// An increment is cut to 1/64 before the attempt is given up: a direction that does not do for that is wrong.
 pub(crate) const MOST_CUTS: usize = 6;

@@ -1,7 +1,7 @@
 //! One step of a large body, in halves where it is not found.
 
 use super::equation::{Equation, Inertia};
-use super::newton::{Limits, Newton, Work};
+use super::newton::{Limits, Newton, SLOWEST, Work};
 use super::turn::{MeanRotation, turn};
 use super::{LargeError, LargeSettings, WorldMotion};
 use crate::body::Pin;
@@ -276,7 +276,7 @@ impl LargeStepper {
             start: &motion.position,
             coast: &self.coast,
             is_held: &self.is_held,
-            most_growth: MOST_GROWTH,
+            most_growth: most_growth(),
         };
         let limits = Limits {
             tolerance: self.settings.tolerance,
@@ -331,9 +331,12 @@ impl LargeStepper {
     }
 }
 
-/// A residual that grows fourfold in one iteration has left the neighbourhood in which the factor means something; the growth by the
+/// Growth of a residual in one iteration that has left the neighbourhood in which the factor means something, as much as an iteration is to
+/// leave of it: fourfold. The growth by the
 /// first increment of a body that turns, by the stretch `θ²/2` of straight ways, stays below.
-pub(crate) const MOST_GROWTH: f64 = 4.0;
+pub(crate) fn most_growth() -> f64 {
+    1.0 / SLOWEST.get()
+}
 
 pub(super) fn require_finite(
     name: &'static str,

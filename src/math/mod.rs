@@ -57,6 +57,7 @@ pub fn add_node_vec(dofs: &mut [f64], node: usize, value: Vec2) {
 }
 
 mod elementary;
+pub(crate) mod judged;
 mod mix;
 #[cfg(feature = "serde-serialize")]
 pub(crate) mod ordered;

@@ -78,8 +78,8 @@ impl Solver {
         // much as there was, on a path.
         let swings = self.island.has_swinging_joints(step.is_within());
         let share = match (swings, parameters.leads(step)) {
-            (false, _) => GAINED,
-            (true, true) => DOUBLED,
+            (false, _) => GAINED.get(),
+            (true, true) => DOUBLED.get(),
             (true, false) => f64::INFINITY,
         };
         let owes_more = summary.calmed - reserve > share * summary.brought() + (-before).max(0.0);

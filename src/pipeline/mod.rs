@@ -19,6 +19,9 @@ mod overbent;
 mod participant;
 mod quality;
 mod report;
+// Scaled values are those of one thread.
+#[cfg(all(test, not(feature = "parallel")))]
+mod sensitivity;
 mod settings;
 #[cfg(feature = "serde-serialize")]
 mod snapshot;

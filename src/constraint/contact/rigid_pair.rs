@@ -7,11 +7,11 @@ use super::scene::{Scene, rigid_of};
 use crate::constraint::geometry::{
     Feature, PairContact, Pose2, crossing_overlap, entered_separation, start_separation,
 };
-use crate::math::{Vec2, atan2, perp, rotation};
+use crate::math::{Vec2, atan2, judged::Judged, perp, rotation};
 use crate::system::{Point, RigidBlock, RigidMotion};
 
 /// Relative turn that counts as a straight piece of a vertex's path (rad).
-const PIECE: f64 = 0.15;
+const PIECE: Judged = Judged::new("constraint::PIECE", 0.15);
 
 /// Most pieces of a path.
 const MOST_PIECES: usize = 12;

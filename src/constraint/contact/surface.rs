@@ -1,6 +1,6 @@
 //! The deformed surface of a flexible block as a target: the boundary polyline, material on its left.
 
-use crate::math::{Vec2, cross, perp, rounding};
+use crate::math::{Vec2, cross, judged::Judged, perp, rounding};
 use crate::system::FlexBlock;
 
 /// The point of a surface closest to a given one.
@@ -61,15 +61,15 @@ impl Cone {
 
 /// Least cosine between a surface and a direction of a corner that push each other: faces bulge by some degrees. The tests
 /// hold from half of this value to 1.4 times; at twice, two of a thousand random shots go through.
-const POINTING: f64 = 0.25;
+const POINTING: Judged = Judged::new("constraint::POINTING", 0.25);
 
 /// Depth, over the length of the segment, up to which a corner may have slipped over the edge of a surface; deeper it has been shot in.
 /// The tests hold from half of this value to 1.4 times; at twice, one of a thousand random shots goes through.
-const CORNER_DEPTH: f64 = 0.25;
+const CORNER_DEPTH: Judged = Judged::new("constraint::CORNER_DEPTH", 0.25);
 
 /// Depth, over the length of the segment, up to which a point that has come out beside a segment has only cut its corner. The
 /// tests hold from half of this value to 2.5 times.
-const CUT_DEPTH: f64 = 0.04;
+const CUT_DEPTH: Judged = Judged::new("constraint::CUT_DEPTH", 0.04);
 
 /// The segment that a point crossed inwards during the step, the shallowest if there are several.
 ///
@@ -294,7 +294,7 @@ pub(super) fn faced_at_start(block: &FlexBlock, segment: usize, normal: Vec2) ->
 }
 
 /// Least cosine between a surface and a face that push each other.
-const FACING: f64 = 0.05;
+const FACING: Judged = Judged::new("constraint::FACING", 0.05);
 
 /// Where a round vertex meets one boundary segment: at a foot between the segment's nodes, on the side the vertex came
 /// from; `None` elsewhere, as nodes meet the part by themselves.

@@ -21,9 +21,11 @@ use super::hourglass::{Hourglass, Shape};
 use super::linearization::Linearization;
 use super::model::{Deformation, FiniteStrainModel};
 use super::point::{Form, moduli_of_pair, stress_of_pair};
+use crate::fe::LEAST_LEFT;
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants, J2Plasticity, PlasticState};
 use crate::fe::recovery::Stress;
 use crate::linalg::block_matrix::BlockMatrix;
+use crate::math::judged::Judged;
 
 /// Energy of a body that may flow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -223,7 +225,7 @@ impl CellGroup {
                     let ([stored, dissipated], flowed) = hourglass.flow(limit, &shape);
                     // What the mean stress leaves for the next step: what is beyond flows now.
                     let left = (1.0 - flow.used * flow.used).max(0.0).sqrt();
-                    flow.state.bendable = left.max(LEAST_BENDABLE);
+                    flow.state.bendable = left.max(LEAST_BENDABLE.get());
                     let limit = law.bending_limit(&flow.state, *volume);
                     let shape = Shape { flowed, ..shape };
                     let (eased, flowed) = hourglass.ease(limit, &shape);
@@ -371,7 +373,7 @@ fn flowing_shape(state: &PlasticState, shape: Shape) -> Shape {
 
 /// Share of its plastic bending that is left to a cell whose mean stress is the yield stress: without any its hourglass modes would have no
 /// stiffness (-).
-const LEAST_BENDABLE: f64 = 0.1;
+const LEAST_BENDABLE: Judged = LEAST_LEFT;
 
 /// Cauchy's stress of a gradient of deformation after what has flowed (Pa).
 fn cauchy(law: &J2Plasticity, state: &PlasticState, gradient: [f64; 4]) -> Stress {

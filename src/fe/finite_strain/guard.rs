@@ -17,16 +17,17 @@ use super::cells::{CellGroup, add_point, deformation_gradient, gather, scatter, 
 use super::deformed::Deformed;
 use super::linearization::Linearization;
 use super::point::{Form, cofactor, invariants, law_moduli, middle};
+use crate::fe::LEAST_LEFT;
 use crate::fe::element::{Element, MAX_NODES, Tri3, kinematics::physical_gradient};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::linalg::block_matrix::BlockMatrix;
-use crate::math::{LANES, Wide};
+use crate::math::{LANES, Wide, judged::Judged, rounding};
 
 /// `J0`, below which a place is guarded (-): a crushed rectangle is left to its law until nine tenths of its area are gone.
-const FLAT: f64 = 0.1;
+const FLAT: Judged = LEAST_LEFT;
 
 /// Rounding that a bound on `J` may have (-), far above that of a few sums.
-const ROUNDING: f64 = 1e-9;
+const ROUNDING: f64 = rounding::SHARE;
 
 /// Change of `J` by itself below which the slope of the energy is its derivative in the middle (-): the error is its square by 24.
 const SMALL: f64 = 1e-4;
@@ -140,7 +141,7 @@ impl Reach {
             let [_, j] = invariants(deformation_gradient(differences, gradient));
             for (is_flat, j) in is_flat.iter_mut().zip(j.0) {
                 // What is not a number is looked at.
-                *is_flat |= j < FLAT || j.is_nan();
+                *is_flat |= j < FLAT.get() || j.is_nan();
             }
         }
         is_flat
@@ -365,7 +366,7 @@ fn derivatives(j: f64) -> [f64; 2] {
     let by = (1.0 - z) / z;
     [
         -by * by * (1.0 + 2.0 * z) / FLAT,
-        2.0 * (1.0 / (z * z * z) - 1.0) / (FLAT * FLAT),
+        2.0 * (1.0 / (z * z * z) - 1.0) / (FLAT.get() * FLAT.get()),
     ]
 }
 

@@ -9,11 +9,11 @@ use super::moments::Frame;
 use super::{KEPT, MassError, Redistribution, extremes, move_inwards};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::complementarity::solve_lu_in_place;
-use crate::math::rounding;
+use crate::math::{judged::Judged, rounding};
 
 /// A massive node keeps at least this part of its rows: `m_ij (p_i + p_j)/2` is positive definite while p hardly changes from
 /// node to node.
-const SMALLEST: f64 = 0.3;
+const SMALLEST: Judged = Judged::new("fe::SMALLEST", 0.3);
 
 /// Loss of a pivot at which a condition is one of those before it.
 const DEPENDENT: f64 = rounding::SHARE;

@@ -7,7 +7,7 @@
 
 use super::{FeasiblePath, Way};
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
-use crate::math::{Vec2, perp, rounding};
+use crate::math::{Vec2, judged::Judged, perp, rounding};
 use crate::path::{NearPair, Target};
 use crate::system::Point;
 
@@ -271,10 +271,10 @@ const SAME: f64 = rounding::SINGLE;
 
 /// Sine of the angle by which an edge may lean over a direction in which its end reaches farthest: bodies turn from pass to pass, and a corner that
 /// lies over an edge of the other body leans by half a right angle.
-const LEANING: f64 = 0.4;
+const LEANING: Judged = Judged::new("kkt::LEANING", 0.4);
 
 /// Cosine of the widest angle between two forces whose mean has a direction to speak of.
-const LEAST_COSINE: f64 = -0.9;
+const LEAST_COSINE: Judged = Judged::new("kkt::LEAST_COSINE", -0.9);
 
 #[cfg(test)]
 mod tests;

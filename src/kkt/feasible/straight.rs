@@ -1,11 +1,11 @@
 //! The part of a way on which bodies go as straight as what is known of them.
 
 use super::{FeasiblePath, SurfacePoint, angle_of};
-use crate::math::Vec2;
+use crate::math::{Vec2, judged::Judged};
 use crate::system::{Block, Point};
 
 /// Turn of a member with near pairs within a pass (rad): rows are straight where arcs are not.
-pub(super) const MOST_TURN: f64 = 0.5;
+pub(super) const MOST_TURN: Judged = Judged::new("kkt::MOST_TURN", 0.5);
 
 /// The part of the way on which no block with near pairs turns too far, and blocks of large strain may go.
 pub(super) fn straight_part(path: &FeasiblePath, blocks: &[Block]) -> f64 {

@@ -48,7 +48,7 @@ pub use residual::natural_map_residual;
 pub(crate) use condense::INDEPENDENT;
 pub(crate) use dense::{factorize_cholesky, solve_cholesky_in_place, solve_lu_in_place};
 
-use crate::math::rounding;
+use crate::math::{judged::Judged, rounding};
 use active_set::{ActiveSet, Redundancy};
 use condense::Condensed;
 use lemke::Lemke;
@@ -68,7 +68,7 @@ const RESCUE: [(Method, usize); 6] = [
 ];
 
 /// The [`natural_map_residual`] below which rows contradict each other by no more than the rounding of the places that they were read from.
-const CONTRADICTED: f64 = 1e-5;
+const CONTRADICTED: Judged = Judged::new("linalg::CONTRADICTED", 1e-5);
 
 /// Sweeps of a solver that is asked for Gauss–Seidel, before the active set takes over: contacts of masses take some ten, and
 /// those of a surface that transmits forces as many as it has nodes, squared.

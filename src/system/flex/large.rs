@@ -27,7 +27,7 @@ use self::reference::{Reference, is_near};
 use super::shared::Shared;
 use crate::body::{FlexState, Frame, Linearized};
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel};
-use crate::large::{Evaluation, MOST_CUTS, MOST_GROWTH, SLOWEST};
+use crate::large::{Evaluation, MOST_CUTS, SLOWEST, most_growth};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::CholeskyError;
 use crate::math::{Mat2, cross, node_vec, rotation, set_node_vec};
@@ -300,7 +300,9 @@ impl LargeStrain {
             let outcome = equation.evaluate(&shared.now.position, deformation, residual, reaction);
             // Forces that rounding of the positions makes, which may grow and shrink as they like.
             let rounding = f64::EPSILON * *row_sum * shared.extent();
-            let bound = last.map_or(f64::INFINITY, |last| MOST_GROWTH * last.norm.max(rounding));
+            let bound = last.map_or(f64::INFINITY, |last| {
+                most_growth() * last.norm.max(rounding)
+            });
             let accepted = outcome
                 .ok()
                 .filter(|now| now.norm.is_finite() && now.norm <= bound);

@@ -13,11 +13,15 @@ use super::shared::Shared;
 use crate::body::{FlexState, Frame, FrameMotion};
 use crate::integrator::{Beta2, Weights};
 use crate::linalg::cholesky::CholeskyError;
-use crate::math::{Vec2, cross, node_vec, perp, set_node_vec};
+use crate::math::{
+    Vec2, cross,
+    judged::{Judged, NEGLIGIBLE},
+    node_vec, perp, set_node_vec,
+};
 use crate::system::step::{FlexLoad, Step};
 
-/// Error of a rigid motion from which contact iterations no longer converge.
-const MOST_HIDDEN: f64 = 1e-3;
+/// Error of a rigid motion that rounding may leave: with more, contact iterations no longer converge.
+const MOST_HIDDEN: Judged = NEGLIGIBLE;
 
 /// What a step by Beta-2 needs beside what all blocks have.
 #[derive(Debug)]

@@ -2,7 +2,7 @@
 
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Form, Linearization};
 use crate::fe::material::Rayleigh;
-use crate::large::{Equation, Inertia, MOST_GROWTH, largest_row_sum};
+use crate::large::{Equation, Inertia, largest_row_sum, most_growth};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::{BlockCholesky, CholeskyError};
 use crate::math::rounding;
@@ -49,7 +49,7 @@ pub(super) fn equation_of<'a>(
         start,
         coast,
         is_held,
-        most_growth: MOST_GROWTH,
+        most_growth: most_growth(),
     }
 }
 
@@ -80,7 +80,7 @@ pub(super) fn factorize(
 }
 
 /// Stiffness of a point over the masses' part of the matrix beyond which it is rigid in the step, and rounding would take the masses (-).
-const RIGID: f64 = 1e10;
+const RIGID: f64 = 1.0 / rounding::ITERATED;
 
 /// What impulses are answered by: masses and the definite part of the stiffness, of which no point resists a turn.
 ///

@@ -3,13 +3,14 @@
 use super::equation::{equation_of, factorize, factorize_definite, impulsive};
 use super::{LargeStrain, NOT_FOUND};
 use crate::body::Frame;
+use crate::math::judged::{Judged, NEGLIGIBLE};
 use crate::system::flex::shared::Shared;
 
 /// Places of a way that are looked at, at equal distances.
 const N_PLACES: u8 = 4;
 
 /// Part of a way that is too short to be gone (-).
-const LEAST_PART: f64 = 1e-3;
+const LEAST_PART: Judged = NEGLIGIBLE;
 
 impl LargeStrain {
     /// Tells where the base of the path is (m); what is led goes on from there. Returns how far that is, relative to the body's size.

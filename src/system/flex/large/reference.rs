@@ -7,13 +7,14 @@ use crate::body::Linearized;
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Form};
 use crate::large::{Equation, Inertia};
 use crate::linalg::cholesky::BlockCholesky;
+use crate::math::judged::Judged;
 use std::sync::Arc;
 
 /// Change of `F` at a point since its tangent was taken, up to which that one serves (-).
 ///
 /// A turn or stretch by `δ` changes the stiffness by a few `δ`, of which an iteration leaves as much: a hundredth costs no more iterations than
 /// the tangent of a step does, which is made symmetric and errs by the change within the step.
-const NEAR: f64 = 1e-2;
+const NEAR: Judged = Judged::new("system::NEAR", 1e-2);
 
 /// What the factor at hand was made of.
 #[derive(Clone, Debug, Default)]
@@ -101,5 +102,5 @@ pub(super) fn is_near(reference: &[[f64; 4]], deformation: &Deformation) -> bool
         let parts = one.iter().zip(other).map(|(one, other)| one - other);
         parts.map(|change| change * change).sum::<f64>()
     });
-    changes.all(|change| change <= NEAR * NEAR)
+    changes.all(|change| change <= NEAR * NEAR.get())
 }
