@@ -1,22 +1,32 @@
 //! `foil2d drop`.
 
-use super::build::build;
+use super::build::{Built, build, n_steps};
+use super::files::{check_writable, note, print};
+use super::outlines::{Wanted, outlines};
 use super::output::Outputs;
 use super::problem::Problem;
 use super::run::take_steps;
-use super::shape::outlines;
-use super::source::Source;
+use super::scene::{MOST_NODES, World};
+use super::shape::mesh_of;
+use super::source::{Source, stem_of};
+use super::words::of_mesh;
 use clap::Args;
+use foil2d::doctor::{Finding, examine};
+use foil2d::io::Outline;
+use foil2d::pipeline::{InsertionNote, Participant};
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Args)]
 pub struct Options {
-    /// An outline: SVG, or JSON as of maps.
+    /// A drawing: SVG, or GeoJSON (.json, .geojson).
     outline: PathBuf,
     /// Metres to a unit of the file (a pixel, of SVG).
     #[arg(long, default_value_t = 0.01)]
     scale: f64,
+    /// Only the shapes of this id, or of a group (layer) of this id; may be given several times.
+    #[arg(long)]
+    layer: Vec<String>,
     /// Length of the cells' edges (m); a fifteenth of the largest shape without.
     #[arg(long)]
     edge: Option<f64>,
@@ -32,6 +42,9 @@ pub struct Options {
     /// Length of the run (s).
     #[arg(long, default_value_t = 3.0)]
     duration: f64,
+    /// Most nodes of all shapes together.
+    #[arg(long, default_value_t = MOST_NODES)]
+    most_nodes: usize,
     /// The folder for files.
     #[arg(long, default_value = "out")]
     out: PathBuf,
@@ -42,20 +55,33 @@ pub struct Options {
 
 /// Writes a scene of the shapes over a floor beside the other files, and runs it.
 pub fn drop_outline(options: &Options) -> Result<(), Problem> {
-    let scene = options.out.join("scene.toml");
     check(options)?;
-    let text = scene_of(options)?;
-    std::fs::create_dir_all(&options.out)
-        .and_then(|()| std::fs::write(&scene, text))
-        .map_err(|error| Problem::plain(format!("{}: {error}", scene.display())))?;
-    let source = Source::read(&scene)?;
-    let mut built = build(&source)?;
+    let path = options.out.join("scene.toml");
+    let mut drawing = Drawing::read(options)?;
+    check_writable(std::slice::from_ref(&path))?;
+    let (source, mut built) = loop {
+        write(&path, &drawing.scene(options))?;
+        let mut source = Source::read(&path)?;
+        source.title = stem_of(&options.outline);
+        let built = build(&source)?;
+        if !drawing.part(&built) {
+            break (source, built);
+        }
+    };
+    for shape in drawing.shapes.iter().filter(|shape| shape.lift > 0.0) {
+        note(&format!(
+            "`{}` lies on another shape of the drawing: it falls from {:.3} m higher",
+            shape.name, shape.lift
+        ));
+    }
     let outputs = Outputs::new(&source, &built, Some(options.out.clone()))?;
-    let n_steps = (options.duration * 60.0).round() as usize;
+    let n_steps = n_steps(&source.scene);
     let told = take_steps(&mut built, outputs, n_steps, options.quiet)?;
-    println!("wrote {}", scene.display());
-    print!("{told}");
-    Ok(())
+    print(&format!("wrote {}\n{told}", path.display()))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Problem> {
+    std::fs::write(path, text).map_err(|error| Problem::of_file(error, path))
 }
 
 fn check(options: &Options) -> Result<(), Problem> {
@@ -71,48 +97,166 @@ fn check(options: &Options) -> Result<(), Problem> {
     let mut given = given
         .into_iter()
         .filter_map(|(name, value)| Some((name, value?)));
-    match given.find(|(_, value)| !is_sound(*value)) {
-        Some((name, value)) => Err(Problem::plain(format!(
-            "--{name} is {value}: give a positive number"
+    if let Some((name, value)) = given.find(|(_, value)| !is_sound(*value)) {
+        let what = format!("--{name} is {value}: give a positive number");
+        return Err(Problem::plain(what));
+    }
+    let least = 0.5 * *World::default().dt.get();
+    match options.duration < least {
+        true => Err(Problem::plain(format!(
+            "--duration is {}: give {least:.3} s, half a step, or more",
+            options.duration
         ))),
-        None => Ok(()),
+        false => Ok(()),
     }
 }
 
-/// The scene, in TOML.
-fn scene_of(options: &Options) -> Result<String, Problem> {
-    let read = |edge: f64| outlines(&options.outline, edge, options.scale);
-    // How large the shapes are says how finely their curves are read.
-    let found = read(1e3 * options.scale)?;
-    let points = || found.iter().flat_map(|outline| &outline.outer);
-    let bound = |axis: usize| {
-        let all = points().map(move |at| at[axis]);
-        all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        })
-    };
-    let [[left, right], [low, high]] = [bound(0), bound(1)];
-    let size = (right - left).max(high - low);
-    let edge = options.edge.unwrap_or(size / 15.0);
-    let height = options.height.unwrap_or(0.5 * size);
-    let found = read(edge)?;
-    let mut scene = format!(
-        "[world]\nduration = {:?}\n\n[materials.soft]\nyoung = {:?}\npoisson = 0.4\ndensity = {:?}\nrayleigh = 2e-3\nlaw = \"stable_neo_hookean\"\n\n[[rigid]]\nname = \"floor\"\nkind = \"fixed\"\nshape.halfspace.normal = [0.0, 1.0]\ntranslation = [0.0, {:?}]\n",
-        options.duration,
-        options.young,
-        options.density,
-        low - height,
-    );
-    for (index, outline) in found.iter().enumerate() {
-        let name = match outline.name.as_deref() {
-            Some(name) => format!("{name} {index}"),
-            None => format!("shape {index}"),
+/// A shape that falls.
+struct Falling {
+    name: String,
+    outline: Outline,
+    /// Its lowest and highest point, as drawn (m).
+    low: f64,
+    high: f64,
+    /// By how much it is put higher than it is drawn (m).
+    lift: f64,
+}
+
+/// The shapes of a drawing, the lowest first.
+struct Drawing {
+    shapes: Vec<Falling>,
+    /// Length of the cells' edges (m).
+    edge: f64,
+    /// Where the floor is (m).
+    floor: f64,
+}
+
+impl Drawing {
+    fn read(options: &Options) -> Result<Self, Problem> {
+        let read = |edge: f64| {
+            let wanted = Wanted {
+                edge,
+                scale: options.scale,
+                names: &options.layer,
+            };
+            outlines(&options.outline, &wanted)
         };
-        let _ = write!(
-            scene,
-            "\n[[flexible]]\nname = {name:?}\nmaterial = \"soft\"\nshape.polygon = {{ edge = {edge:?}, outline = {:?}, holes = {:?} }}\n",
-            outline.outer, outline.holes
-        );
+        // How large the shapes are says how finely their curves are read.
+        let coarse = read(1e3 * options.scale)?;
+        let size = coarse.iter().map(size_of).fold(0.0, f64::max);
+        let edge = options.edge.unwrap_or(size / 15.0);
+        let mut shapes: Vec<Falling> = Vec::new();
+        let mut nodes_left = options.most_nodes;
+        for (index, outline) in read(edge)?.into_iter().enumerate() {
+            let name = name_of(&shapes, outline.name.as_deref(), index);
+            match mesh_of(&outline, edge, nodes_left) {
+                Ok(mesh) => nodes_left = nodes_left.saturating_sub(mesh.n_nodes()),
+                Err(error) => {
+                    let what = of_mesh(&error).1;
+                    note(&format!("`{name}` is left out: {what}"));
+                    continue;
+                }
+            }
+            let [low, high] = extent(&outline, 1);
+            shapes.push(Falling {
+                name,
+                outline,
+                low,
+                high,
+                lift: 0.0,
+            });
+        }
+        if shapes.is_empty() {
+            let what = "no shape of the drawing can be meshed";
+            return Err(Problem::of_file(what, &options.outline));
+        }
+        shapes.sort_by(|one, other| one.low.total_cmp(&other.low));
+        let height = options.height.unwrap_or(0.5 * size);
+        Ok(Self {
+            floor: shapes[0].low - height,
+            shapes,
+            edge,
+        })
     }
-    Ok(scene)
+
+    /// Puts shapes that overlap above those that were lower, and says whether any was moved. As a shape gives way only to those before it in the order,
+    /// this comes to an end.
+    fn part(&mut self, built: &Built) -> bool {
+        let found = examine(&built.world, &built.flex_bodies, &built.flex.parameters);
+        let mut has_moved = false;
+        for finding in found {
+            let Finding::Insertion(InsertionNote::Overlap { body, with }) = finding else {
+                continue;
+            };
+            let Participant::Flex(with) = with else {
+                continue;
+            };
+            let index = |handle| {
+                let is_it = |one: &Falling| built.names.flexible.get(&one.name) == Some(&handle);
+                self.shapes.iter().position(is_it)
+            };
+            let (Some(one), Some(other)) = (index(body), index(with)) else {
+                continue;
+            };
+            let (lower, upper) = (one.min(other), one.max(other));
+            let top = self.shapes[lower].high + self.shapes[lower].lift;
+            let shape = &mut self.shapes[upper];
+            let lift = top + self.edge - shape.low;
+            // What is above and is told to overlap all the same, by rounding, is left to the run.
+            if lift > shape.lift {
+                shape.lift = lift;
+                has_moved = true;
+            }
+        }
+        has_moved
+    }
+
+    /// The scene, in TOML.
+    fn scene(&self, options: &Options) -> String {
+        let mut scene = format!(
+            "[world]\nduration = {:?}\nmost_nodes = {}\n\n[materials.soft]\nyoung = {:?}\npoisson = 0.4\ndensity = {:?}\nrayleigh = 2e-3\nlaw = \"stable_neo_hookean\"\n\n[[rigid]]\nname = \"floor\"\nkind = \"fixed\"\nshape.halfspace.normal = [0.0, 1.0]\ntranslation = [0.0, {:?}]\n",
+            options.duration, options.most_nodes, options.young, options.density, self.floor,
+        );
+        for shape in &self.shapes {
+            // TOML's quotes are not Rust's.
+            let name = toml::Value::String(shape.name.clone());
+            let _ = write!(
+                scene,
+                "\n[[flexible]]\nname = {name}\nmaterial = \"soft\"\ntranslation = [0.0, {:?}]\nshape.polygon = {{ edge = {:?}, outline = {:?}, holes = {:?} }}\n",
+                shape.lift, self.edge, shape.outline.outer, shape.outline.holes
+            );
+        }
+        scene
+    }
+}
+
+/// The name of an outline, or another one if it is taken.
+fn name_of(taken: &[Falling], own: Option<&str>, index: usize) -> String {
+    let own = own.filter(|own| !own.trim().is_empty() && *own != "floor");
+    let is_taken = |name: &str| taken.iter().any(|shape| shape.name == name);
+    match own {
+        Some(own) if !is_taken(own) => own.to_owned(),
+        own => {
+            let stem = own.unwrap_or("shape");
+            let mut numbers = index + 1..;
+            let free = numbers.find(|number| !is_taken(&format!("{stem} {number}")));
+            format!("{stem} {}", free.unwrap_or(index))
+        }
+    }
+}
+
+/// The lowest and the highest coordinate along an axis (m).
+fn extent(outline: &Outline, axis: usize) -> [f64; 2] {
+    let all = outline.outer.iter().map(|at| at[axis]);
+    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+        [low.min(x), high.max(x)]
+    })
+}
+
+fn size_of(outline: &Outline) -> f64 {
+    let sides = [0, 1].map(|axis| {
+        let [low, high] = extent(outline, axis);
+        high - low
+    });
+    sides[0].max(sides[1])
 }

@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub struct Problem {
     what: String,
-    /// File, line and column, counted from one.
-    place: Option<(PathBuf, usize, usize)>,
+    file: Option<PathBuf>,
+    /// Line and column, counted from one.
+    place: Option<(usize, usize)>,
 }
 
 impl Problem {
@@ -16,7 +17,16 @@ impl Problem {
     pub fn plain(what: impl fmt::Display) -> Self {
         Self {
             what: what.to_string(),
+            file: None,
             place: None,
+        }
+    }
+
+    /// One of a file as a whole.
+    pub fn of_file(what: impl fmt::Display, path: &Path) -> Self {
+        Self {
+            file: Some(path.to_owned()),
+            ..Self::plain(what)
         }
     }
 
@@ -27,16 +37,20 @@ impl Problem {
         let start = before.rfind('\n').map_or(0, |end| end + 1);
         let column = 1 + before[start..].chars().count();
         Self {
-            what: what.to_string(),
-            place: Some((path.to_owned(), line, column)),
+            place: Some((line, column)),
+            ..Self::of_file(what, path)
         }
     }
 }
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if let Some((path, line, column)) = &self.place {
-            write!(f, "{}:{line}:{column}: ", path.display())?;
+        if let Some(file) = &self.file {
+            write!(f, "{}:", file.display())?;
+            if let Some((line, column)) = self.place {
+                write!(f, "{line}:{column}:")?;
+            }
+            f.write_str(" ")?;
         }
         f.write_str(self.what.trim_end())
     }

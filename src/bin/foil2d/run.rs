@@ -1,10 +1,12 @@
 //! `foil2d run`.
 
-use super::build::{Built, build};
+use super::build::{Built, build, n_steps};
 use super::doctor::findings;
+use super::files::{note, print};
 use super::output::Outputs;
 use super::problem::Problem;
 use super::source::Source;
+use super::words::{of_course, of_step};
 use clap::Args;
 use foil2d::doctor::Course;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -29,21 +31,21 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<(), Problem> {
     let source = Source::read(&options.scene)?;
     let mut built = build(&source)?;
+    // What cannot be written is told before anything is computed.
+    let outputs = Outputs::new(&source, &built, options.out.clone())?;
     if !options.quiet {
         for finding in findings(&built) {
-            eprintln!("note: {finding}");
+            note(&finding);
         }
     }
-    let world = source.scene.world.get();
-    let by_duration = (world.duration / world.dt).round().max(0.0) as usize;
-    let n_steps = options.steps.unwrap_or(by_duration);
-    let outputs = Outputs::new(&source, &built, options.out.clone())?;
-    let told = take_steps(&mut built, outputs, n_steps, options.quiet)?;
-    print!("{told}");
-    Ok(())
+    let n_steps = options.steps.unwrap_or_else(|| n_steps(&source.scene));
+    print(&take_steps(&mut built, outputs, n_steps, options.quiet)?)
 }
 
 /// Steps a world to its end; what was written, and what the run was like.
+///
+/// # Errors
+/// If a step is not taken: what was recorded until then is written all the same.
 pub fn take_steps(
     built: &mut Built,
     mut outputs: Outputs,
@@ -58,22 +60,29 @@ pub fn take_steps(
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} steps, {eta} left");
     bar.set_style(style.map_err(Problem::plain)?);
     let mut course = Course::default();
+    let mut failed = None;
     for step in 0..n_steps {
-        let report = built
-            .flex
-            .step(&mut built.world, &mut built.flex_bodies)
-            .map_err(|error| Problem::plain(format!("step {}: {error}", step + 1)))?;
-        course.watch(report, &built.flex_bodies);
+        match built.flex.step(&mut built.world, &mut built.flex_bodies) {
+            Ok(report) => course.watch(report, &built.flex_bodies),
+            Err(error) => {
+                failed = Some(format!(
+                    "step {}: {}",
+                    step + 1,
+                    of_step(&error, &built.names)
+                ));
+                break;
+            }
+        }
         outputs.record(step, (step + 1) as f64 * dt, built)?;
         bar.inc(1);
     }
     bar.finish_and_clear();
-    let mut told = course.report().to_string();
-    for (name, handle) in &built.flexible {
-        told = told.replace(&format!("{handle:?}"), &format!("`{name}`"));
-    }
+    let mut told = of_course(course.report(), &built.names);
     for file in outputs.finish(built)? {
         told.push_str(&format!("wrote {}\n", file.display()));
     }
-    Ok(told)
+    match failed {
+        None => Ok(told),
+        Some(what) => Err(Problem::plain(format!("{what}\nuntil then: {told}"))),
+    }
 }

@@ -120,9 +120,11 @@ impl LinearElastic {
 }
 
 impl Material for LinearElastic {
-    /// The neo-Hookean law that is this one at rest.
+    /// The neo-Hookean law that is this one at rest. In plane stress there is none for Poisson's ratios down to -0.5: a solid with these moduli in the plane
+    /// would not be stable out of it.
     fn large_law(&self) -> Option<Arc<dyn Hyperelastic>> {
-        Some(Arc::new(NeoHookean::at_rest(self)))
+        let law = NeoHookean::at_rest(self);
+        law.validate().is_ok().then(|| Arc::new(law) as _)
     }
 
     fn record(&self) -> MaterialRecord {
@@ -298,6 +300,20 @@ mod tests {
         assert!(good.density(f64::NAN).validate().is_err());
         let nan = LinearElastic::plane_stress(1.0, f64::NAN).density(1.0);
         assert!(nan.validate().is_err());
+    }
+
+    /// With the moduli of plane stress in the plane, Poisson's ratio of a solid is nu/(1 + nu): below -1 from nu = -0.5 on.
+    #[test]
+    fn what_is_unstable_out_of_its_plane_has_no_law_for_large_strains() {
+        let law = |nu: f64| {
+            LinearElastic::plane_stress(1.0, nu)
+                .density(1.0)
+                .large_law()
+        };
+        assert!(law(-0.49).is_some() && law(0.5).is_some());
+        assert!(law(-0.51).is_none() && law(-0.99).is_none());
+        let strain = LinearElastic::plane_strain(1.0, -0.99).density(1.0);
+        assert!(strain.large_law().is_some());
     }
 
     #[test]

@@ -29,10 +29,7 @@ pub(super) fn outlines_of(
     rule: FillRule,
     name: Option<&str>,
 ) -> Vec<Outline> {
-    let rings: Vec<_> = rings
-        .into_iter()
-        .filter(|ring| ring.len() > 2 && area(ring) != 0.0)
-        .collect();
+    let rings: Vec<_> = rings.into_iter().filter(|ring| spans_area(ring)).collect();
     let boxes: Vec<_> = rings.iter().map(|ring| bounds(ring)).collect();
     let around: Vec<Vec<usize>> = (0..rings.len())
         .map(|inner| {
@@ -83,6 +80,18 @@ fn bounds(ring: &[[f64; 2]]) -> [[f64; 2]; 2] {
             [low[0].min(x), low[1].min(y)],
             [high[0].max(x), high[1].max(y)],
         ]
+    })
+}
+
+/// Whether points are not all on a line. What crosses itself may have no area in sum, and is for meshing to refuse.
+fn spans_area(ring: &[[f64; 2]]) -> bool {
+    let Some((&[x0, y0], others)) = ring.split_first() else {
+        return false;
+    };
+    let mut pairs = others.windows(2);
+    pairs.any(|pair| {
+        let [[ax, ay], [bx, by]] = [pair[0], pair[1]];
+        (ax - x0) * (by - y0) - (bx - x0) * (ay - y0) != 0.0
     })
 }
 

@@ -1,0 +1,209 @@
+//! Drawings that become worlds and meshes.
+
+use super::{column, complaint, foil2d, folder, last_row, told};
+
+#[test]
+fn a_drawing_becomes_a_picture_and_a_replay_in_one_command() {
+    let folder = folder("drop");
+    let drawing = r#"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="150" viewBox="0 0 200 150">
+        <path id="wedge" d="M20 20 L90 30 L60 90 Z"/>
+        <path id="ring" fill-rule="evenodd" d="M110 20 H180 V90 H110 Z M130 40 H160 V70 H130 Z"/></svg>"#;
+    std::fs::write(folder.join("shapes.svg"), drawing).expect("a drawing");
+    let told = told(
+        &["drop", "shapes.svg", "--duration", "2", "--quiet"],
+        &folder,
+    );
+    assert!(told.contains("120 steps, 0 cut, 0 unfinished"), "{told}");
+    let out = folder.join("out");
+    let still = std::fs::read_to_string(out.join("still.svg")).expect("a picture");
+    assert!(still.matches("<polygon").count() > 100, "cells are drawn");
+    let replay = std::fs::read_to_string(out.join("replay.html")).expect("a replay");
+    assert!(replay.contains("<canvas") && replay.len() > 20_000);
+    // The scene that was run is there to be changed, and runs as well.
+    let scene = std::fs::read_to_string(out.join("scene.toml")).expect("the scene");
+    assert_eq!(scene.matches("[[flexible]]").count(), 2);
+    let again = self::told(
+        &["run", "out/scene.toml", "--steps", "5", "--quiet"],
+        &folder,
+    );
+    assert!(again.contains("5 steps"), "{again}");
+    let energy = column(&last_row(&folder.join("out/out")), "kinetic_J");
+    assert!(energy > 0.0);
+    let sound = self::told(&["doctor", "out/scene.toml"], &folder);
+    assert_eq!(sound, "nothing is likely a mistake\n");
+}
+
+#[test]
+fn meshes_and_the_schema_are_told() {
+    let folder = folder("mesh");
+    let outline =
+        r#"{"type": "Polygon", "coordinates": [[[0, 0], [2, 0], [2, 1], [0, 1], [0, 0]]]}"#;
+    std::fs::write(folder.join("plate.json"), outline).expect("an outline");
+    let arguments = [
+        "mesh",
+        "plate.json",
+        "--scale",
+        "0.5",
+        "--edge",
+        "0.1",
+        "--out",
+        "plate.vtu",
+    ];
+    let told = told(&arguments, &folder);
+    assert!(told.contains("5.0000e-1 m²"), "{told}");
+    let written = std::fs::read_to_string(folder.join("plate.vtu")).expect("a grid");
+    assert!(written.contains("UnstructuredGrid"));
+    let schema = self::told(&["schema"], &folder);
+    let schema: serde_json::Value = serde_json::from_str(&schema).expect("JSON");
+    let properties = schema["properties"].as_object().expect("properties");
+    for name in [
+        "world",
+        "materials",
+        "flexible",
+        "rigid",
+        "joint",
+        "attachment",
+        "output",
+    ] {
+        let description = &properties[name];
+        assert!(description.is_object(), "{name}");
+    }
+    assert_eq!(schema["additionalProperties"], false);
+}
+
+/// A page behind all, and shapes on it: as drawings are. They are put above each other and told by name.
+#[test]
+fn shapes_that_lie_on_each_other_are_put_apart_and_named() {
+    let folder = folder("overlap");
+    let drawing = r##"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="150">
+        <rect id="page" width="200" height="150"/><rect id="left" x="20" y="20" width="40" height="40"/>
+        <rect id="twin" x="20" y="20" width="40" height="40"/><circle id="right" cx="150" cy="75" r="30"/></svg>"##;
+    std::fs::write(folder.join("page.svg"), drawing).expect("a drawing");
+    let arguments = [
+        "drop",
+        "page.svg",
+        "--duration",
+        "0.5",
+        "--edge",
+        "0.15",
+        "--quiet",
+    ];
+    let output = foil2d(&arguments, &folder);
+    let notes = String::from_utf8(output.stderr).expect("text");
+    assert!(output.status.success(), "{notes}");
+    for name in ["left", "twin", "right"] {
+        assert!(
+            notes.contains(&format!("note: `{name}` lies on another")),
+            "{notes}"
+        );
+    }
+    assert!(!notes.contains("`page`"), "{notes}");
+    let sound = told(&["doctor", "out/scene.toml"], &folder);
+    assert!(!sound.contains("into each other"), "{sound}");
+    // Or some of them only.
+    let arguments = [
+        "drop",
+        "page.svg",
+        "--duration",
+        "0.1",
+        "--layer",
+        "left",
+        "--layer",
+        "right",
+        "--quiet",
+    ];
+    told(&arguments, &folder);
+    let scene = std::fs::read_to_string(folder.join("out/scene.toml")).expect("the scene");
+    assert_eq!(scene.matches("[[flexible]]").count(), 2);
+    assert!(!scene.contains("twin") && scene.contains("translation = [0.0, 0.0]"));
+    let complaint = complaint(&["drop", "page.svg", "--layer", "middle"], &folder);
+    assert!(
+        complaint.contains("`middle`") && complaint.contains("`left`"),
+        "{complaint}"
+    );
+}
+
+/// Groups are layers: their shapes are found by the id of the group, however these are called themselves.
+#[test]
+fn outlines_are_found_by_their_layer() {
+    let folder = folder("layers");
+    let drawing = r##"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="100">
+        <g id="frame"><path id="path12" fill-rule="evenodd" d="M0 0H100V100H0Z M10 10H90V90H10Z"/></g>
+        <g id="bolts"><rect x="20" y="20" width="10" height="10"/><rect id="other" x="40" y="20" width="20" height="10"/></g></svg>"##;
+    std::fs::write(folder.join("part.svg"), drawing).expect("a drawing");
+    let told = told(&["mesh", "part.svg", "--layer", "frame"], &folder);
+    assert!(
+        told.starts_with("`path12`: ") && told.contains("3.6000e-1 m²"),
+        "{told}"
+    );
+    let scene = |which: &str| {
+        format!(
+            "{}[[flexible]]\nname = \"a\"\nmaterial = \"steel\"\nshape.outline = {{ file = \"part.svg\", scale = 0.01, edge = 0.05, {which} }}\n\
+             [[output.history]]\nbody = \"a\"\nwhat = \"position\"\n",
+            super::STEEL
+        )
+    };
+    let at = |which: &str| {
+        std::fs::write(folder.join("scene.toml"), scene(which)).expect("a scene");
+        self::told(&["run", "scene.toml", "--steps", "1", "--quiet"], &folder);
+        column(&last_row(&folder.join("out")), "a_x_m")
+    };
+    assert!((at("name = \"frame\"") - 0.5).abs() < 1e-6);
+    assert!((at("name = \"bolts\", part = 1") - 0.25).abs() < 1e-6);
+    assert!((at("name = \"bolts\", part = 2") - 0.5).abs() < 1e-6);
+    std::fs::write(folder.join("scene.toml"), scene("name = \"bolts\"")).expect("a scene");
+    let complaint = complaint(&["run", "scene.toml"], &folder);
+    assert!(
+        complaint.contains("2 outlines") && complaint.contains("`part`"),
+        "{complaint}"
+    );
+}
+
+/// Shapes that no mesh can be made of are left out by name, and names that TOML has to quote come through.
+#[test]
+fn bad_shapes_are_left_out_and_odd_names_kept() {
+    let folder = folder("odd");
+    let drawing = r##"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="100">
+        <path id="bow" d="M0 0L40 40L40 0L0 40Z"/><rect id="a &quot;quoted&quot; \ na&#x200b;me" x="60" y="20" width="40" height="40"/>
+        <rect id="floor" x="120" y="20" width="40" height="40"/></svg>"##;
+    std::fs::write(folder.join("odd.svg"), drawing).expect("a drawing");
+    let output = foil2d(&["drop", "odd.svg", "--duration", "0.1"], &folder);
+    let notes = String::from_utf8(output.stderr).expect("text");
+    assert!(output.status.success(), "{notes}");
+    assert!(
+        notes.contains("`bow` is left out: the outline meets itself"),
+        "{notes}"
+    );
+    let scene = std::fs::read_to_string(folder.join("out/scene.toml")).expect("the scene");
+    assert_eq!(scene.matches("[[flexible]]").count(), 2, "{scene}");
+    told(
+        &["run", "out/scene.toml", "--steps", "1", "--quiet"],
+        &folder,
+    );
+}
+
+/// Shapes of picometres: what single precision makes of them is told to overlap for ever, which is no reason to lift for ever.
+#[test]
+fn shapes_too_small_for_the_world_come_to_an_end() {
+    let folder = folder("tiny");
+    let drawing = r##"<svg xmlns="http://www.w3.org/2000/svg" width="60" height="60"><rect id="a" width="20" height="20"/>
+        <rect id="b" x="20" width="20" height="20"/><rect id="c" y="20" width="20" height="20"/></svg>"##;
+    std::fs::write(folder.join("tiny.svg"), drawing).expect("a drawing");
+    let arguments = [
+        "drop",
+        "tiny.svg",
+        "--scale",
+        "1e-12",
+        "--edge",
+        "1e-11",
+        "--duration",
+        "0.02",
+        "--quiet",
+    ];
+    let output = foil2d(&arguments, &folder);
+    let told = String::from_utf8(output.stderr).expect("text");
+    assert!(
+        output.status.success() || told.contains("error: "),
+        "{told}"
+    );
+}
