@@ -49,6 +49,41 @@ fn geojson_is_read_with_names_and_holes() {
     assert_eq!(mesh.boundary().loops().len(), 2);
 }
 
+/// Such a stroke took minutes and gigabytes, and is no part of a shape.
+#[test]
+fn strokes_of_any_width_leave_shapes_as_they_are() {
+    let arcs: String = (0..60)
+        .map(|i| {
+            format!(
+                "a{} {} 0 1 0 {} {}",
+                1 + i % 7,
+                1 + i % 5,
+                1 + i % 9,
+                i % 4 - 2
+            )
+        })
+        .collect();
+    let drawing = |paint: &str| {
+        format!(
+            r##"<svg xmlns="http://www.w3.org/2000/svg" width="100" height="100"><path d="M0 0{arcs}z" {paint}/></svg>"##
+        )
+    };
+    let options = SvgOptions::new(1e-3);
+    let plain = outlines_from_svg(&drawing(""), &options).expect("a shape");
+    for paint in [
+        "stroke=\"black\" stroke-width=\"1e9\"",
+        "style=\"stroke:red;stroke-width:4e9\"",
+    ] {
+        let stroked = outlines_from_svg(&drawing(paint), &options).expect("a shape");
+        assert_eq!(stroked, plain);
+    }
+    let unfilled = drawing("fill=\"none\" stroke=\"black\" stroke-width=\"1e9\"");
+    assert_eq!(
+        outlines_from_svg(&unfilled, &options),
+        Err(OutlineError::NoShapes)
+    );
+}
+
 #[test]
 fn what_is_no_polygon_is_told_with_its_place() {
     let cases = [

@@ -15,6 +15,11 @@ const MOST_POINTS: usize = 100_000;
 /// A CSS pixel is a 96th of an inch (m).
 const PIXEL: f64 = 0.0254 / 96.0;
 
+/// Strokes are no shapes, but their outlines are computed for boxes: one that is a million times as wide as its page takes minutes. Markers and filters are
+/// not looked at either.
+const FILLS_ALONE: &str =
+    "* { stroke: none !important; marker: none !important; filter: none !important }";
+
 /// How a drawing is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SvgOptions {
@@ -61,10 +66,13 @@ pub fn outlines_from_svg(text: &str, options: &SvgOptions) -> Result<Vec<Outline
             return Err(OutlineError::InvalidOption { name, value });
         }
     }
-    let tree =
-        Tree::from_str(text, &usvg::Options::default()).map_err(|error| OutlineError::NoSvg {
-            reason: error.to_string(),
-        })?;
+    let fills = usvg::Options {
+        style_sheet: Some(FILLS_ALONE.to_owned()),
+        ..usvg::Options::default()
+    };
+    let tree = Tree::from_str(text, &fills).map_err(|error| OutlineError::NoSvg {
+        reason: error.to_string(),
+    })?;
     let mut reader = Reader {
         options,
         height: f64::from(tree.size().height()),
