@@ -1,4 +1,16 @@
 #![doc = include_str!("../README.md")]
+//!
+//! # Where to begin
+//!
+//! | you look for | read |
+//! |---|---|
+//! | how things are done, page by page | [`guide`] |
+//! | a body and its builder | [`body`] |
+//! | the step, its settings and its report | [`pipeline`] |
+//! | files in and out | [`io`] |
+//! | equilibria without a world | [`large`] |
+//! | likely mistakes | [`doctor`] |
+//! | why a body is the way it is: meshes, elements, materials | [`fe`] |
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 

@@ -260,7 +260,7 @@ impl FlexBody {
         })
     }
 
-    /// The `n_modes` lowest natural modes of the body as it is pinned, known to `tolerance`; see [`lowest_modes`].
+    /// The `n_modes` lowest natural modes of the body as it is pinned, known to a relative `tolerance` (-); see [`lowest_modes`].
     ///
     /// Of a body of small strain in its frame, whatever its place; of one of large strain about where it is now and in the world's axes, which
     /// is meant for equilibria. Contacts, joints, attachments and damping are left out.

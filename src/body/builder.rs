@@ -64,17 +64,18 @@ impl FlexBodyBuilder {
         Self::from_result(Ok(mesh.into()))
     }
 
-    /// A body from raw nodes and cells of one kind.
+    /// A body from raw nodes (m) and cells of one kind, each a list of indices of nodes, counter-clockwise. What is wrong with them is told by [`build`](Self::build)
+    /// or by the insertion.
     pub fn cells<C: AsRef<[usize]>>(nodes: Vec<[f64; 2]>, kind: CellKind, cells: &[C]) -> Self {
         Self::from_result(Mesh::from_cells(nodes, kind, cells).map(Arc::new))
     }
 
-    /// A rectangle `[0, w] × [0, h]` of `[nx, ny]` quadrilaterals (QM6).
+    /// A rectangle `[0, w] × [0, h]` (m) of `[nx, ny]` quadrilaterals (QM6); nodes are numbered along x, row by row.
     pub fn rectangle(size: [f64; 2], divisions: [usize; 2]) -> Self {
         Self::rectangle_of(size, divisions, CellKind::Quad4)
     }
 
-    /// A rectangle `[0, w] × [0, h]` of cells of any kind.
+    /// A rectangle `[0, w] × [0, h]` (m) of cells of any kind.
     pub fn rectangle_of(size: [f64; 2], divisions: [usize; 2], kind: CellKind) -> Self {
         Self::from_result(generate::rectangle(size, divisions, kind).map(Arc::new))
     }

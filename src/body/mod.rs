@@ -1,4 +1,12 @@
 //! Flexible bodies: how they are described, what they remember, and the set that holds them.
+//!
+//! | | |
+//! |---|---|
+//! | [`FlexBodyBuilder`] | describes a body: mesh, material, place, pins, loads, contact |
+//! | [`FlexBodySet`] | holds bodies and attachments, named by handles; puts them into a rapier world and takes them out |
+//! | [`FlexBody`] | a body in the set: where it is, its stresses and forces (N, Pa), its energy; loads and velocities may be set between steps |
+//! | [`AttachmentBuilder`] | pins, welds or springs nodes to the world, a rigid or another flexible body |
+//! | [`BuildError`], [`FlexBodyError`], [`AttachmentError`] | what was wrong, and the cure; nothing has then been changed |
 
 mod access;
 mod analysis;

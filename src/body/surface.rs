@@ -100,7 +100,7 @@ impl FlexBody {
         }
     }
 
-    /// Whether a point of the world lies inside the deformed body; on the surface, either.
+    /// Whether a point of the world (m) lies inside the deformed body; on the surface, either.
     ///
     /// Rapier knows the surface only: its point queries do not tell.
     pub fn contains(&self, point: [f64; 2]) -> bool {

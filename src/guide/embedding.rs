@@ -67,7 +67,49 @@
 //! [`FlexBodySet::of_collider`](crate::body::FlexBodySet::of_collider) tells whose it is, and [`FlexBodySet::pick`](crate::body::FlexBodySet::pick) which node. Its rigid body is a
 //! carrier: leave its pose alone, and put no joints on it.
 //!
+//! # Events
+//!
+//! [`step_with_events`](crate::pipeline::FlexPipeline::step_with_events) takes rapier's hooks and event handler. A body that is to make events asks for them by
+//! [`active_events`](crate::body::FlexBodyBuilder::active_events), as colliders do:
+//!
+//! ```
+//! use foil2d::prelude::*;
+//! use foil2d::rapier::prelude::*;
+//! use std::sync::mpsc::channel;
+//!
+//! let (mut world, mut flex_bodies) = (PhysicsWorld::new(), FlexBodySet::new());
+//! let floor = world.insert_collider(ColliderBuilder::cuboid(5.0, 0.5).translation(Vector::new(0.0, -0.5)), None);
+//! let rubber = LinearElastic::plane_stress(1e6, 0.3).density(1000.0);
+//! let block = FlexBodyBuilder::rectangle([0.5, 0.5], [4, 4])
+//!     .material(rubber)
+//!     .translation([0.0, 0.2])
+//!     .active_events(ActiveEvents::COLLISION_EVENTS);
+//! let block = flex_bodies.insert(block, &mut world)?;
+//!
+//! let (sender, collisions) = channel();
+//! let handler = ChannelEventCollector::new(sender, channel().0, channel().0);
+//! let mut flex = FlexPipeline::new();
+//! for _ in 0..30 {
+//!     flex.step_with_events(&mut world, &mut flex_bodies, &(), &handler)?;
+//! }
+//! // The body falls for 0.2 s and lands.
+//! let first = collisions.try_iter().next().ok_or("nothing has landed")?;
+//! let other = if first.collider1() == floor { first.collider2() } else { first.collider1() };
+//! assert!(first.started() && flex_bodies.of_collider(other) == Some(block));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Sleep
+//!
+//! What rests falls asleep with rapier's islands and costs nothing; a touch, a change of load or of what is near wakes it. [`StepReport::n_asleep`](crate::pipeline::StepReport::n_asleep) tells how many
+//! bodies sleep, [`FlexBody::wake_up`](crate::body::FlexBody::wake_up) wakes one, and [`can_sleep`](crate::body::FlexBodyBuilder::can_sleep)`(false)` keeps one awake.
+//!
+//! # When a step fails
+//!
+//! A step that returns a [`StepError`](crate::pipeline::StepError) has changed nothing: mend what the text names, or leave it out, and step again. A body whose motion would not be finite leaves the world
+//! instead ([`quarantined_flex_bodies`](crate::pipeline::StepReport::quarantined_flex_bodies)), and the rest goes on.
+//!
 //! # Saving
 //!
-//! With the feature `serde-serialize`, `pipeline::Snapshot` saves a world with its flexible bodies through any serde format, and goes on bit for bit. Rapier's own
-//! snapshots do not know of flexible bodies.
+//! With the feature `serde-serialize`, `pipeline::Snapshot` saves a world with its flexible bodies through any binary serde format, and goes on bit for bit (but for rounding
+//! where contacts are many). Rapier's own snapshots do not know of flexible bodies.

@@ -42,7 +42,18 @@
 //!
 //! # Without Rust
 //!
-//! The program `foil2d` (`cargo install foil2d --features cli`) runs scenes in TOML and drops drawings; `foil2d --help` tells how, `foil2d schema` what a scene may hold.
+//! The program `foil2d` (feature `cli`; from the repository by `cargo install --path . --features cli`) runs scenes in TOML:
+//!
+//! | command | does |
+//! |---|---|
+//! | `foil2d drop drawing.svg` | drops the shapes of a drawing on a floor; writes a picture of the stresses, a replay, a table, and the scene for changes of your own |
+//! | `foil2d example > scene.toml` | writes a scene to begin with, with comments |
+//! | `foil2d run scene.toml` | runs it |
+//! | `foil2d doctor scene.toml` | names likely mistakes without running it |
+//! | `foil2d mesh drawing.svg` | tells of the meshes of a drawing |
+//! | `foil2d schema` | describes every key of scenes, as a JSON schema |
+//!
+//! A scene of more than `most_nodes` nodes (100,000 without) is refused before it takes all memory; errors tell the line and column of the key that is at fault.
 //!
 //! # What is likely a mistake
 //!

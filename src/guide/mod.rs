@@ -3,6 +3,7 @@
 //! | page | tells |
 //! |---|---|
 //! | [`first_beam`] | a beam in a rapier world, and whether it is right |
+//! | [`choosing`] | what you want, and what to choose for it |
 //! | [`mesh_and_step`] | which mesh, which step, which damping, which integrator |
 //! | [`contact`] | what touches what, with which forces, at which distance |
 //! | [`large_or_small`] | bodies that bend far and bodies that do not |
@@ -15,6 +16,7 @@
 //! | [`equations`] | the equations of the source, and where each is computed |
 //! | [`limits`] | what the crate cannot do, or does with an error that is known |
 
+pub mod choosing;
 pub mod contact;
 pub mod embedding;
 pub mod equations;

@@ -46,7 +46,7 @@ impl LargeSettings {
         }
     }
 
-    /// The same with another tolerance.
+    /// The same with another [`tolerance`](Self::tolerance) (-).
     pub fn with_tolerance(self, tolerance: f64) -> Self {
         Self { tolerance, ..self }
     }

@@ -103,7 +103,7 @@ impl AttachmentBuilder {
         self
     }
 
-    /// Holds the nodes of the boundary whose position in the mesh's own coordinates fulfils a condition: an edge or a region.
+    /// Holds the nodes of the boundary whose position in the mesh's own coordinates (m) fulfils a condition: an edge or a region.
     pub fn where_(mut self, choose: impl Fn([f64; 2]) -> bool + 'static) -> Self {
         self.0.choice = Choice::Where(Box::new(choose));
         self
