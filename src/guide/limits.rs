@@ -13,7 +13,9 @@
 //!   tenths of its size, a step may take a second. See: [`Quality::Cut`](crate::pipeline::Quality::Cut), long steps. Do: take a stiffer material or shorter steps.
 //! - **Rolling.** What rolls or spins while it is pressed is braked, because contact forces act wholly within their step. See: a disc of rubber that rolls at 2 m/s loses 0.36 m/s in the first second at
 //!   1/60 s, 0.09 m/s at 1/240 s, and 0.05 m/s at 1/60 s with small strain. Do: shorten the step, or take `small_strain`.
-//! - **Plane stress.** The thickness does not change as the body is stretched, and its surface keeps its mass. Do: take `NeoHookeanSheet` or `MooneyRivlinSheet` where the thickness matters.
+//! - **Plane stress** of Hooke's law: the thickness does not change as the body is stretched. Do: take `NeoHookeanSheet` or `MooneyRivlinSheet` where it matters.
+//! - **Surface.** It keeps its mass; [`ContactInertia::RedistributedAt`](crate::body::ContactInertia::RedistributedAt) is refused
+//!   ([`BuildError::LargeMassless`](crate::body::BuildError::LargeMassless)).
 //! - **Inner pressure** acts on the edges of its hole, not on what else lies in there; holes do not join where walls meet. A gas couples all nodes around its hole, at a cost that grows with the
 //!   square of their number. Do: mesh the hole no finer than needed.
 //! - **Plasticity** is isotropic and independent of the rate, in plane strain. Where strains change their direction, its steps are of first order. A body that flows keeps its law for life
