@@ -810,3 +810,58 @@ fn circles_and_rooms_are_found_where_they_are() {
     let found: Vec<String> = types_with_methods(code).into_iter().collect();
     assert_eq!(found, ["Inner", "Plain", "Wide"]);
 }
+
+/// Whether a file, a folder or a module of this path is there: below the repository, or anywhere below `src`.
+fn is_there(path: &str, sources: &[Source]) -> bool {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let below = [root.join(path), root.join("src").join(path)];
+    let inner = path.strip_suffix(".rs").unwrap_or(path);
+    let is_module = |source: &Source| {
+        let own = source.name.strip_suffix(".rs").unwrap_or(&source.name);
+        format!("/{own}/").contains(&format!("/{inner}/"))
+    };
+    below
+        .iter()
+        .any(|path| path.exists() || path.with_extension("rs").exists())
+        || sources.iter().any(is_module)
+}
+
+/// Documents outlive what they point to, unless somebody looks.
+#[test]
+fn what_the_documents_point_to_is_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |name: &str| fs::read_to_string(root.join(name)).expect("a document");
+    let sources = sources();
+    let (architecture, readme) = (read("ARCHITECTURE.md"), read("README.md"));
+    let quoted = architecture.split('`').skip(1).step_by(2);
+    let is_path = |one: &&str| {
+        one.contains('/')
+            && one
+                .bytes()
+                .all(|byte| byte.is_ascii_lowercase() || b"_/.0123456789".contains(&byte))
+    };
+    let mut paths: Vec<&str> = quoted.filter(is_path).collect();
+    let links = readme.split("](").skip(1);
+    let links = links.map(|rest| rest.split([')', '#']).next().unwrap_or(""));
+    paths.extend(links.filter(|link| !link.is_empty() && !link.contains("://")));
+    assert!(paths.len() > 80, "{} paths are named", paths.len());
+    let missing: Vec<String> = paths
+        .iter()
+        .filter(|path| !is_there(path.trim_end_matches('/'), &sources))
+        .map(|path| format!("{path} is named and not there"))
+        .collect();
+    assert_none(&missing);
+    // Examples are told of, and those that are told of are there.
+    let listed = readme
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `")?.split_once('`'));
+    let listed: BTreeSet<&str> = listed.map(|(name, _)| name).collect();
+    let examples = fs::read_dir(root.join("examples")).expect("examples");
+    let examples = examples.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    for example in examples.filter_map(|name| name.strip_suffix(".rs").map(str::to_owned)) {
+        assert!(
+            listed.contains(example.as_str()),
+            "README tells nothing of {example}"
+        );
+    }
+}
