@@ -49,6 +49,42 @@ fn geojson_is_read_with_names_and_holes() {
     assert_eq!(mesh.boundary().loops().len(), 2);
 }
 
+/// An arc of such a radius is divided into curves without end, by the reader of drawings that this one rests on.
+#[test]
+fn numbers_without_measure_are_refused_by_the_name_of_their_shape() {
+    let read = |shape: &str| {
+        let drawing = format!(
+            r##"<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9">{shape}</svg>"##
+        );
+        outlines_from_svg(&drawing, &SvgOptions::new(1e-3))
+    };
+    let shapes = [
+        r#"<path id="a" d="M10 30a10 10 0 1 0-1e300 0z"/>"#,
+        r#"<path id="a" d="M10 30A1e39 1 0 1 0 5,0z"/>"#,
+        r#"<circle id="a" r="1e300"/>"#,
+        r#"<rect id="a" rx="5" width="9e99" height="9e99"/>"#,
+        r#"<polygon id="a" points="0,0 1,0 1,-1000000000.5"/>"#,
+    ];
+    for shape in shapes {
+        let told = read(shape);
+        assert!(
+            matches!(&told, Err(OutlineError::TooLarge { name, .. }) if name == "a"),
+            "{shape}: {told:?}"
+        );
+    }
+    let written = r#"<path id="layer99999999999" d="M.5.5l1e0-.5.5.5e+0H-1E-1z"/>"#;
+    assert_eq!(read(written).map(|all| all.len()), Ok(1));
+}
+
+/// Images may name files, which are none of a drawing's business: this one has no end.
+#[test]
+fn files_that_a_drawing_names_are_not_read() {
+    let drawing = r##"<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><image href="/dev/zero" width="5" height="5"/>
+        <rect width="3" height="2"/></svg>"##;
+    let found = outlines_from_svg(drawing, &SvgOptions::new(1e-3));
+    assert_eq!(found.map(|all| all.len()), Ok(1));
+}
+
 /// Such a stroke took minutes and gigabytes, and is no part of a shape.
 #[test]
 fn strokes_of_any_width_leave_shapes_as_they_are() {

@@ -37,6 +37,16 @@ pub enum OutlineError {
         /// Its value.
         value: f64,
     },
+    /// A coordinate or size is so large that nothing can be drawn with it.
+    #[error("the number {value:e} of `{name}` is beyond {limit:e}: draw in larger units")]
+    TooLarge {
+        /// Name of the element, empty if it has none.
+        name: String,
+        /// The number.
+        value: f64,
+        /// The limit.
+        limit: f64,
+    },
     /// The curves need too many points.
     #[error("the curves of `{name}` need more than {limit} points: use a larger tolerance")]
     TooManyPoints {

@@ -6,8 +6,9 @@
 use super::rings::{FillRule, outlines_of};
 use super::{Outline, OutlineError};
 use crate::math::hypot;
+use usvg::roxmltree::{Document, ParsingOptions};
 use usvg::tiny_skia_path::{PathSegment, Point};
-use usvg::{Group, Node, Path, Tree};
+use usvg::{Group, ImageHrefResolver, Node, Path, Tree};
 
 /// Most points of one path.
 const MOST_POINTS: usize = 100_000;
@@ -19,6 +20,14 @@ const PIXEL: f64 = 0.0254 / 96.0;
 /// not looked at either.
 const FILLS_ALONE: &str =
     "* { stroke: none !important; marker: none !important; filter: none !important }";
+
+/// Numbers beyond this are refused. `usvg` divides an arc into as many curves as the sixth root of its radius: without end, of a radius of 1e300.
+const LARGEST: f64 = 1e9;
+
+/// Attributes whose numbers say where a shape is.
+const GEOMETRY: [&str; 15] = [
+    "d", "points", "x", "y", "width", "height", "r", "rx", "ry", "cx", "cy", "x1", "y1", "x2", "y2",
+];
 
 /// How a drawing is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +57,7 @@ impl SvgOptions {
 /// (and hidden ones) are left out, as are text and images.
 ///
 /// # Errors
-/// If the text is no SVG, an id in the options is not in it, curves need too many points, or nothing is filled.
+/// If the text is no SVG, an id in the options is not in it, coordinates are beyond 1e9, curves need too many points, or nothing is filled.
 ///
 /// ```
 /// use foil2d::io::{SvgOptions, outlines_from_svg};
@@ -66,13 +75,7 @@ pub fn outlines_from_svg(text: &str, options: &SvgOptions) -> Result<Vec<Outline
             return Err(OutlineError::InvalidOption { name, value });
         }
     }
-    let fills = usvg::Options {
-        style_sheet: Some(FILLS_ALONE.to_owned()),
-        ..usvg::Options::default()
-    };
-    let tree = Tree::from_str(text, &fills).map_err(|error| OutlineError::NoSvg {
-        reason: error.to_string(),
-    })?;
+    let tree = tree_of(text)?;
     let mut reader = Reader {
         options,
         height: f64::from(tree.size().height()),
@@ -88,6 +91,71 @@ pub fn outlines_from_svg(text: &str, options: &SvgOptions) -> Result<Vec<Outline
         return Err(OutlineError::NoShapes);
     }
     Ok(reader.outlines)
+}
+
+/// A drawing without what no shape follows from: strokes, markers, filters and images, which may be files of any length.
+fn tree_of(text: &str) -> Result<Tree, OutlineError> {
+    let with_types = ParsingOptions {
+        allow_dtd: true,
+        ..ParsingOptions::default()
+    };
+    let document =
+        Document::parse_with_options(text, with_types).map_err(|error| OutlineError::NoSvg {
+            reason: error.to_string(),
+        })?;
+    for element in document.descendants() {
+        let geometry = element
+            .attributes()
+            .filter(|attribute| GEOMETRY.contains(&attribute.name()));
+        let mut numbers = geometry.flat_map(|attribute| numbers_of(attribute.value()));
+        if let Some(value) = numbers.find(|value| value.abs() > LARGEST) {
+            let name = element.attribute("id").unwrap_or_default().to_owned();
+            return Err(OutlineError::TooLarge {
+                name,
+                value,
+                limit: LARGEST,
+            });
+        }
+    }
+    let options = usvg::Options {
+        style_sheet: Some(FILLS_ALONE.to_owned()),
+        image_href_resolver: ImageHrefResolver {
+            resolve_data: Box::new(|_, _, _| None),
+            resolve_string: Box::new(|_, _| None),
+        },
+        ..usvg::Options::default()
+    };
+    Tree::from_xmltree(&document, &options).map_err(|error| OutlineError::NoSvg {
+        reason: error.to_string(),
+    })
+}
+
+/// The numbers in a text, such as a path's data; what stands between them separates them.
+fn numbers_of(text: &str) -> impl Iterator<Item = f64> {
+    let bytes = text.as_bytes();
+    let mut at = 0;
+    let digits = move |from: usize| {
+        let rest = bytes.get(from..).unwrap_or_default();
+        from + rest.iter().take_while(|byte| byte.is_ascii_digit()).count()
+    };
+    std::iter::from_fn(move || {
+        let starts = |byte: &u8| byte.is_ascii_digit() || *byte == b'.';
+        let start = at + bytes.get(at..)?.iter().position(starts)?;
+        let mut end = digits(start);
+        if bytes.get(end) == Some(&b'.') {
+            end = digits(end + 1);
+        }
+        if matches!(bytes.get(end), Some(b'e' | b'E')) {
+            let is_signed = matches!(bytes.get(end + 1), Some(b'+' | b'-'));
+            let exponent = end + 1 + usize::from(is_signed);
+            // `1em` is a length.
+            if digits(exponent) > exponent {
+                end = digits(exponent);
+            }
+        }
+        at = end;
+        Some(text.get(start..end)?.parse().unwrap_or(0.0))
+    })
 }
 
 struct Reader<'a> {
