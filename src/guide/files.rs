@@ -14,7 +14,7 @@
 //! |---|---|
 //! | ParaView | [`VtuSeries`](crate::io::VtuSeries): grids with stresses, velocities, forces, and their times |
 //! | a browser | [`Replay`](crate::io::Replay): one page that plays the run, without a network |
-//! | a page of text | [`write_still`](crate::io::write_still): a picture of a step, as SVG |
+//! | a page of text | [`write_still`](crate::io::write_still): a picture of a step, as SVG; `io::write_still_png`, feature `png`, as PNG |
 //! | a table | [`History`](crate::io::History): numbers of your choice, as CSV |
 //!
 //! ```

@@ -3,7 +3,7 @@
 //! - [`MshMesh`] reads meshes of gmsh, with their physical groups.
 //! - [`Outline`]s are read of GeoJSON (feature `json`) and of SVG (feature `svg`), to be meshed.
 //! - [`VtuSeries`] and [`write_vtu`] write results for ParaView, [`History`] tables of chosen numbers.
-//! - [`write_still`] draws a step, as SVG.
+//! - [`write_still`] draws a step, as SVG, and `write_still_png` as PNG (feature `png`).
 //! - [`Replay`] writes a page that plays a run in a browser.
 
 mod base64;
@@ -29,4 +29,6 @@ pub use output::OutputError;
 pub use replay::Replay;
 pub use scene::Scene;
 pub use still::{still, write_still};
+#[cfg(feature = "png")]
+pub use still::{still_png, write_still_png};
 pub use vtu::{VtuEncoding, VtuSeries, write_vtu};

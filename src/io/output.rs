@@ -15,6 +15,14 @@ pub enum OutputError {
         /// What the operating system says.
         source: std::io::Error,
     },
+    /// A picture cannot be painted at the width that was asked for.
+    #[error("a picture {width} px wide cannot be painted, {reason}: ask for another width")]
+    Unpaintable {
+        /// The width (px).
+        width: u32,
+        /// Why not.
+        reason: String,
+    },
     /// An element cannot evaluate its strain.
     #[error(transparent)]
     Stress(#[from] ModelError),

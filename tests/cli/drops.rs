@@ -17,6 +17,10 @@ fn a_drawing_becomes_a_picture_and_a_replay_in_one_command() {
     let out = folder.join("out");
     let still = std::fs::read_to_string(out.join("still.svg")).expect("a picture");
     assert!(still.matches("<polygon").count() > 100, "cells are drawn");
+    let png = std::fs::read(out.join("still.png")).expect("the picture as PNG");
+    // Behind the signature of eight bytes and the name of the first chunk.
+    assert_eq!(png[..8], *b"\x89PNG\r\n\x1a\n");
+    assert_eq!(png[16..20], 1920_u32.to_be_bytes(), "px wide");
     let replay = std::fs::read_to_string(out.join("replay.html")).expect("a replay");
     assert!(replay.contains("<canvas") && replay.len() > 20_000);
     // The scene that was run is there to be changed, and runs as well.

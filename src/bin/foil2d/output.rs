@@ -5,8 +5,11 @@ use super::files::check_writable;
 use super::probe::{Probe, probes};
 use super::problem::Problem;
 use super::source::Source;
-use foil2d::io::{History, Replay, Scene, VtuSeries, write_still};
+use foil2d::io::{History, Replay, Scene, VtuSeries, write_still, write_still_png};
 use std::path::PathBuf;
+
+/// Width of the picture as PNG (px).
+const PNG_WIDTH: u32 = 1920;
 
 /// Files in the making.
 pub struct Outputs {
@@ -15,6 +18,7 @@ pub struct Outputs {
     vtu: Option<VtuSeries>,
     replay: Option<Replay>,
     has_still: bool,
+    has_png: bool,
     history: History,
     probes: Vec<Probe>,
 }
@@ -36,6 +40,7 @@ impl Outputs {
             vtu: spec.vtu.then(|| VtuSeries::new(folder.join("scene"))),
             replay: spec.replay.then(|| Replay::new(&source.title)),
             has_still: spec.still,
+            has_png: spec.png,
             history: History::new(columns),
             probes,
             folder,
@@ -54,6 +59,7 @@ impl Outputs {
             (self.vtu.is_some(), "scene.pvd"),
             (self.replay.is_some(), "replay.html"),
             (self.has_still, "still.svg"),
+            (self.has_png, "still.png"),
         ];
         let wanted = all.into_iter().filter(|(is_wanted, _)| *is_wanted);
         wanted.map(|(_, name)| self.folder.join(name)).collect()
@@ -100,9 +106,13 @@ impl Outputs {
                 .write(self.folder.join("replay.html"))
                 .map_err(Problem::plain)?;
         }
+        let scene = Scene::of(&built.world, &built.flex_bodies, built.flex.report());
         if self.has_still {
-            let scene = Scene::of(&built.world, &built.flex_bodies, built.flex.report());
             write_still(self.folder.join("still.svg"), &scene).map_err(Problem::plain)?;
+        }
+        if self.has_png {
+            let path = self.folder.join("still.png");
+            write_still_png(path, &scene, PNG_WIDTH).map_err(Problem::plain)?;
         }
         Ok(files)
     }

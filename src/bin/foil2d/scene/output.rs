@@ -17,8 +17,10 @@ pub struct Output {
     pub vtu: bool,
     /// One page to play the run in a browser.
     pub replay: bool,
-    /// A picture of the last step.
+    /// A picture of the last step, as SVG.
     pub still: bool,
+    /// The same picture as PNG, 1920 pixels wide.
+    pub png: bool,
     /// Histories, columns of a table `history.csv` beside energies.
     pub history: Vec<HistorySpec>,
 }
@@ -31,6 +33,7 @@ impl Default for Output {
             vtu: false,
             replay: true,
             still: true,
+            png: true,
             history: Vec::new(),
         }
     }

@@ -1,5 +1,11 @@
 //! A picture of a step: stresses of flexible bodies, rigid bodies, forces of contact.
 
+#[cfg(feature = "png")]
+mod png;
+
+#[cfg(feature = "png")]
+pub use png::{still_png, write_still_png};
+
 use super::output::{OutputError, write};
 use super::scene::Scene;
 use super::stress::world_stress;
