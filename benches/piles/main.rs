@@ -1,4 +1,5 @@
-//! What piles cost: rigid boxes on a flexible plank beside rapier alone, and soft blocks beside rapier's own soft bodies.
+//! What piles cost: rigid boxes on a flexible plank beside rapier alone, and soft blocks beside rapier's own soft bodies
+//! and beside what `FlexBodyBuilder::from_soft_body` makes of these.
 //!
 //! ```text
 //! cargo bench --bench piles                                     all scenes, some minutes

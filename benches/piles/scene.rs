@@ -138,6 +138,7 @@ impl Scene {
                 ] {
                     sides.push(Box::new(self.rapier_blocks(young, model)?));
                 }
+                sides.push(Box::new(self.converted_blocks(young)?));
             }
         }
         Ok(sides)
@@ -206,30 +207,48 @@ impl Scene {
         Ok(Flexible::new("foil2d Tri3", world, bodies))
     }
 
-    fn rapier_blocks(&self, young: f64, model: SoftModel) -> Outcome<Rapier> {
-        let mut world = self.bin();
-        model.set_up(&mut world);
+    /// Rapier's own soft blocks, as described to rapier.
+    fn soft_blocks(&self, young: f64, model: SoftModel) -> Outcome<Vec<SoftBodyBuilder>> {
         let mesh = Self::block()?;
         let cells: Vec<_> = mesh
             .cells()
             .map(|cell| [0, 1, 2].map(|corner| cell.nodes[corner] as u32))
             .collect();
-        for (at, turn) in self.places() {
+        let blocks = self.places().map(|(at, turn)| {
             let [x0, y0] = corner(at, turn);
             let (sin, cos) = turn.sin_cos();
             let place =
                 |&[x, y]: &[f64; 2]| vector([x0 + cos * x - sin * y, y0 + sin * x + cos * y]);
-            let block = SoftBodyBuilder::new(mesh.nodes().iter().map(place).collect())
+            SoftBodyBuilder::new(mesh.nodes().iter().map(place).collect())
                 .cells(cells.clone())
                 .masses(masses(&mesh, DENSITY))
                 .cell_model(SoftBodyCellModel::Corotational)
                 .material(material(young, POISSON, true))
                 .solver(model.solver())
                 .particle_radius(RADIUS as Real)
-                .can_sleep(false);
+                .can_sleep(false)
+        });
+        Ok(blocks.collect())
+    }
+
+    fn rapier_blocks(&self, young: f64, model: SoftModel) -> Outcome<Rapier> {
+        let mut world = self.bin();
+        model.set_up(&mut world);
+        for block in self.soft_blocks(young, model)? {
             world.insert_soft_body(block);
         }
         Ok(Rapier::new(model.name(), world))
+    }
+
+    /// The same descriptions, made flexible bodies: of large strain, with rapier's damping and skin.
+    fn converted_blocks(&self, young: f64) -> Outcome<Flexible> {
+        let mut world = self.bin();
+        let mut bodies = FlexBodySet::new();
+        for block in self.soft_blocks(young, SoftModel::Constraints)? {
+            let block = FlexBodyBuilder::from_soft_body(&block, CellKind::Tri3)?;
+            bodies.insert(block, &mut world)?;
+        }
+        Ok(Flexible::new("foil2d converted", world, bodies))
     }
 }
 
