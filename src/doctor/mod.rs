@@ -25,13 +25,16 @@
 //! | `finding` | what is found, in words |
 //! | `body` | one body: mesh, material, damping, size |
 //! | `surroundings` | bodies and what is beside them, or heavier |
+//! | `cost` | [`ExpectedCost`]: operations of a step, counted before it |
 //! | `course` | [`Course`]: what a run was like |
 
 mod body;
+mod cost;
 mod course;
 mod finding;
 mod surroundings;
 
+pub use cost::{BodyCost, ExpectedCost};
 pub use course::{Course, CourseReport};
 pub use finding::Finding;
 

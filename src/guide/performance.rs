@@ -31,6 +31,7 @@
 //! | soft bodies crushed far | contact changes while they fold | stiffer materials, shorter steps |
 //! | debug builds | | `[profile.dev.package."*"] opt-level = 3` |
 //!
+//! What a step will cost is told before it by [`doctor::ExpectedCost`](crate::doctor::ExpectedCost), in operations and to a factor of a few.
 //! What sleeps costs next to nothing, and bodies that do not touch cost what each costs alone. [`StepReport::n_factorizations`], [`n_newton`], [`n_parts`] and, with
 //! the feature `timing`, [`times`] tell where a step went:
 //!

@@ -386,6 +386,11 @@ impl BlockCholesky {
         self.panels.n_nonzeros(self.node_at.len())
     }
 
+    /// Floating-point operations of a factorization: the squares of the lengths of the columns kept of `L`, summed.
+    pub fn n_operations(&self) -> f64 {
+        self.panels.n_operations(self.node_at.len())
+    }
+
     /// How many factorizations succeeded since the analysis: the work a step did, for reports and
     /// tests.
     pub fn n_factorizations(&self) -> usize {

@@ -101,6 +101,18 @@ impl Panels {
         self.panels.iter().map(entries).sum()
     }
 
+    /// The sum of the squares of the columns' lengths, diagonal entries and joined columns' zeros included.
+    pub fn n_operations(&self, n_nodes: usize) -> f64 {
+        let of_panel = |panel: &Panel| {
+            let columns = 2 * panel.width as usize;
+            let rows = &self.rows[panel.rows[0] as usize..panel.rows[1] as usize];
+            let n_rows = rows.iter().filter(|&&row| (row as usize) < n_nodes).count();
+            let lengths = (1..=columns).map(|within| (within + 2 * n_rows) as f64);
+            lengths.map(|length| length * length).sum::<f64>()
+        };
+        self.panels.iter().map(of_panel).sum()
+    }
+
     /// The panels that hold a wanted position, and all that those depend on: a panel's rows are among the columns of
     /// its ancestors, and its first row is a column of its parent.
     ///
