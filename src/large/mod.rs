@@ -18,12 +18,14 @@
 //! | `settings` | tolerance, decay, how hard to try |
 //! | `equation` | the residual of a step or of an equilibrium |
 //! | `newton` | the iteration on one factor, renewed when it converges slowly |
+//! | `balance` | the rigid motion that iterations leave |
 //! | `turn` | the mean rotation of a body, by which a factor is turned |
 //! | `stepper` | [`LargeStepper`]: a step, in halves where it is not found |
 //! | `equilibrium` | [`LoadStepper`]: equilibrium under loads that grow, in smaller increments where it is not found |
 //! | `continuation` | [`PathStepper`]: equilibrium along a path, past limit points |
 //! | `error` | [`LargeError`] |
 
+mod balance;
 mod continuation;
 mod equation;
 mod equilibrium;

@@ -49,7 +49,8 @@ pub(super) struct Newton {
     factor_of: Option<(Purpose, f64)>,
     /// The largest sum of the sizes of a row of the factored matrix (N/m).
     row_sum: f64,
-    residual: Vec<f64>,
+    /// What is out of balance at the last evaluation (N).
+    pub(super) residual: Vec<f64>,
     increment: Vec<f64>,
     /// Forces that hold the held dofs, at the last evaluation (N).
     pub(super) reaction: Vec<f64>,

@@ -1,5 +1,6 @@
 //! One step of a large body, in halves where it is not found.
 
+use super::balance::balance;
 use super::equation::{Equation, Inertia};
 use super::newton::{Limits, Newton, SLOWEST, Work};
 use super::turn::{MeanRotation, turn};
@@ -284,6 +285,12 @@ impl LargeStepper {
             budget: self.settings.budget,
         };
         self.newton.solve(&equation, limits, angle, &mut self.end)?;
+        if self.is_free {
+            let Inertia { acceleration, drag } = equation.inertia;
+            let (rate, residual) = (acceleration + drag, &self.newton.residual);
+            let start = &motion.position;
+            balance(&self.model, rate, residual, start, &mut self.end);
+        }
         self.commit(dt, angle, motion);
         Ok(())
     }

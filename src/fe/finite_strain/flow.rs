@@ -20,7 +20,7 @@ use super::deformed::Deformed;
 use super::hourglass::{Hourglass, Shape};
 use super::linearization::Linearization;
 use super::model::{Deformation, FiniteStrainModel};
-use super::point::{Form, moduli_of_pair, stress_of_pair};
+use super::point::{Form, moduli_of_pair, stress_of_sums};
 use crate::fe::LEAST_LEFT;
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants, J2Plasticity, PlasticState};
 use crate::fe::recovery::Stress;
@@ -295,10 +295,11 @@ impl CellGroup {
                     });
                 }
                 let pair = [start[point], end[point]].map(|f| state.elastic(f));
-                let (coefficients, _) = derivatives(law, form, state, pair);
+                let ([a, b], _) = derivatives(law, form, state, pair);
                 let volume = cell.volumes[point];
-                let stress = stress_of_pair(law.constants(), form, coefficients, pair)
-                    .map(|part| volume * part);
+                let sums = [2.0 * a + b, 2.0 * a - b];
+                let stress =
+                    stress_of_sums(law.constants(), form, sums, pair).map(|part| volume * part);
                 for (force, gradient) in force.iter_mut().zip(gradient) {
                     let [x, y] = state.gradient(*gradient);
                     force[0] += stress[0] * x + stress[1] * y;

@@ -7,7 +7,7 @@ use super::cells::{CellGroup, add_point, deformation_gradient};
 use super::deformed::Deformed;
 use super::guard::Reach;
 use super::hourglass::{Hourglass, Shape};
-use super::point::{Form, consistent_moduli, each, invariants, stress_of_pair};
+use super::point::{Form, consistent_moduli, each, invariants, stress_of_sums};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::math::{LANES, Number, Wide};
@@ -113,6 +113,11 @@ fn invariants_of(gradient: [Wide; 4]) -> [Invariants; LANES] {
 }
 
 #[inline(always)]
+fn one_by_one(gradient: [Wide; 4]) -> [[f64; 4]; LANES] {
+    each(|lane| each(|k| gradient[k].0[lane]))
+}
+
+#[inline(always)]
 fn side_by_side<const K: usize>(of_lanes: [[f64; K]; LANES]) -> [Wide; K] {
     let mut parts = [Wide::ZERO; K];
     for (k, part) in parts.iter_mut().enumerate() {
@@ -194,7 +199,7 @@ impl<const N: usize> WithSimd for PointEnergy<'_, N> {
                 if point == 0 {
                     one = f;
                 }
-                let densities = self.law.energy_densities(&invariants_of(f));
+                let densities = self.law.energies_of(&one_by_one(f));
                 let volume = group.packs.volumes[place];
                 let own = energy.iter_mut().zip(densities).zip(volume.0);
                 for ((energy, density), volume) in own.take(cells.len()) {
@@ -277,15 +282,16 @@ impl<const N: usize> WithSimd for PointForces<'_, N> {
                     return Err(own.refused(first, &after));
                 }
                 let start = read(&starts[slot..], n, cells.len());
-                let pair = match self.form {
-                    Form::Equilibrium => self.law.gradients(&after),
+                let to = one_by_one(end);
+                let sums = match self.form {
+                    Form::Equilibrium => self.law.conserving_sums_of(&to, &to),
                     Form::EnergyMomentum { .. } => {
-                        self.law.conserving_pairs(&invariants_of(start), &after)
+                        self.law.conserving_sums_of(&one_by_one(start), &to)
                     }
                 };
-                let pair = side_by_side(pair);
+                let sums = side_by_side(sums);
                 let volume = group.packs.volumes[place];
-                let stress = stress_of_pair(constants, self.form, pair, [start, end]);
+                let stress = stress_of_sums(constants, self.form, sums, [start, end]);
                 let stress = each(|k| volume * stress[k]);
                 for (force, [x, y]) in force.iter_mut().zip(gradient) {
                     force[0] += stress[0] * *x + stress[1] * *y;

@@ -59,30 +59,31 @@ pub(super) fn stress(
     start: [f64; 4],
     end: [f64; 4],
 ) -> [f64; 4] {
-    let pair = match form {
-        Form::Equilibrium => law.gradient(Invariants::of(end)),
-        Form::EnergyMomentum { .. } => {
-            law.conserving_pair(Invariants::of(start), Invariants::of(end))
-        }
+    let sums = match form {
+        Form::Equilibrium => law.conserving_sums(end, end),
+        Form::EnergyMomentum { .. } => law.conserving_sums(start, end),
     };
-    stress_of_pair(law.constants(), form, pair, [start, end])
+    stress_of_sums(law.constants(), form, sums, [start, end])
 }
 
-/// `P = 2 a F + b cof F` of a pair, with the decay (Pa).
+/// `P = 2 a F + b cof F = (2 a + b) S + (2 a - b) D` of a pair, with the decay (Pa); see [`BesideRest`](crate::fe::material::hyperelastic::BesideRest).
 #[inline(always)]
-pub(super) fn stress_of_pair<T: Number>(
+pub(super) fn stress_of_sums<T: Number>(
     constants: ElasticConstants,
     form: Form,
-    [a, b]: [T; 2],
+    [turned, rest]: [T; 2],
     [start, end]: [[T; 4]; 2],
 ) -> [T; 4] {
     let at = match form {
         Form::Equilibrium => end,
         Form::EnergyMomentum { .. } => middle(start, end),
     };
-    let cofactor = cofactor(at);
-    let twice = a * 2.0;
-    let mut stress = each(|k| twice * at[k] + b * cofactor[k]);
+    let [xx, xy, yx, yy] = at;
+    // Twice α, β, γ and δ of the two parts.
+    let (turned, rest) = (turned * 0.5, rest * 0.5);
+    let [alpha, beta] = [turned * (xx + yy), turned * (yx - xy)];
+    let [gamma, delta] = [rest * (xx - yy), rest * (xy + yx)];
+    let mut stress = [alpha + gamma, delta - beta, delta + beta, alpha - gamma];
     if let Form::EnergyMomentum { decay } = form
         && decay > 0.0
     {

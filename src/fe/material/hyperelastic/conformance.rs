@@ -29,6 +29,7 @@ const STATES: [[f64; 4]; 12] = [
 /// | gradient and Hessian are derivatives | central differences |
 /// | the pair does the work that the energy rises by, is symmetric, and has the gradient as its limit | rounding |
 /// | the derivatives that a step uses are those of the pair | central differences |
+/// | sums of the pair and energies of gradients are those of their invariants | rounding |
 /// | energy is positive beside rest and grows with the stretch | |
 ///
 /// # Errors
@@ -48,7 +49,35 @@ pub fn check_law(law: &dyn Hyperelastic) -> Result<(), ConformanceFailure> {
         }
         check_near_pair(law, at, stiffness)?;
     }
+    check_gradients(law, stiffness)?;
     check_growth(law)
+}
+
+/// What is asked of gradients is what their invariants tell, where both are known to rounding.
+fn check_gradients(law: &dyn Hyperelastic, stiffness: f64) -> Result<(), ConformanceFailure> {
+    let states = || {
+        let states = STATES.into_iter();
+        states.filter(|state| law.admits(Invariants::of(*state)))
+    };
+    for from in states() {
+        let at = Invariants::of(from);
+        let energy = law.energy_density(at);
+        let size = energy.abs() + stiffness * at.t;
+        let error = (law.energy_of(from) - energy).abs() / size;
+        at_most(
+            "the energy of a gradient is that of its invariants",
+            error,
+            1e-14,
+        )?;
+        for to in states() {
+            let [a, b] = law.conserving_pair(at, Invariants::of(to));
+            let [sum, difference] = law.conserving_sums(from, to);
+            let error = (sum - (2.0 * a + b)).abs() + (difference - (2.0 * a - b)).abs();
+            let size = a.abs() + b.abs() + stiffness;
+            at_most("the sums are those of the pair", error / size, 1e-13)?;
+        }
+    }
+    Ok(())
 }
 
 /// As [`check_derivatives`], with the pair of two states as a function of the second.

@@ -1,6 +1,6 @@
 //! The corotated law: Hooke's law for the strain `U - I` of the polar decomposition `F = R U`.
 
-use super::{ElasticConstants, Hyperelastic, Invariants};
+use super::{BesideRest, ElasticConstants, Hyperelastic, Invariants};
 use crate::fe::record::LawRecord;
 
 /// `W = μ |F - R|² + λ/2 (tr U - 2)²`, with `R` the rotation nearest to `F`.
@@ -51,6 +51,15 @@ impl Corotated {
         // s is a square, (F_xx + F_yy)² + (F_xy - F_yx)², that rounding may take below zero.
         ((t + 2.0 * j).max(0.0) + ROUNDING).sqrt()
     }
+
+    /// The root, and by how much it is more than at rest: `s - 4` is four times the growth.
+    fn risen(at: BesideRest) -> [f64; 2] {
+        let (u, rest) = (
+            ((4.0 + 4.0 * at.growth).max(0.0) + ROUNDING).sqrt(),
+            AT_REST.sqrt(),
+        );
+        [u, 4.0 * at.growth / (u + rest)]
+    }
 }
 
 impl Hyperelastic for Corotated {
@@ -87,6 +96,21 @@ impl Hyperelastic for Corotated {
     fn conserving_pair(&self, from: Invariants, to: Invariants) -> [f64; 2] {
         let p = self.linear - 2.0 * self.root / (Self::root_of(from) + Self::root_of(to));
         [self.constants.mu() + p, 2.0 * p]
+    }
+
+    /// As `linear - root/rest = -μ/2`, `2 a + b = 2 μ + 4 p = 4 root (u + u' - 2 rest)/(rest (u + u'))`; `2 a - b = 2 μ`.
+    fn conserving_sums(&self, from: [f64; 4], to: [f64; 4]) -> [f64; 2] {
+        let [[u, w], [end, risen]] = [from, to].map(|f| Self::risen(BesideRest::of(f)));
+        let sum = 4.0 * self.root * (w + risen) / (AT_REST.sqrt() * (u + end));
+        [sum, 2.0 * self.constants.mu()]
+    }
+
+    /// `W = 2 μ s + (linear + μ/2) w²`, with the risen root `w`.
+    fn energy_of(&self, gradient: [f64; 4]) -> f64 {
+        let mu = self.constants.mu();
+        let at = BesideRest::of(gradient);
+        let [_, risen] = Self::risen(at);
+        2.0 * mu * at.shear + (self.linear + 0.5 * mu) * risen * risen
     }
 
     /// `∂p/∂s' = root / (u' (u + u')²)`.

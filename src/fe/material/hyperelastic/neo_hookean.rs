@@ -1,10 +1,10 @@
 //! The logarithmic neo-Hookean law: `W = μ/2 (t - 2) - μ ln J + λ/2 ln² J`.
 
-use super::quotient::{rise_of_slope_of_ln, slope_of_ln};
-use super::{ElasticConstants, Hyperelastic, Invariants};
+use super::quotient::{quotient_less_one, rise_of_slope_of_ln, slope_of_ln};
+use super::{BesideRest, ElasticConstants, Hyperelastic, Invariants};
 use crate::fe::material::LinearElastic;
 use crate::fe::record::LawRecord;
-use crate::math::ln;
+use crate::math::{ln, ln_1p};
 
 /// Change of `J`, relative to itself, up to which derivatives in the middle are those of the pair, to a share as small (-).
 const SMALL: f64 = 1e-6;
@@ -72,6 +72,25 @@ impl Hyperelastic for NeoHookean {
         let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
         let slope = slope_of_ln(from.j, to.j);
         [0.5 * mu, slope * (0.5 * lambda * ln(from.j * to.j) - mu)]
+    }
+
+    /// `2 a + b = μ (1 - q) + q λ/2 ln JJ'`, with `q = Δ ln J/ΔJ` and `e = J - 1`:
+    /// `1 - q = (e + e' - 2 (atanh(y)/y - 1))/(2 + e + e')`, `y = (e' - e)/(2 + e + e')`.
+    fn conserving_sums(&self, from: [f64; 4], to: [f64; 4]) -> [f64; 2] {
+        let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
+        let [e, end] = [from, to].map(|f| BesideRest::of(f).j());
+        let below = 2.0 + (e + end);
+        let less = (e + end - 2.0 * quotient_less_one((end - e) / below)) / below;
+        let sum = mu * less + 0.5 * lambda * (1.0 - less) * (ln_1p(e) + ln_1p(end));
+        [sum, 2.0 * mu - sum]
+    }
+
+    /// `W = μ (2 s + e - ln J) + λ/2 ln² J`, `e = J - 1`.
+    fn energy_of(&self, gradient: [f64; 4]) -> f64 {
+        let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
+        let at = BesideRest::of(gradient);
+        let log = ln_1p(at.j());
+        mu * (2.0 * at.shear + (at.j() - log)) + 0.5 * lambda * log * log
     }
 
     fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3] {

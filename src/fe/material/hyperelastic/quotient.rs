@@ -28,6 +28,19 @@ pub(super) fn quotient(y: f64) -> f64 {
     }
 }
 
+/// `atanh(y)/y - 1`, with its own digits where it is small.
+#[inline]
+pub(super) fn quotient_less_one(y: f64) -> f64 {
+    let squared = y * y;
+    if squared < SERIES {
+        let coefficients = [1.0 / 11.0, 1.0 / 9.0, 1.0 / 7.0, 1.0 / 5.0, 1.0 / 3.0];
+        let fold = |sum, coefficient| sum * squared + coefficient;
+        squared * coefficients.into_iter().fold(0.0, fold)
+    } else {
+        quotient(y) - 1.0
+    }
+}
+
 /// The derivative of [`slope_of_ln`] by `b`.
 ///
 /// With `q = atanh(y)/y` it is `2/(a + b)² (2 a q'/(a + b) - q)`, and `q' = (1/(1 - y²) - q)/y` or its series.

@@ -1,6 +1,6 @@
 //! St. Venant and Kirchhoff's law: Hooke's law for Green's strain, `W = λ/2 (tr E)² + μ |E|²`, `E = (FᵀF - I)/2`.
 
-use super::{ElasticConstants, Hyperelastic, Invariants};
+use super::{BesideRest, ElasticConstants, Hyperelastic, Invariants};
 use crate::fe::record::LawRecord;
 
 /// `W = λ/8 (t - 2)² + μ/4 (t² - 2 t + 2 - 2 J²)`: stress linear in Green's strain.
@@ -59,6 +59,23 @@ impl Hyperelastic for StVenantKirchhoff {
         let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
         let Invariants { t, j } = from.mean(to);
         [0.25 * lambda * (t - 2.0) + 0.5 * mu * (t - 1.0), -mu * j]
+    }
+
+    /// With the means `T` of `t - 2` and `K` of `J - 1`: `λ/2 T + μ (T - K)` and `λ/2 T + μ (2 + T + K)`.
+    fn conserving_sums(&self, from: [f64; 4], to: [f64; 4]) -> [f64; 2] {
+        let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
+        let (from, to) = (BesideRest::of(from), BesideRest::of(to));
+        let (t, j) = (0.5 * (from.t() + to.t()), 0.5 * (from.j() + to.j()));
+        let pressure = 0.5 * lambda * t;
+        [pressure + mu * (t - j), pressure + mu * (2.0 + t + j)]
+    }
+
+    /// `W = λ/2 (g + s)² + μ ((g + s)² - (g - s)²/2 + 2 s)`.
+    fn energy_of(&self, gradient: [f64; 4]) -> f64 {
+        let (lambda, mu) = (self.constants.lambda(), self.constants.mu());
+        let at = BesideRest::of(gradient);
+        let (t, j) = (0.5 * at.t(), at.j());
+        0.5 * lambda * t * t + mu * (t * t - 0.5 * j * j + 2.0 * at.shear)
     }
 
     fn conserving_hessian(&self, _from: Invariants, to: Invariants) -> [f64; 3] {

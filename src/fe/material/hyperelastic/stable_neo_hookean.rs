@@ -1,9 +1,9 @@
 //! The stable neo-Hookean law of Smith, de Goes and Kim (2018), with constants of its own for the plane.
 
-use super::quotient::{rise_of_slope_of_ln, slope_of_ln};
-use super::{ElasticConstants, Hyperelastic, Invariants};
+use super::quotient::{quotient_less_one, rise_of_slope_of_ln, slope_of_ln};
+use super::{BesideRest, ElasticConstants, Hyperelastic, Invariants};
 use crate::fe::record::LawRecord;
-use crate::math::ln;
+use crate::math::{ln, ln_1p};
 
 /// `W = m/2 (t - 2) + l/2 (J - α)² - m/2 ln(t + 1)`, less its value at rest.
 ///
@@ -85,6 +85,25 @@ impl Hyperelastic for StableNeoHookean {
             0.5 * self.shear * (1.0 - slope),
             self.volumetric * (j - self.rest_volume),
         ]
+    }
+
+    /// With `l (1 - α) = -2 m/3` and `q = Δ ln(t + 1)/Δt`, which is 1/3 at rest: `2 a + b = m (1/3 - q) + l (J̄ - 1)` and
+    /// `2 a - b = 4 a - (2 a + b)`, `2 a = 2 m/3 + m (1/3 - q)`.
+    fn conserving_sums(&self, from: [f64; 4], to: [f64; 4]) -> [f64; 2] {
+        let (from, to) = (BesideRest::of(from), BesideRest::of(to));
+        let (t, end) = (from.t(), to.t());
+        let below = 6.0 + (t + end);
+        let less = ((t + end) / 3.0 - 2.0 * quotient_less_one((end - t) / below)) / below;
+        let sum = self.shear * less + 0.5 * self.volumetric * (from.j() + to.j());
+        [sum, self.shear * (4.0 / 3.0 + 2.0 * less) - sum]
+    }
+
+    /// `W = l/2 (J - 1)² + 4/3 m s + m/2 ((t - 2)/3 - ln(1 + (t - 2)/3))`.
+    fn energy_of(&self, gradient: [f64; 4]) -> f64 {
+        let at = BesideRest::of(gradient);
+        let (third, j) = (at.t() / 3.0, at.j());
+        0.5 * self.volumetric * j * j
+            + self.shear * (4.0 / 3.0 * at.shear + 0.5 * (third - ln_1p(third)))
     }
 
     fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3] {
