@@ -8,6 +8,8 @@ mod forces;
 mod frame;
 #[path = "large/locking.rs"]
 mod locking;
+#[path = "large/obstacles.rs"]
+mod obstacles;
 #[path = "large/paths.rs"]
 mod paths;
 #[path = "large/robustness.rs"]

@@ -29,6 +29,7 @@ mod b43;
 mod b44;
 mod b45;
 mod b46;
+mod b47;
 mod b8;
 mod b9;
 mod bars;
@@ -39,6 +40,7 @@ mod plain;
 mod rods;
 mod schemes;
 mod statics;
+mod wrap;
 
 use sheet::{Row, Sheet, Size};
 use std::error::Error;
@@ -194,6 +196,16 @@ pub const CASES: &[Case] = &[
         id: "B46",
         title: "free spinning plate",
         run: b46::run,
+    },
+    Case {
+        id: "B47",
+        title: "ring between plates",
+        run: b47::run,
+    },
+    Case {
+        id: "wrap",
+        title: "strip over a cylinder",
+        run: wrap::run,
     },
     Case {
         id: "modes",

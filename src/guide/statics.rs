@@ -40,6 +40,38 @@
 //! Load control ends at a limit load, where bodies snap through; [`PathStepper`](crate::large::PathStepper) follows the path of equilibria past it, and tells limit points and
 //! whether what it finds is stable. Its [`FollowerForce`](crate::large::FollowerForce)s turn with the body.
 //!
+//! # Against rigid obstacles
+//!
+//! [`ContactStepper`](crate::large::ContactStepper) is load control for a body whose surface is kept out of half-planes, discs and segments, which may have friction and go
+//! straight ways ([`Obstacle`](crate::large::Obstacle)):
+//!
+//! ```
+//! use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+//! use foil2d::fe::material::hyperelastic::NeoHookean;
+//! use foil2d::fe::mesh::{CellKind, generate::rectangle};
+//! use foil2d::large::{ContactCase, ContactStepper, LargeSettings, LoadCase, Obstacle};
+//!
+//! // A block held above; a rough plate comes up by a tenth, and then goes 30 cm to the right.
+//! let mesh = rectangle([1.0, 1.0], [8, 8], CellKind::Quad4)?;
+//! let model = FiniteStrainModel::assemble(FiniteStrainDescription::new(mesh, NeoHookean::plane_strain(1e5, 0.3), 1000.0))?;
+//! let rest = model.rest_positions().to_vec();
+//! let is_held: Vec<bool> = rest.chunks(2).flat_map(|at| [at[1] == 1.0; 2]).collect();
+//! let none = vec![0.0; rest.len()];
+//! let load = LoadCase { from: &none, to: &none, is_held: &is_held, places: &rest, n_increments: 10 };
+//!
+//! let mut positions = rest.clone();
+//! let mut stepper = ContactStepper::new(model, LargeSettings::default())?;
+//! let mut plate = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).with_friction(0.3);
+//! for way in [[0.0, 0.1], [0.3, 0.0]] {
+//!     plate = plate.moving_by(way);
+//!     stepper.solve(ContactCase { load, obstacles: &[plate] }, &mut positions)?;
+//!     plate = plate.moved();
+//! }
+//! let forces = stepper.reaction().chunks(2).fold([0.0, 0.0], |sum, force| [sum[0] + force[0], sum[1] + force[1]]);
+//! assert!((forces[0] / (0.3 * forces[1]) - 1.0).abs() < 1e-4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! In a world, bodies at rest are in equilibrium with what touches them: let them settle, or sleep.
 //!
 //! # Natural modes

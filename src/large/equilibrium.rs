@@ -1,6 +1,7 @@
 //! Equilibrium under loads that grow from nothing to their whole, in smaller increments where it is not found.
 
 use super::equation::{Equation, Inertia};
+use super::increments::Increments;
 use super::newton::{Limits, Newton, Work};
 use super::stepper::require_finite;
 use super::{LargeError, LargeSettings};
@@ -136,36 +137,23 @@ impl LoadStepper {
         case: LoadCase<'_>,
         positions: &mut [f64],
     ) -> Result<LoadReport, LargeError> {
-        let largest = 1.0 / case.n_increments.max(1) as f64;
-        let smallest = largest * 0.5_f64.powi(self.settings.max_cutbacks as i32);
-        let (mut done, mut share, mut last_share) = (0.0, largest, 0.0);
+        let mut increments = Increments::new(case.n_increments, self.settings.max_cutbacks);
         let mut report = LoadReport::default();
-        while done < 1.0 {
-            // A remainder by rounding is not an increment of its own.
-            let part = if done + 1.001 * share >= 1.0 {
-                1.0 - done
-            } else {
-                share
-            };
-            let ahead = if last_share > 0.0 {
-                part / last_share
-            } else {
-                0.0
-            };
-            match self.attempt(&case, [done, part], ahead, positions) {
+        while let Some([reached, ahead]) = increments.next() {
+            match self.attempt(&case, reached, ahead, positions) {
                 Ok(()) => {
                     self.previous.copy_from_slice(positions);
                     positions.copy_from_slice(&self.end);
                     let flowed = self.newton.deformation.flowed_mut();
                     report.flowed += self.model.commit_flow(&self.end, flowed);
-                    (done, last_share) = (if done + part >= 1.0 { 1.0 } else { done + part }, part);
                     report.n_increments += 1;
-                    share = largest.min(2.0 * share);
+                    increments.accept();
                 }
-                Err(error) if 0.5 * share < smallest => return Err(error),
-                Err(_) => {
+                Err(error) => {
+                    if !increments.halve() {
+                        return Err(error);
+                    }
                     report.n_cutbacks += 1;
-                    share *= 0.5;
                 }
             }
         }
@@ -177,15 +165,14 @@ impl LoadStepper {
         Ok(report)
     }
 
-    /// One increment of the load, from a guess that goes on as the last one went by `ahead` of its length.
+    /// One increment of the load to a share of it, from a guess that goes on as the last one went by `ahead` of its length.
     fn attempt(
         &mut self,
         case: &LoadCase<'_>,
-        [done, part]: [f64; 2],
+        reached: f64,
         ahead: f64,
         positions: &[f64],
     ) -> Result<(), LargeError> {
-        let reached = if done + part >= 1.0 { 1.0 } else { done + part };
         for (dof, &x) in positions.iter().enumerate() {
             self.load[dof] = case.from[dof] + reached * (case.to[dof] - case.from[dof]);
             let way = case.places[dof] - self.before[dof];

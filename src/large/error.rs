@@ -122,6 +122,30 @@ pub enum LargeError {
         /// Where the path is (-).
         factor: f64,
     },
+    /// An obstacle is none.
+    #[error(
+        "obstacle {index}: {what} is {value}: give finite numbers, a radius above zero and friction from zero on"
+    )]
+    Obstacle {
+        /// Which one.
+        index: usize,
+        /// What is wrong with it.
+        what: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// A node that touches one obstacle is in another.
+    #[error(
+        "node {node} touches obstacle {} and is {depth:e} m in obstacle {}: a node is kept out of one obstacle, so round the corner between both, or let          one node less stand there", obstacles[0], obstacles[1]
+    )]
+    Wedged {
+        /// The node.
+        node: usize,
+        /// The obstacle it touches, and the one it is in.
+        obstacles: [usize; 2],
+        /// How deep (m).
+        depth: f64,
+    },
     /// A follower force cannot act.
     #[error(
         "follower force {index} has a node that does not exist, a line from a node to itself, or a force that is not finite"

@@ -22,20 +22,25 @@
 //! | `turn` | the mean rotation of a body, by which a factor is turned |
 //! | `stepper` | [`LargeStepper`]: a step, in halves where it is not found |
 //! | `equilibrium` | [`LoadStepper`]: equilibrium under loads that grow, in smaller increments where it is not found |
+//! | `increments` | how far increments of a load case go |
+//! | `contact` | [`ContactStepper`]: equilibrium between rigid obstacles, with Coulomb's friction |
 //! | `continuation` | [`PathStepper`]: equilibrium along a path, past limit points |
 //! | `error` | [`LargeError`] |
 
 mod balance;
+mod contact;
 mod continuation;
 mod equation;
 mod equilibrium;
 mod error;
+mod increments;
 mod motion;
 mod newton;
 mod settings;
 mod stepper;
 mod turn;
 
+pub use contact::{ContactCase, ContactPoint, ContactStepper, Obstacle};
 pub use continuation::{
     FollowerForce, LimitPoint, PathCase, PathEnd, PathPoint, PathReport, PathSettings, PathStepper,
 };

@@ -1,0 +1,271 @@
+//! Equilibria between rigid obstacles: Hertz, sticking and sliding, and what is refused. A ring between plates and a strip over a cylinder are in the
+//! verification book.
+
+use super::support::{laws, nodes_where, plate};
+use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
+use foil2d::fe::material::hyperelastic::NeoHookean;
+use foil2d::fe::mesh::{CellKind, generate::rectangle};
+use foil2d::large::{
+    ContactCase, ContactStepper, LargeError, LargeSettings, LoadCase, LoadStepper, Obstacle,
+};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+fn exactly() -> LargeSettings {
+    LargeSettings::conserving().with_tolerance(1e-9)
+}
+
+/// A way that starts at zero with cells of the same size and goes on with growing ones: `sinh` of a parameter in `[-1, 1]`.
+fn graded(reach: f64, steepness: f64, s: f64) -> f64 {
+    reach * (steepness * s).sinh() / steepness.sinh()
+}
+
+/// Half of a cylinder of radius 1, held on a core of a tenth, on a rigid plane that comes up: with `1/E* = (1 - ν²)/E` a half-width
+/// `a = √(4 F R/πE*)` and `p0 = 2 F/πa` (Hertz 1882), both from one fit of the ellipse to the pressures of the nodes, as in the book's B10. The contact is a twentieth of the
+/// radius wide, which half-spaces cost some 1e-3; cells are a tenth of that.
+#[test]
+fn a_cylinder_on_a_plane_has_the_pressure_of_hertz() {
+    let (young, nu) = (1.0, 0.3);
+    let mesh = rectangle([2.0, 1.0], [96, 32], CellKind::Quad4).expect("a grid");
+    let law = NeoHookean::plane_strain(young, nu);
+    let mut description = FiniteStrainDescription::new(mesh, law, 1.0);
+    for p in description.rest_positions.chunks_exact_mut(2) {
+        let (sin, cos) = graded(FRAC_PI_2, 6.0, p[0] - 1.0).sin_cos();
+        let radius = 1.0 - graded(0.9, 5.0, 1.0 - p[1]);
+        // The columns of the mesh go round from the left, its upper row is the surface below.
+        (p[0], p[1]) = (-radius * sin, -radius * cos);
+    }
+    let rest = description.rest_positions.clone();
+    let model = FiniteStrainModel::assemble(description).expect("half a cylinder");
+    let is_held: Vec<bool> = rest
+        .chunks_exact(2)
+        .flat_map(|p| [p[0].hypot(p[1]) < 0.1 + 1e-9; 2])
+        .collect();
+    let none = vec![0.0; rest.len()];
+    let load = LoadCase {
+        from: &none,
+        to: &none,
+        is_held: &is_held,
+        places: &rest,
+        n_increments: 3,
+    };
+    let plane = Obstacle::half_plane([0.0, -1.0], [0.0, 1.0]).moving_by([0.0, 0.0041]);
+    let mut stepper = ContactStepper::new(model, exactly()).expect("good settings");
+    let mut positions = rest.clone();
+    let case = ContactCase {
+        load,
+        obstacles: &[plane],
+    };
+    let report = stepper.solve(case, &mut positions).expect("an equilibrium");
+    let mut at: Vec<[f64; 2]> = stepper
+        .contacts()
+        .iter()
+        // Where it was: the surface is shorter by a hundredth there, which half-spaces of small strains do not know.
+        .map(|c| [rest[2 * c.node], c.normal_force])
+        .collect();
+    at.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let force: f64 = at.iter().map(|c| c[1]).sum();
+    let a = (4.0 * force * (1.0 - nu * nu) / (PI * young)).sqrt();
+    let p0 = 2.0 * force / (PI * a);
+    assert!(a > 0.04 && a < 0.06, "{a}");
+    let pressures = at.windows(3).map(|w| {
+        let p = w[1][1] / (0.5 * (w[2][0] - w[0][0]));
+        [w[1][0] * w[1][0], p * p]
+    });
+    let inner: Vec<[f64; 2]> = pressures.filter(|p| p[0] < 0.7 * a * a).collect();
+    assert!(inner.len() > 10, "{}", inner.len());
+    let n = inner.len() as f64;
+    let mean = [0, 1].map(|k| inner.iter().map(|p| p[k]).sum::<f64>() / n);
+    let along: f64 = inner.iter().map(|p| (p[0] - mean[0]) * p[1]).sum();
+    let square: f64 = inner.iter().map(|p| (p[0] - mean[0]).powi(2)).sum();
+    let slope = along / square;
+    let squared = mean[1] - slope * mean[0];
+    let (found, width) = (squared.sqrt(), (-squared / slope).sqrt());
+    assert!((found / p0 - 1.0).abs() < 1e-2, "{found} {p0}");
+    assert!((width / a - 1.0).abs() < 1e-2, "{width} {a}");
+    // Newton's method with what touches as part of it: a handful an increment.
+    assert!(
+        report.n_cutbacks == 0 && report.n_iterations < 45,
+        "{report:?}"
+    );
+}
+
+struct Block {
+    stepper: ContactStepper,
+    positions: Vec<f64>,
+    is_held: Vec<bool>,
+    places: Vec<f64>,
+    floor: Obstacle,
+}
+
+/// A block of 1 m, ν = 0, held above, that a rough floor comes up to by a hundredth.
+fn block(friction: f64) -> Block {
+    let model = plate(
+        [1.0, 1.0],
+        [6, 6],
+        CellKind::Quad4,
+        Arc::clone(&laws(1e3, 0.0)[2]),
+    );
+    let rest = model.rest_positions().to_vec();
+    let mut block = Block {
+        stepper: ContactStepper::new(model, exactly()).expect("good settings"),
+        positions: rest.clone(),
+        is_held: rest
+            .chunks_exact(2)
+            .flat_map(|x| [x[1] == 1.0; 2])
+            .collect(),
+        places: rest,
+        floor: Obstacle::half_plane([0.0, 0.0], [0.0, 2.0]).with_friction(friction),
+    };
+    block.go([0.0, 0.01], 1);
+    block
+}
+
+impl Block {
+    /// Moves the floor; the forces along and across it.
+    fn go(&mut self, way: [f64; 2], n_increments: usize) -> [f64; 2] {
+        let none = vec![0.0; self.positions.len()];
+        let load = LoadCase {
+            from: &none,
+            to: &none,
+            is_held: &self.is_held,
+            places: &self.places,
+            n_increments,
+        };
+        let floor = self.floor.moving_by(way);
+        let case = ContactCase {
+            load,
+            obstacles: &[floor],
+        };
+        self.stepper
+            .solve(case, &mut self.positions)
+            .expect("an equilibrium");
+        self.floor = floor.moved();
+        let contacts = self.stepper.contacts();
+        // The normal points up, so what is to the left of it points back.
+        let along: f64 = contacts.iter().map(|c| -c.friction_force).sum();
+        [along, contacts.iter().map(|c| c.normal_force).sum()]
+    }
+}
+
+/// What sticks is as if it were held: the same places as of a body whose lower side is held and moved by [`LoadStepper`].
+#[test]
+fn what_sticks_is_as_if_it_were_held() {
+    let mut block = block(100.0);
+    let before = block.positions.clone();
+    let [along, across] = block.go([2e-3, 0.0], 2);
+    assert!(along > 0.0 && across > 0.0);
+    assert!(block.stepper.contacts().iter().all(|c| c.sticks));
+    let model = plate(
+        [1.0, 1.0],
+        [6, 6],
+        CellKind::Quad4,
+        Arc::clone(&laws(1e3, 0.0)[2]),
+    );
+    let lower = nodes_where(&model, |[_, y]| y == 0.0);
+    let (mut is_held, mut places) = (block.is_held.clone(), block.places.clone());
+    for node in lower {
+        places[2 * node] = before[2 * node] + 2e-3;
+        places[2 * node + 1] = before[2 * node + 1];
+        is_held[2 * node] = true;
+        is_held[2 * node + 1] = true;
+    }
+    let none = vec![0.0; places.len()];
+    let mut positions = before;
+    let mut stepper = LoadStepper::new(model, exactly()).expect("good settings");
+    let case = LoadCase {
+        from: &none,
+        to: &none,
+        is_held: &is_held,
+        places: &places,
+        n_increments: 2,
+    };
+    stepper.solve(case, &mut positions).expect("an equilibrium");
+    for (held, stuck) in positions.iter().zip(&block.positions) {
+        assert!((held - stuck).abs() < 1e-9, "{held} {stuck}");
+    }
+}
+
+/// What slides all over pulls with `μ` times what presses, to rounding, in the direction in which the floor goes; back it sticks first, and then pulls the
+/// other way. Each node answers for itself.
+#[test]
+fn what_slides_pulls_with_its_coefficient_and_sticks_when_it_turns_round() {
+    let mut block = block(0.3);
+    let [along, across] = block.go([0.02, 0.0], 8);
+    assert!(
+        (along / (0.3 * across) - 1.0).abs() < 1e-8,
+        "{along} {across}"
+    );
+    for contact in block.stepper.contacts() {
+        let error = -contact.friction_force - 0.3 * contact.normal_force;
+        assert!(!contact.sticks && error.abs() < 1e-8 * across);
+    }
+    let [along, across] = block.go([-1e-4, 0.0], 1);
+    assert!(
+        along > 0.1 * across && along < 0.298 * across,
+        "{along} {across}"
+    );
+    assert!(block.stepper.contacts().iter().any(|c| c.sticks));
+    let [along, across] = block.go([-0.03, 0.0], 8);
+    assert!(
+        (along / (0.3 * across) + 1.0).abs() < 1e-8,
+        "{along} {across}"
+    );
+    // It lets go of a floor that goes down.
+    let [_, across] = block.go([0.0, -0.1], 1);
+    assert_eq!(across, 0.0);
+    for (x, place) in block.positions.iter().zip(&block.places) {
+        assert!((x - place).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn obstacles_that_are_none_and_nodes_between_two_are_refused_and_nothing_moves() {
+    let model = plate(
+        [1.0, 1.0],
+        [4, 4],
+        CellKind::Quad4,
+        Arc::clone(&laws(1e3, 0.3)[2]),
+    );
+    let rest = model.rest_positions().to_vec();
+    let is_held: Vec<bool> = rest
+        .chunks_exact(2)
+        .flat_map(|x| [x[1] == 1.0; 2])
+        .collect();
+    let none = vec![0.0; rest.len()];
+    let load = LoadCase {
+        from: &none,
+        to: &none,
+        is_held: &is_held,
+        places: &rest,
+        n_increments: 1,
+    };
+    let mut stepper = ContactStepper::new(model, exactly()).expect("good settings");
+    let mut positions = rest.clone();
+    for obstacle in [
+        Obstacle::disc([0.0, -1.0], 0.0),
+        Obstacle::disc([0.0, f64::NAN], 0.5),
+        Obstacle::half_plane([0.0, -1.0], [0.0, 0.0]),
+        Obstacle::half_plane([0.0, -1.0], [0.0, 1.0]).with_friction(-0.1),
+        Obstacle::segment([[0.0, -1.0], [1.0, -1.0]], 0.1).moving_by([0.0, f64::INFINITY]),
+    ] {
+        let floor = Obstacle::half_plane([0.0, -0.5], [0.0, 1.0]);
+        let obstacles = &[floor, obstacle];
+        let error = stepper
+            .solve(ContactCase { load, obstacles }, &mut positions)
+            .expect_err("no obstacle");
+        assert!(
+            matches!(error, LargeError::Obstacle { index: 1, .. }),
+            "{error}"
+        );
+    }
+    // The lower left corner would have to stay out of both.
+    let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).moving_by([0.0, 0.01]);
+    let wall = Obstacle::half_plane([0.0, 0.0], [1.0, 0.0]).moving_by([0.005, 0.0]);
+    let obstacles = &[floor, wall];
+    let error = stepper
+        .solve(ContactCase { load, obstacles }, &mut positions)
+        .expect_err("a corner");
+    assert!(matches!(error, LargeError::Wedged { .. }), "{error}");
+    assert_eq!(positions, rest);
+}
