@@ -56,6 +56,7 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         let name = format!("deflection over L at {angle}°, T6, 50 x 1 (-)");
         sheet.relative(name, deflection, path.positions()[2 * middle + 1], 2e-3);
     }
+    straight(sheet)?;
     sheet.at_most(
         "limit points on the way (-)",
         0.0,
@@ -76,5 +77,38 @@ pub fn run(sheet: &mut Sheet) -> Outcome {
         path.report().n_increments,
         path.report().n_iterations
     ));
+    Ok(())
+}
+
+/// Without any imperfection: to the critical load of the straight strip, over to the path that crosses there, and along it.
+fn straight(sheet: &mut Sheet) -> Outcome {
+    // Triangles that lean one way would be an imperfection.
+    let strip = Strip::new(CellKind::Quad8, [50, 1], |_| 0.0)?;
+    let find = |x: f64| strip.node(x, 0.0).ok_or("the middle line has nodes");
+    let (left, middle, right) = (find(0.0)?, find(0.5)?, find(1.0)?);
+    let mut load = vec![0.0; strip.rest.len()];
+    load[2 * right] = -PI * PI * BENDING;
+    let mut is_held = vec![false; strip.rest.len()];
+    for dof in [2 * left, 2 * left + 1, 2 * right + 1] {
+        is_held[dof] = true;
+    }
+    let mut path = strip.path(PathCase::dead(load, is_held, &strip.rest))?;
+    let branch = path.follow_to_branch()?;
+    sheet.relative(
+        "critical load of the straight strip over Pcr (-)",
+        1.0,
+        branch.factor,
+        1e-3,
+    );
+    path.switch(&branch, 0.02)?;
+    for (angle, [factor, chord, deflection]) in EXACT {
+        let dof = 2 * right;
+        let found = path.follow(PathEnd::Place { dof, place: chord })?;
+        let name = format!("P/Pcr at an end slope of {angle}°, from the straight strip (-)");
+        sheet.relative(name, factor, found.factor, 1e-3);
+        let found = path.positions()[2 * middle + 1].abs();
+        let name = format!("deflection over L at {angle}°, from the straight strip (-)");
+        sheet.relative(name, deflection, found, 2e-3);
+    }
     Ok(())
 }

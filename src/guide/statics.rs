@@ -40,6 +40,9 @@
 //! Load control ends at a limit load, where bodies snap through; [`PathStepper`](crate::large::PathStepper) follows the path of equilibria past it, and tells limit points and
 //! whether what it finds is stable. Its [`FollowerForce`](crate::large::FollowerForce)s turn with the body.
 //!
+//! Where another path crosses, as at the critical load of a column, [`follow_to_branch`](crate::large::PathStepper::follow_to_branch) stops, and
+//! [`switch`](crate::large::PathStepper::switch) goes over to it.
+//!
 //! # Against rigid obstacles
 //!
 //! [`ContactStepper`](crate::large::ContactStepper) is load control for a body whose surface is kept out of half-planes, discs and segments, which may have friction and go

@@ -24,7 +24,7 @@
 //! | `equilibrium` | [`LoadStepper`]: equilibrium under loads that grow, in smaller increments where it is not found |
 //! | `increments` | how far increments of a load case go |
 //! | `contact` | [`ContactStepper`]: equilibrium between rigid obstacles, with Coulomb's friction |
-//! | `continuation` | [`PathStepper`]: equilibrium along a path, past limit points |
+//! | `continuation` | [`PathStepper`]: equilibrium along a path, past limit points and onto paths that cross |
 //! | `error` | [`LargeError`] |
 
 mod balance;
@@ -42,7 +42,8 @@ mod turn;
 
 pub use contact::{ContactCase, ContactPoint, ContactStepper, Obstacle};
 pub use continuation::{
-    FollowerForce, LimitPoint, PathCase, PathEnd, PathPoint, PathReport, PathSettings, PathStepper,
+    BranchPoint, FollowerForce, LimitPoint, PathCase, PathEnd, PathPoint, PathReport, PathSettings,
+    PathStepper,
 };
 pub(crate) use equation::{Equation, Evaluation, Inertia};
 pub use equilibrium::{LoadCase, LoadReport, LoadStepper};

@@ -323,6 +323,59 @@ fn a_straight_column_is_told_to_be_unstable_beyond_its_critical_load() {
     assert!(below < 1.005 && above > 0.995, "{below} {above}");
 }
 
+/// A straight column of a mesh with its symmetry: its path crosses the bent one at Euler's load `π²EI/4L²`, but for its shear and its shortening, both of the order of
+/// (h/L)² = 4e-4. Over there it is stable, on both sides alike, and at an end slope of 40° under the load of the elastica, 1.06366327 Euler's.
+#[test]
+fn a_straight_column_is_led_onto_its_bent_path_at_eulers_load() {
+    let model = plate(
+        [1.0, 0.02],
+        [30, 1],
+        CellKind::Quad8,
+        Arc::clone(&laws(12.0 / 0.02f64.powi(3), 0.0)[0]),
+    );
+    let rest = model.rest_positions().to_vec();
+    let is_held: Vec<bool> = rest
+        .chunks_exact(2)
+        .flat_map(|x| [x[0] == 0.0; 2])
+        .collect();
+    let critical = std::f64::consts::PI.powi(2) / 4.0;
+    let mut load = vec![0.0; rest.len()];
+    for (y, share) in [(0.0, 1.0), (0.01, 4.0), (0.02, 1.0)] {
+        load[2 * node_at(&model, [1.0, y])] = -critical * share / 6.0;
+    }
+    let tip = node_at(&model, [1.0, 0.01]);
+    let corners = [0.0, 0.02].map(|y| node_at(&model, [1.0, y]));
+    let case = PathCase::dead(load, is_held, &rest);
+    let mut path = PathStepper::new(model, case, &rest, exactly()).expect("a case");
+    let branch = path.follow_to_branch().expect("a crossing");
+    assert!((branch.factor - 1.0).abs() < 1e-3, "{}", branch.factor);
+    assert!(path.limit_points().is_empty());
+    let [along, across] = [0, 1].map(|axis| branch.mode[2 * tip + axis].abs());
+    assert!(across > 0.99 && along < 1e-3, "{along} {across}");
+    let refused = path.switch(&branch, 0.0).expect_err("no deflection");
+    assert!(matches!(refused, LargeError::Setting { .. }));
+    let mut factors = Vec::new();
+    for side in [1.0, -1.0] {
+        let mut path = path.clone();
+        let point = path.switch(&branch, 0.05 * side).expect("the bent path");
+        assert!(point.is_stable && point.factor > branch.factor && point.rate > 0.0);
+        // Half of a column between hinges, bent to 40° at its end.
+        let place = 0.01 + side * 2.0 * 0.211120170;
+        let point = path
+            .follow(PathEnd::Place {
+                dof: 2 * tip + 1,
+                place,
+            })
+            .expect("it bends on");
+        factors.push(point.factor);
+        let x = path.positions();
+        let turned = (x[2 * corners[1]] - x[2 * corners[0]]).abs() / 0.02;
+        assert!((turned.asin().to_degrees() - 40.0).abs() < 0.1, "{turned}");
+    }
+    assert!((factors[0] / 1.06366327 - 1.0).abs() < 1e-3, "{factors:?}");
+    assert!((factors[0] - factors[1]).abs() < 1e-7, "{factors:?}");
+}
+
 #[test]
 fn what_leads_nowhere_is_refused_and_nothing_moves() {
     let (model, is_held, tip) = strip();

@@ -86,6 +86,11 @@ impl Bordered {
         }
     }
 
+    /// Replaces `b` by `K⁻¹ b`.
+    pub(super) fn solve_alone(&self, b: &mut [f64]) {
+        self.lu.solve_in_place(b);
+    }
+
     /// Solves for `[dx, dλ]`.
     pub(super) fn solve(&self, residual: &[f64], row: &Row, g: f64) -> (Vec<f64>, f64) {
         let (mut dx, mut change) = self.eliminate(residual.to_vec(), row, g);

@@ -22,8 +22,10 @@
 //! | `corrector` | Newton's iteration on it |
 //! | `report` | [`PathPoint`], [`LimitPoint`], [`PathReport`] |
 //! | `stepper` | [`PathStepper`]: increments, limit points, ends |
+//! | `branch` | crossings of paths, and the way along the other one |
 
 mod bordered;
+mod branch;
 mod case;
 mod corrector;
 mod follower;
@@ -31,6 +33,7 @@ mod length;
 mod report;
 mod stepper;
 
+pub use branch::BranchPoint;
 pub use case::{PathCase, PathEnd, PathSettings};
 pub use follower::FollowerForce;
 pub use report::{LimitPoint, PathPoint, PathReport};

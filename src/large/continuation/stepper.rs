@@ -59,25 +59,25 @@ const MOST_TRIES: usize = 30;
 /// ```
 #[derive(Clone, Debug)]
 pub struct PathStepper {
-    corrector: Corrector,
-    settings: PathSettings,
+    pub(super) corrector: Corrector,
+    pub(super) settings: PathSettings,
     /// Of every dof in the square of a length along the path (1/m²).
-    weights: Vec<f64>,
-    point: Point,
+    pub(super) weights: Vec<f64>,
+    pub(super) point: Point,
     /// Of length one along the path.
-    tangent: (Vec<f64>, f64),
-    is_stable: bool,
+    pub(super) tangent: (Vec<f64>, f64),
+    pub(super) is_stable: bool,
     /// Of the next increment (-).
-    length: f64,
-    limit_points: Vec<LimitPoint>,
+    pub(super) length: f64,
+    pub(super) limit_points: Vec<LimitPoint>,
     report: PathReport,
 }
 
 /// The end of an increment.
-struct Reached {
-    point: Point,
+pub(super) struct Reached {
+    pub(super) point: Point,
     tangent: (Vec<f64>, f64),
-    is_stable: bool,
+    pub(super) is_stable: bool,
     n_iterations: usize,
 }
 
@@ -282,7 +282,7 @@ impl PathStepper {
     }
 
     /// The end of an increment of this length.
-    fn attempt(&mut self, length: f64) -> Result<Reached, LargeError> {
+    pub(super) fn attempt(&mut self, length: f64) -> Result<Reached, LargeError> {
         let (along, rate) = &self.tangent;
         let pairs = self.point.positions.iter().zip(along);
         let mut point = Point {
@@ -308,7 +308,7 @@ impl PathStepper {
     }
 
     /// The plane normal to the tangent.
-    fn normal(&self) -> Row {
+    pub(super) fn normal(&self) -> Row {
         let pairs = self.tangent.0.iter().zip(&self.weights);
         Row {
             positions: pairs.map(|(along, weight)| along * weight).collect(),
@@ -317,7 +317,10 @@ impl PathStepper {
     }
 
     /// The tangent of length one at a point, on the side of the one here.
-    fn tangent_at(&mut self, point: &Point) -> Result<((Vec<f64>, f64), bool), LargeError> {
+    pub(super) fn tangent_at(
+        &mut self,
+        point: &Point,
+    ) -> Result<((Vec<f64>, f64), bool), LargeError> {
         let row = self.normal();
         let (mut along, rate, is_stable) = self.corrector.tangent(&row, point)?;
         let size = length(&self.weights, &along);
@@ -363,7 +366,7 @@ impl PathStepper {
         Ok(())
     }
 
-    fn move_to(
+    pub(super) fn move_to(
         &mut self,
         point: Point,
         tangent: (Vec<f64>, f64),
@@ -376,7 +379,7 @@ impl PathStepper {
     }
 
     /// Brings the reactions to the point of the path.
-    fn come_back(&mut self) -> Result<(), LargeError> {
+    pub(super) fn come_back(&mut self) -> Result<(), LargeError> {
         let point = self.point.clone();
         self.corrector.evaluate_at(&point)
     }
