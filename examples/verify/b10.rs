@@ -160,7 +160,7 @@ fn cylinder(n: usize, sheet: &Sheet) -> Result<Contact, Box<dyn Error + Send + S
 }
 
 /// Fits `p² = p0² (1 - x²/a²)`, a straight line over x², to all nodes but those at the edge, by least squares: `[p0, a]`.
-fn fitted(pressures: &[[f64; 2]], a: f64) -> [f64; 2] {
+pub fn fitted(pressures: &[[f64; 2]], a: f64) -> [f64; 2] {
     let inner: Vec<[f64; 2]> = pressures
         .iter()
         .filter(|p| p[0].abs() <= 0.85 * a)

@@ -20,6 +20,7 @@ mod b25;
 mod b27;
 mod b29;
 mod b3;
+mod b30;
 mod b31;
 mod b32;
 mod b40;
@@ -30,6 +31,9 @@ mod b44;
 mod b45;
 mod b46;
 mod b47;
+mod b48;
+mod b49;
+mod b50;
 mod b8;
 mod b9;
 mod bars;
@@ -40,6 +44,7 @@ mod plain;
 mod rods;
 mod schemes;
 mod statics;
+mod tube;
 mod wrap;
 
 use sheet::{Row, Sheet, Size};
@@ -153,6 +158,11 @@ pub const CASES: &[Case] = &[
         run: b29::run,
     },
     Case {
+        id: "B30",
+        title: "spin-up beam",
+        run: b30::run,
+    },
+    Case {
         id: "B31",
         title: "cantilever",
         run: b31::run,
@@ -203,9 +213,29 @@ pub const CASES: &[Case] = &[
         run: b47::run,
     },
     Case {
+        id: "B48",
+        title: "Cattaneo and Mindlin's cylinders",
+        run: b48::run,
+    },
+    Case {
+        id: "B49",
+        title: "shallow ironing",
+        run: b49::run,
+    },
+    Case {
+        id: "B50",
+        title: "patch test of flexible on flexible",
+        run: b50::run,
+    },
+    Case {
         id: "wrap",
         title: "strip over a cylinder",
         run: wrap::run,
+    },
+    Case {
+        id: "tube",
+        title: "limit pressure of a tube",
+        run: tube::run,
     },
     Case {
         id: "modes",

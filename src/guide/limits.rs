@@ -41,6 +41,8 @@
 //! - **Who is led.** Surfaces are stopped before they meet, whatever forces do ([`FlexParameters::feasible_path`]). Not led, and solved by signed gaps, are: pairs shown to hooks; pairs of multibody links;
 //!   flexible bodies that are inserted with an overlap of more than a twelfth of a cell, rigid ones of more than a sixth of their width; explicit steps; constraint functions. See: of 1,000 random scenes of small strain
 //!   one had a body by over 1 % of its size in another, one a rigid body that passed through the ground, one gained over 1 % of energy; 12 of 2,000 later ones had an unfinished step.
+//! - **Statics between obstacles.** [`ContactStepper`](crate::large::ContactStepper) keeps nodes out of rigid obstacles, each node out of one. See: `LargeError::Wedged` where one would have to stay out of two. Its bodies do not
+//!   meet themselves or each other. Do: step such bodies in a world, with damping.
 //! - **Nodes of the target.** Between flexible bodies the nodes of one are kept out of the surface of the other, not the other's out of its own. See: a node of a soft target may be inside by a millimetre (1.4 mm at E = 1e5 Pa,
 //!   bodies of half a metre). Do: give both cells of about one size.
 //! - **Wedged corners.** Where friction wedges a corner against itself no sticking forces hold to the laws, and the contact slips by a thousandth to a tenth of what its force alone would move it. See:
@@ -89,6 +91,7 @@
 //!
 //! # Rest and sleep
 //!
+//! - Stresses of the laws for sheets and rubber, Hencky's and yours are known to 1e-16 of their moduli, and not to the digits of the strain as those of the other laws are beside rest.
 //! - A flexible body falls asleep when it is in equilibrium to some eight digits, later than a rigid one; under the trapezoidal rule without damping it never does. Do: give it damping.
 //! - Piles of nine blocks of large strain and 1e5 Pa may creep and never sleep; from 1e6 Pa on they do within two or three seconds.
 //!
