@@ -9,6 +9,8 @@
 mod box_on_beam;
 #[path = "../examples/cantilever.rs"]
 mod cantilever;
+#[path = "../examples/catapult.rs"]
+mod catapult;
 #[path = "../examples/custom_element.rs"]
 mod custom_element;
 #[path = "../examples/falling_block.rs"]
@@ -21,6 +23,8 @@ mod gripper;
 mod rope;
 #[path = "../examples/sensor_gate.rs"]
 mod sensor_gate;
+#[path = "../examples/springboard.rs"]
+mod springboard;
 #[path = "../examples/trampoline.rs"]
 mod trampoline;
 #[path = "../examples/truck.rs"]
@@ -293,5 +297,42 @@ fn a_trampoline_is_as_taut_and_as_deep_as_its_energy_says() -> Outcome {
         assert!(bounce.max_penetration_m < 1e-6, "{bounce:?}");
     }
     assert!(outcome.slack.depth_m[0] > 1.1 * outcome.taut.depth_m[0]);
+    Ok(())
+}
+
+/// Standing still the board is the elastica, to its shear and the chords of its cells; in a jump what moves sideways and in the board itself is not stored.
+#[test]
+fn a_springboard_bends_as_the_elastica_and_throws_the_jumper_up() -> Outcome {
+    let outcome = springboard::run(&springboard::support::cli::Options::default(), None)?;
+    assert_within("force / weight", outcome.force_over_weight, 1.0, 1e-4);
+    let [sag, expected] = outcome.sag_m;
+    assert_within("sag", sag / expected, 1.0, 5e-3);
+    let [depth, expected] = outcome.depth_m;
+    assert_within("depth", depth / expected, 0.98, 0.02);
+    assert_within("tip", outcome.tip_over_length, 0.3, 0.01);
+    assert!(
+        outcome.rebound > 0.85 && outcome.rebound < 1.0,
+        "{outcome:?}"
+    );
+    assert!(outcome.energy_gained < 1e-3, "{outcome:?}");
+    assert_eq!(outcome.unsolved, 0);
+    assert!(outcome.max_penetration_m < 1e-6, "{outcome:?}");
+    Ok(())
+}
+
+/// The ball flies on its parabola, and gets no more than is stored.
+#[test]
+fn a_catapult_throws_by_what_it_stores() -> Outcome {
+    let outcome = catapult::run(&catapult::support::cli::Options::default(), None)?;
+    let [range, expected] = outcome.range_m;
+    assert_within("range", range / expected, 1.0, 5e-3);
+    assert!(range < outcome.ideal_range_m, "{outcome:?}");
+    assert!(
+        outcome.efficiency > 0.4 && outcome.efficiency < 1.0,
+        "{outcome:?}"
+    );
+    assert!(outcome.energy_gained < 1e-3, "{outcome:?}");
+    assert_eq!(outcome.unsolved, 0);
+    assert!(outcome.max_penetration_m < 1e-6, "{outcome:?}");
     Ok(())
 }
