@@ -279,7 +279,7 @@ pub fn run(options: &Options, mut film: Option<&mut Film>) -> Result<Outcome, Bo
         if let Some(film) = film.as_deref_mut()
             && (step == DRAW / 2
                 || step >= DRAW + WAIT - 1
-                    && (step - DRAW - WAIT + 1) % 12 == 0
+                    && (step - DRAW - WAIT + 1).is_multiple_of(12)
                     && step < DRAW + WAIT + 120)
         {
             scene.draw(film, (step + 1) as f64 * DT)?;

@@ -3,7 +3,8 @@
 use super::bordered::{Row, dot};
 use super::corrector::Point;
 use super::length::length;
-use super::stepper::{PathPoint, PathStepper};
+use super::report::PathPoint;
+use super::stepper::PathStepper;
 use crate::large::LargeError;
 
 /// A crossing is found when its bracket is this small beside the increment that has passed it.
