@@ -6,9 +6,10 @@ use super::length::length;
 use super::report::PathPoint;
 use super::stepper::PathStepper;
 use crate::large::LargeError;
+use crate::math::rounding::SHARE;
 
 /// A crossing is found when its bracket is this small beside the increment that has passed it.
-const NEAR: f64 = 1e-9;
+const NEAR: f64 = SHARE;
 
 /// Where a bracket is smaller than that, what has been found is a crossing though its neighbourhood has no tangent to rounding.
 const ROUGHLY: f64 = 1e-4;

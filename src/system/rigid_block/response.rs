@@ -16,7 +16,7 @@ impl RigidBlock {
         }
     }
 
-    /// See [`super::Block::compliance`], for two levers.
+    /// See [`crate::system::Block::compliance`], for two levers.
     pub fn compliance(&self, at: Vec2, from: Vec2, of: Response) -> Mat2 {
         match self.link_response() {
             None => mobility(&self.inverse_effective, at, from),
