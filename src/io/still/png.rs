@@ -8,6 +8,9 @@ use resvg::usvg::{Options, Tree, fontdb};
 use std::path::Path;
 use std::sync::Arc;
 
+/// How far beyond the picture something may reach (px): the rasterizer fails on coordinates that its numbers do not hold.
+const FARTHEST: f64 = 1e7;
+
 /// Draws a step as PNG of this width (px), as [`still`] does; the height follows from what is in it.
 ///
 /// ```
@@ -37,6 +40,15 @@ pub fn still_png(scene: &Scene<'_>, width: u32) -> Result<Vec<u8>, OutputError> 
         Tree::from_str(&still(scene)?, &options).map_err(|error| unpaintable(error.to_string()))?;
     let scale = f64::from(width) / f64::from(tree.size().width());
     let height = (scale * f64::from(tree.size().height())).ceil();
+    let reach = tree.root().abs_stroke_bounding_box();
+    let sides = [reach.left(), reach.right(), reach.top(), reach.bottom()];
+    let farthest = sides.map(|side| scale * f64::from(side).abs());
+    let farthest = farthest.into_iter().fold(0.0, f64::max);
+    if !farthest.is_finite() || farthest > FARTHEST {
+        return Err(unpaintable(format!(
+            "what is in it reaches {farthest:.0e} px beyond its edge: look at a smaller world, or take the SVG"
+        )));
+    }
     let mut picture = Pixmap::new(width, height as u32)
         .ok_or_else(|| unpaintable(format!("it would be {height:.0} px high")))?;
     let scale = Transform::from_scale(scale as f32, scale as f32);
