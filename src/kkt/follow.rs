@@ -11,17 +11,16 @@ mod listing;
 mod parted;
 mod trend;
 
+pub(super) use self::arrival::Stage;
+
 use self::listing::Listing;
 use self::trend::Trend;
 use super::delassus::compliance;
-use super::feasible::KeptBase;
-use super::island::{ActiveContact, Island, SolveSettings};
-use super::joint_rows::ActiveJoint;
+use super::island::{Island, SolveSettings};
 use super::position::{PARTING_RATE, Turned};
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
-use crate::constraint::joint::JointGrip;
-use crate::math::{Mat2, exp, is_held};
+use crate::math::{Mat2, REAL_EPSILON, exp, is_held};
 use crate::system::{Block, Response};
 
 /// Turning below this angle (rad) changes no position by more than round-off.
@@ -46,6 +45,10 @@ const FEW_PASSES: usize = 6;
 /// Share of its way's margin by which a true gap or slip may miss what the law asks for (-).
 const CLOSE_ENOUGH: f64 = 0.05;
 
+/// Part of what the multipliers of the last step miss that a step may leave (-), as far down as rapier's numbers hold positions: what comes to rest
+/// is solved the finer the less it moves, and comes to rest. Where that is left to rounding, towers in an `f64` world tremble for good.
+const SETTLING: f64 = 5e-4;
+
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
 
@@ -61,18 +64,6 @@ pub(super) enum Passed {
     Arrived,
     /// The base was stopped on the way.
     Stopped,
-}
-
-/// A state on the way, with the forces that belong to it.
-#[derive(Debug, Default)]
-pub(super) struct Stage {
-    is_known: bool,
-    contacts: Vec<ActiveContact>,
-    ties: Vec<ActiveJoint>,
-    grips: Vec<JointGrip>,
-    base: KeptBase,
-    /// How far the laws are from holding, relative to the margins (-).
-    error: f64,
 }
 
 impl Island {
@@ -149,7 +140,11 @@ impl Island {
             let is_guess = pass == 0 && !(self.contacts.is_empty() && self.ties.is_empty());
             let is_eased = pass >= self.n_exact_passes(settings);
             let near = self.enough(is_eased, NEAR * tolerance);
-            let misleads = is_guess && self.measure_guess() > near;
+            let guessed = is_guess.then(|| self.measure_guess());
+            let misleads = guessed.is_some_and(|guessed| guessed > near);
+            if pass == 0 {
+                self.note_start(guessed, settings);
+            }
             let mut arrives = false;
             let mut error = 0.0;
             if !self.is_finite() || has_left && self.leads_around() {
@@ -304,15 +299,21 @@ impl Island {
         }
     }
 
+    /// Notes how fine the laws are to hold at the least, by what the multipliers of the last step miss, if there are any.
+    fn note_start(&mut self, guessed: Option<f64>, settings: &SolveSettings) {
+        let of_guess = guessed.map_or(f64::INFINITY, |guessed| SETTLING * guessed);
+        self.finest = of_guess.max(REAL_EPSILON * self.extent(settings));
+    }
+
     /// How far the laws may be from holding at the end of a pass (m).
     fn enough(&self, is_eased: bool, tolerance: f64) -> f64 {
         let margin = self.margin;
         if is_eased {
             CLOSE_ENOUGH * margin
         } else if self.has_many_rows() {
-            tolerance.max(LARGE_TOLERANCE * margin)
+            tolerance.max((LARGE_TOLERANCE * margin).min(self.finest))
         } else if self.has_large() {
-            tolerance.max(CURVED_TOLERANCE * margin)
+            tolerance.max((CURVED_TOLERANCE * margin).min(self.finest))
         } else {
             tolerance
         }
@@ -322,24 +323,6 @@ impl Island {
     pub fn has_large(&self) -> bool {
         let is_large = |block: &Block| matches!(block, Block::Flex(block) if block.is_large());
         self.blocks.iter().any(is_large)
-    }
-
-    /// Keeps the base of the first impact of a step, and the forces that answer it.
-    fn keep_impact(&mut self) {
-        let mut stage = std::mem::take(&mut self.impact);
-        self.keep(&mut stage, 0.0);
-        self.impact = stage;
-    }
-
-    /// Goes back to the first impact; returns whether there was one.
-    pub(super) fn return_to_first_stop(&mut self) -> bool {
-        if !self.impact.is_known {
-            return false;
-        }
-        let stage = std::mem::take(&mut self.impact);
-        self.return_to(&stage);
-        self.impact = stage;
-        true
     }
 
     /// Goes back to where the step begins, with the contacts that are near there.
@@ -365,25 +348,6 @@ impl Island {
             slop: 0.0,
             kept: 0.0,
         });
-    }
-
-    fn keep(&self, stage: &mut Stage, error: f64) {
-        stage.is_known = true;
-        stage.error = error;
-        stage.contacts.clone_from(&self.contacts);
-        stage.ties.clone_from(&self.ties);
-        stage.grips.clone_from(&self.joint_grips);
-        self.path.keep_base(&mut stage.base);
-    }
-
-    /// Puts the forces and the blocks back. Forces alone do not tell where a body is that turns under them: what is found from them begins
-    /// there.
-    fn return_to(&mut self, stage: &Stage) {
-        self.contacts.clone_from(&stage.contacts);
-        self.ties.clone_from(&stage.ties);
-        self.joint_grips.clone_from(&stage.grips);
-        self.path.return_to(&stage.base);
-        self.path.stop(&mut self.blocks);
     }
 
     /// Notes what has slid off the other body of its contact within the step: its force is taken out by the next solve. Returns whether

@@ -57,6 +57,8 @@ pub struct Island {
     pub(super) softness: f64,
     /// What the laws may miss at the very most: the least margin of the ways (m).
     pub(super) margin: f64,
+    /// How fine the laws are to hold at the least, by what the step began with (m).
+    pub(super) finest: f64,
     /// Ways that a contact has slid off from.
     pub(super) left: Vec<usize>,
     /// The working set after a solve.

@@ -129,11 +129,16 @@ impl Island {
 
     /// Round-off of a gap: positions of this size, and their predictions, are no better known.
     pub(super) fn gap_tolerance(&self, settings: &SolveSettings) -> f64 {
+        ROUND_OFF * self.extent(settings)
+    }
+
+    /// How far positions are from the origin, and a unit of length (m): what rounding is a share of.
+    pub(super) fn extent(&self, settings: &SolveSettings) -> f64 {
         let size = self.blocks.iter().fold(0.0f64, |size, block| match block {
             Block::Flex(block) => size.max(block.extent()),
             Block::Rigid(block) => size.max(block.start().centre.amax()),
         });
-        ROUND_OFF * (settings.length_unit + size)
+        settings.length_unit + size
     }
 
     /// Opens the working set with what pressed in the last step.

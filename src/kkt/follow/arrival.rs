@@ -6,6 +6,22 @@
 //! short the step.
 
 use super::{Island, Passed};
+use crate::constraint::joint::JointGrip;
+use crate::kkt::feasible::KeptBase;
+use crate::kkt::island::ActiveContact;
+use crate::kkt::joint_rows::ActiveJoint;
+
+/// A state on the way, with the forces that belong to it.
+#[derive(Debug, Default)]
+pub(in crate::kkt) struct Stage {
+    pub(super) is_known: bool,
+    pub(super) contacts: Vec<ActiveContact>,
+    pub(super) ties: Vec<ActiveJoint>,
+    grips: Vec<JointGrip>,
+    base: KeptBase,
+    /// How far the laws are from holding, relative to the margins (-).
+    error: f64,
+}
 
 impl Island {
     /// How far the laws are from holding, relative to the margins of the ways (-); what has slid off counts only with `counts_lost`.
@@ -68,5 +84,42 @@ impl Island {
         }
         self.correct();
         Some(Passed::Arrived)
+    }
+
+    /// Keeps the base of the first impact of a step, and the forces that answer it.
+    pub(super) fn keep_impact(&mut self) {
+        let mut stage = std::mem::take(&mut self.impact);
+        self.keep(&mut stage, 0.0);
+        self.impact = stage;
+    }
+
+    /// Goes back to the first impact; returns whether there was one.
+    pub(in crate::kkt) fn return_to_first_stop(&mut self) -> bool {
+        if !self.impact.is_known {
+            return false;
+        }
+        let stage = std::mem::take(&mut self.impact);
+        self.return_to(&stage);
+        self.impact = stage;
+        true
+    }
+
+    fn keep(&self, stage: &mut Stage, error: f64) {
+        stage.is_known = true;
+        stage.error = error;
+        stage.contacts.clone_from(&self.contacts);
+        stage.ties.clone_from(&self.ties);
+        stage.grips.clone_from(&self.joint_grips);
+        self.path.keep_base(&mut stage.base);
+    }
+
+    /// Puts the forces and the blocks back. Forces alone do not tell where a body is that turns under them: what is found from them begins
+    /// there.
+    fn return_to(&mut self, stage: &Stage) {
+        self.contacts.clone_from(&stage.contacts);
+        self.ties.clone_from(&stage.ties);
+        self.joint_grips.clone_from(&stage.grips);
+        self.path.return_to(&stage.base);
+        self.path.stop(&mut self.blocks);
     }
 }

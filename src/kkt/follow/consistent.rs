@@ -15,7 +15,6 @@ use super::{CLOSE_ENOUGH, FEW_PASSES, Island, LARGE_TOLERANCE};
 use crate::kkt::delassus::compliance;
 use crate::kkt::island::SolveSettings;
 use crate::kkt::joint_system::Rows;
-use crate::kkt::position::ROUND_OFF;
 use crate::kkt::summary::IslandSummary;
 use crate::math::Mat2;
 use crate::system::Response;
@@ -94,7 +93,7 @@ impl Island {
 
     /// Whether some joint is in that contradiction.
     fn strains_joints(&self, settings: &SolveSettings) -> bool {
-        let extent = self.gap_tolerance(settings) / ROUND_OFF;
+        let extent = self.extent(settings);
         (0..self.ties.len()).any(|row| {
             let tie = &self.ties[row];
             let size = if tie.row.measure.is_turn() {
@@ -111,7 +110,7 @@ impl Island {
     /// Whether some multiplier would move its contact by far more than any motion of the island: then rows contradict each other, and forces
     /// of any size would answer.
     fn contradicts(&self, settings: &SolveSettings) -> bool {
-        let farthest = FARTHEST * self.gap_tolerance(settings) / ROUND_OFF;
+        let farthest = FARTHEST * self.extent(settings);
         let mut moves = self.contacts.iter().map(|contact| {
             let own = compliance(
                 &self.blocks,
