@@ -4,8 +4,8 @@ use super::filter::claimable_body;
 use super::members::Members;
 use super::places::order_of_bodies;
 use super::sets::RapierSets;
+use crate::math::HashSet;
 use crate::rapier::prelude::*;
-use std::collections::HashSet;
 
 /// The impulse joints of claimed bodies.
 #[derive(Debug, Default)]

@@ -11,9 +11,9 @@ use super::force_pair::ForcePairs;
 use super::pair_name::{PairName, pair_name};
 use super::pressed_point::PressedPoint;
 use super::sets::RapierSets;
+use crate::math::{HashMap, HashSet};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
-use std::collections::{HashMap, HashSet};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What the handler was told about pairs of carriers and claimed bodies.

@@ -2,8 +2,8 @@
 
 use super::pair_name::{PairName, pair_name};
 use super::sets::RapierSets;
+use crate::math::HashMap;
 use crate::rapier::prelude::*;
-use std::collections::HashMap;
 
 /// The dynamic rigid body of a collider, if the flexible stage can solve for it.
 ///

@@ -5,12 +5,12 @@
 //! how much a surface can be drawn inwards is told by the body at rest, whatever has crushed it since; which way each vertex goes, by the
 //! surface where the step begins.
 
+use super::candidates::Bounds;
 use super::inset::{KEPT, inwards, most_inwards};
 use crate::body::contact_offset;
 use crate::kkt::Island;
-use crate::math::{Vec2, judged::Judged, node_vec, perp, rotation};
+use crate::math::{HashMap, Vec2, judged::Judged, node_vec, perp, rotation};
 use crate::system::{Block, FlexBlock};
-use std::collections::HashMap;
 
 /// How much farther than at rest a vertex may go inwards, relative to the edges beside it, until these count as folded: a straight surface by
 /// 96°.
@@ -47,11 +47,22 @@ pub(super) struct FlexCore {
     pub round: f64,
 }
 
+/// What all pairs of a flexible body ask for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FlexExtent {
+    /// Box of its surface over the step.
+    pub bounds: Bounds,
+    /// Offset of its surface (m).
+    pub offset: f64,
+}
+
 /// Members of the flexible blocks of an island, with their buffers.
 #[derive(Debug, Default)]
 pub(super) struct FlexCores {
     /// By block, and how it was drawn.
     known: HashMap<(usize, u64, bool), FlexCore>,
+    /// By block.
+    extents: HashMap<usize, FlexExtent>,
     ring: Vec<Vec2>,
     corners: Vec<Vec2>,
 }
@@ -60,6 +71,16 @@ impl FlexCores {
     /// Forgets the members of the last island.
     pub fn clear(&mut self) {
         self.known.clear();
+        self.extents.clear();
+    }
+
+    /// What is asked of a body for every pair, found when first asked for.
+    pub fn extent(&mut self, block: usize, body: &FlexBlock) -> FlexExtent {
+        let extent = self.extents.entry(block);
+        *extent.or_insert_with(|| FlexExtent {
+            bounds: bounds_of(body),
+            offset: contact_offset(body.model(), body.extent()),
+        })
     }
 
     /// The surface of a block, drawn when first asked for.
@@ -143,7 +164,10 @@ fn inwards_now([before, own, after]: [Vec2; 3], at_rest: Vec2) -> (Vec2, bool) {
     }
 }
 
-/// The offset of a flexible body's surface (m).
-pub(super) fn offset_of(body: &FlexBlock) -> f64 {
-    contact_offset(body.model(), body.extent())
+/// Box of a surface over the step.
+fn bounds_of(body: &FlexBlock) -> Bounds {
+    let nodes = body.model().mesh().boundary().nodes().iter();
+    let ends = nodes.map(|&node| Bounds::of(&[body.start_position(node), body.drift(node)]));
+    let none = Bounds::of(&[body.centre()]);
+    ends.reduce(Bounds::merged).unwrap_or(none)
 }

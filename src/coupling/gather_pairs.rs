@@ -18,10 +18,9 @@ use super::walk::ClaimedPair;
 use super::ways::{self, Draft, RigidSurface};
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
-use crate::math::rounding;
+use crate::math::{HashMap, rounding};
 use crate::rapier::prelude::*;
 use crate::system::{Block, RigidBlock};
-use std::collections::HashMap;
 use std::ops::Range;
 
 /// Where a collider's parts are in the island being gathered.

@@ -13,11 +13,10 @@ use crate::constraint::contact::{
     Candidate, ContactKey, ContactLaw, Direction, Kinematics, Owner, Remembered, Scene,
 };
 use crate::kkt::Island;
-use crate::math::{from_rapier, to_rapier};
+use crate::math::{HashMap, from_rapier, to_rapier};
 use crate::rapier::math::Real;
 use crate::rapier::parry::shape::PackedFeatureId;
 use crate::rapier::prelude::*;
-use std::collections::HashMap;
 
 /// What the hooks said of the contacts of the flexible stage.
 #[derive(Debug, Default)]

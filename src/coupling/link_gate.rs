@@ -9,8 +9,8 @@ use super::links::Push;
 use super::pair_name::{PairName, pair_name};
 use super::sets::RapierSets;
 use super::walk::ClaimedPair;
+use crate::math::HashSet;
 use crate::rapier::prelude::*;
-use std::collections::HashSet;
 
 /// What was taken for the length of rapier's full step.
 #[derive(Debug, Default)]

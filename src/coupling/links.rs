@@ -16,11 +16,10 @@ use super::reading::{GatherError, is_representable_motion, prescribed_block};
 use super::sets::RapierSets;
 use super::under_way::Span;
 use crate::kkt::Island;
-use crate::math::Vec2;
+use crate::math::{HashMap, Vec2};
 use crate::rapier::prelude::*;
 use crate::system::{Block, LinkResponse, RigidBlock, RigidMotion, Step};
 use nalgebra::Vector3;
-use std::collections::HashMap;
 
 /// Whether a body is a link that forces move.
 pub(super) fn is_moving_link(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bool {

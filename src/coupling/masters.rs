@@ -3,11 +3,10 @@
 use super::landing::Landing;
 use super::shapes::pose_of;
 use crate::kkt::LateForce;
-use crate::math::{Vec2, atan2, from_rapier};
+use crate::math::{HashMap, Vec2, atan2, from_rapier};
 use crate::rapier::math::{Pose, Real, Vector};
 use crate::rapier::prelude::*;
 use crate::system::RigidMotion;
-use std::collections::HashMap;
 
 /// What is kept of a claimed body.
 #[derive(Clone, Copy, Debug)]

@@ -4,8 +4,8 @@
 //! order in which they were reached. What touches is united; bodies that meet links of one multibody are united too, for its links answer
 //! each other.
 
+use crate::math::HashMap;
 use crate::rapier::prelude::*;
-use std::collections::HashMap;
 
 /// Members and their components.
 #[derive(Debug, Default)]

@@ -6,10 +6,9 @@
 
 use super::shapes::{convert, pose_of};
 use crate::constraint::geometry::{ConvexPart, Pose2};
-use crate::math::{Vec2, atan2, from_rapier};
+use crate::math::{HashMap, Vec2, atan2, from_rapier};
 use crate::rapier::parry::shape::{Shape, TypedShape};
 use crate::rapier::prelude::*;
-use std::collections::HashMap;
 
 /// A piece of an outline, in the collider's coordinates.
 #[derive(Clone, Debug, PartialEq)]

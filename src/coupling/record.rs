@@ -18,10 +18,10 @@ use super::sleep::Sleeper;
 use crate::body::FlexBodySet;
 use crate::constraint::contact::{ContactKey, ContactMemory};
 use crate::constraint::joint::JointMemory;
+use crate::math::HashMap;
 use crate::rapier::prelude::*;
 use crate::system::ExplicitRecord;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
 use std::sync::PoisonError;
 
 /// Handles as numbers, to sort by.

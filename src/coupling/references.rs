@@ -3,7 +3,7 @@
 
 use crate::constraint::contact::Owner;
 use crate::constraint::geometry::PairReference;
-use std::collections::HashMap;
+use crate::math::HashMap;
 
 /// A part of a collider.
 type PartName = (Owner, u32);

@@ -10,9 +10,9 @@ use super::outlines::Piece;
 use super::ways::{REACH_OF_WIDTH, SOFT_SHARE};
 use crate::constraint::contact::ContactLaw;
 use crate::kkt::{Island, Way};
+use crate::math::HashMap;
 use crate::math::judged::Judged;
 use crate::rapier::prelude::ColliderHandle;
-use std::collections::HashMap;
 
 /// Rounding of a rigid body's outline, relative to its width: what rapier leaves of boxes at rest in piles of thirty is one to five
 /// hundredths of their size for each pair.

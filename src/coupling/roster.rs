@@ -6,11 +6,10 @@ use super::sets::RapierSets;
 use super::sleep::Sleeper;
 use crate::body::{FlexBody, FlexBodySet, FlexState};
 use crate::constraint::contact::Owner;
-use crate::math::from_rapier;
+use crate::math::{HashMap, HashSet, from_rapier};
 use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::Aabb;
 use crate::rapier::prelude::*;
-use std::collections::{HashMap, HashSet};
 use std::ops::Index;
 
 /// A flexible body taking part in the step.

@@ -4,9 +4,9 @@ use super::gather_settings::GatherSettings;
 use super::links::{LinkBlock, Push, foreign_block, pushes_of};
 use super::sets::RapierSets;
 use crate::kkt::Island;
+use crate::math::HashMap;
 use crate::rapier::prelude::*;
 use crate::system::{Block, FlexBlock, RigidBlock};
-use std::collections::HashMap;
 
 /// The members of the island that is gathered, or was gathered last.
 #[derive(Debug, Default)]

@@ -1,11 +1,10 @@
 //! Rapier's shapes as rounded convex parts, converted once and kept until the shape changes.
 
 use crate::constraint::geometry::{ConvexPart, Pose2};
-use crate::math::{atan2, from_rapier, is_held};
+use crate::math::{HashMap, atan2, from_rapier, is_held};
 use crate::rapier::math::{Pose, Real};
 use crate::rapier::parry::shape::{Shape, TypedShape};
 use crate::rapier::prelude::*;
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// A part of a shape, in the collider's coordinates.

@@ -11,10 +11,10 @@ use super::filter::{claimable_parent, is_free_body};
 use super::places::{loosened, swept_box, travel_vector};
 use super::roster::Roster;
 use super::sets::RapierSets;
+use crate::math::HashMap;
 use crate::rapier::math::{Real, Vector};
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
-use std::collections::HashMap;
 
 /// Velocity of what is struck over that at which it is struck, at most: a light body off a heavy one, without loss.
 const THROWN: Real = 2.0;

@@ -9,10 +9,10 @@ use super::places::{loosened, placed_on, reach_of, swept_box};
 use super::roster::{ClaimedFlex, Roster};
 use super::sets::RapierSets;
 use super::strikes::Strikes;
+use crate::math::HashMap;
 use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::BoundingVolume;
 use crate::rapier::prelude::*;
-use std::collections::HashMap;
 
 /// What the swept boxes of the flexible bodies meet.
 #[derive(Debug, Default)]

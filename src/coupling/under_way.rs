@@ -7,9 +7,9 @@ use crate::body::{FlexBodySet, KeptMotion};
 use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointMemory;
 use crate::kkt::Island;
+use crate::math::HashMap;
 use crate::rapier::prelude::RigidBodyHandle;
 use crate::system::{Block, RigidMotion};
-use std::collections::HashMap;
 
 /// A part of a step: where it begins and ends, of a whole of one (-).
 #[derive(Clone, Copy, Debug, PartialEq)]

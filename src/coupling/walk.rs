@@ -10,10 +10,10 @@ use super::places::{loosened, order_of_colliders, reach_of, swept_box};
 use super::roster::Roster;
 use super::sets::RapierSets;
 use super::sweep::Sweep;
+use crate::math::HashSet;
 use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::BoundingVolume;
 use crate::rapier::prelude::*;
-use std::collections::HashSet;
 
 /// Who may touch whom.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! Ways: which surfaces of an island are kept apart along a feasible path, and at what distance they close.
 
-use super::candidates::{Bounds, Names};
+use super::candidates::Names;
 use super::draft::Guest;
 pub(super) use super::draft::{Draft, RigidSurface};
-use super::flex_cores::{FlexCore, FlexCores, Inset, offset_of};
+use super::flex_cores::{FlexCore, FlexCores, FlexExtent, Inset};
 use super::inset::KEPT;
 use super::outlines::Piece;
 use crate::body::OFFSET;
@@ -43,14 +43,14 @@ pub(super) fn flex_rigid(
     let Block::Flex(body) = &island.blocks[flex] else {
         return Err(0.0);
     };
-    let offset = offset_of(body);
-    if is_below(surface, body, island) {
+    let FlexExtent { bounds, offset } = cores.extent(flex, body);
+    if is_below(surface, body, offset, island) {
         return Err(0.0);
     }
     let guest = Guest {
         centre: body.centre(),
         size: body.size(),
-        near: bounds_of(body).loosened(reach),
+        near: bounds.loosened(reach),
     };
     for length in std::iter::once(0.0).chain(Inset::all_of(offset)) {
         let inset = Inset {
@@ -100,7 +100,7 @@ fn lead_pieces(
 }
 
 /// Whether a node has begun the step in a half-space: its boundary alone does not tell the sides apart.
-fn is_below(surface: &RigidSurface<'_>, body: &FlexBlock, island: &Island) -> bool {
+fn is_below(surface: &RigidSurface<'_>, body: &FlexBlock, offset: f64, island: &Island) -> bool {
     let Block::Rigid(motion) = &island.blocks[surface.block] else {
         return false;
     };
@@ -115,7 +115,6 @@ fn is_below(surface: &RigidSurface<'_>, body: &FlexBlock, island: &Island) -> bo
             )),
             _ => None,
         });
-    let offset = offset_of(body);
     spaces.into_iter().any(|(origin, normal)| {
         let nodes = body.model().mesh().boundary().nodes().iter();
         let depth = |node: &usize| normal.dot(&(body.start_position(*node) - origin));
@@ -132,10 +131,13 @@ pub(super) fn flex_flex(
     law: ContactLaw,
     cores: &mut FlexCores,
 ) -> Result<(), f64> {
-    let [Block::Flex(one), Block::Flex(other)] = blocks.map(|block| &island.blocks[block]) else {
-        return Err(0.0);
-    };
-    let offset = offset_of(one).min(offset_of(other));
+    let mut offset = f64::INFINITY;
+    for block in blocks {
+        let Block::Flex(body) = &island.blocks[block] else {
+            return Err(0.0);
+        };
+        offset = offset.min(cores.extent(block, body).offset);
+    }
     // What has been folded or crushed within a step is not drawn inwards any more where it need not be, and would begin the rest of the step as
     // near as surfaces that touch are: no way leads on from there.
     let manners = [(false, true), (true, true), (false, false), (true, false)];
@@ -191,7 +193,7 @@ pub(super) fn flex_own(
     let Block::Flex(body) = &island.blocks[block] else {
         return false;
     };
-    let (offset, clearance) = (offset_of(body), body.clearance());
+    let (offset, clearance) = (cores.extent(block, body).offset, body.clearance());
     let closing = (offset + law.skin).min(0.5 * clearance);
     let margin = offset.min(closing);
     let way = Way {
@@ -242,12 +244,4 @@ fn draw(
         distance
     };
     is_near.then_some(Closing { distance, margin })
-}
-
-/// Box of a surface over the step.
-fn bounds_of(body: &FlexBlock) -> Bounds {
-    let nodes = body.model().mesh().boundary().nodes().iter();
-    let ends = nodes.map(|&node| Bounds::of(&[body.start_position(node), body.drift(node)]));
-    let none = Bounds::of(&[body.centre()]);
-    ends.reduce(Bounds::merged).unwrap_or(none)
 }

@@ -17,7 +17,7 @@ use self::own::OwnWay;
 use self::retreat::LastWay;
 use self::straight::straight_part;
 use crate::constraint::contact::ContactMemory;
-use crate::math::Vec2;
+use crate::math::{Vec2, rotation};
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};
 use crate::system::{Block, FlexBlock, Point};
 
@@ -104,7 +104,7 @@ impl FeasiblePath {
         self.scratch.clear();
         self.edges.clear();
         let first = self.points.len();
-        let angle = body.start_frame().angle;
+        let axes = rotation(body.start_frame().angle);
         for (slot, &node) in boundary.nodes().iter().enumerate() {
             let point = SurfacePoint {
                 point: Point::Node(node),
@@ -113,7 +113,7 @@ impl FeasiblePath {
                 round,
             };
             self.scratch
-                .push(point.beside(body.start_position(node), angle));
+                .push(point.beside(body.start_position(node), &axes));
             self.points.push(point);
             self.farthest_tip = self.farthest_tip.max(point.corner.norm() - round);
         }
@@ -236,17 +236,9 @@ impl FeasiblePath {
                     let first = self.nodes.len();
                     self.nodes.extend_from_slice(body.start_positions());
                     let frame = body.start_frame();
-                    BlockBase {
-                        centre: frame.centre,
-                        angle: frame.angle,
-                        nodes: Some(first),
-                    }
+                    BlockBase::new(frame.centre, frame.angle, Some(first))
                 }
-                Block::Rigid(body) => BlockBase {
-                    centre: body.start().centre,
-                    angle: body.start().angle,
-                    nodes: None,
-                },
+                Block::Rigid(body) => BlockBase::new(body.start().centre, body.start().angle, None),
             });
         }
         self.forget_own();
@@ -260,7 +252,7 @@ impl FeasiblePath {
         self.motion.rest(&self.surfaces);
         for member in 0..self.carriers.len() {
             let base = self.base[self.carriers[member].block];
-            self.aim(member, (base.centre, base.angle), blocks);
+            self.aim(member, (base.centre, base.angle()), blocks);
         }
         let own = self.wake_on_way();
         let impact =
@@ -290,10 +282,11 @@ impl FeasiblePath {
             Block::Flex(body) => body.start_frame().angle,
             Block::Rigid(body) => body.start().angle,
         };
+        let axes = rotation(angle);
         let places = self.surfaces.points_mut(member).iter_mut();
         for (place, own) in places.zip(&self.points[points]) {
             *place = match own.point {
-                Point::Node(_) => own.beside(block.start_position(own.point), angle),
+                Point::Node(_) => own.beside(block.start_position(own.point), &axes),
                 Point::Arm(_) => block.start_position(own.point),
             };
         }
@@ -305,11 +298,12 @@ impl FeasiblePath {
         match (&blocks[carrier.block], self.surfaces.members()[member].kind) {
             (Block::Flex(body), _) => {
                 let first = self.surfaces.members()[member].points.start;
+                let axes = rotation(body.angle());
                 let ends = self.motion.ends_mut(&self.surfaces, member);
                 for (slot, end) in ends.iter_mut().enumerate() {
                     let own = &self.points[first + slot];
                     if let Point::Node(node) = own.point {
-                        *end = own.beside(body.position(node), body.angle());
+                        *end = own.beside(body.position(node), &axes);
                     }
                 }
             }
@@ -328,10 +322,12 @@ impl FeasiblePath {
         for (base, block) in self.base.iter_mut().zip(blocks) {
             let (centre, angle) = (block.centre(), angle_of(block));
             if part >= 1.0 {
-                (base.centre, base.angle) = (centre, angle);
+                base.place(centre, angle);
             } else {
-                base.centre += part * (centre - base.centre);
-                base.angle += part * (angle - base.angle);
+                base.place(
+                    base.centre + part * (centre - base.centre),
+                    base.angle() + part * (angle - base.angle()),
+                );
             }
             if let (Some(first), Block::Flex(body)) = (base.nodes, block) {
                 let ends = body.positions();
@@ -351,11 +347,11 @@ impl FeasiblePath {
             if own.kind != MotionKind::Rigid {
                 continue;
             }
-            let (points, pose) = (own.points.clone(), self.base[carrier.block].motion());
+            let (points, base) = (own.points.clone(), self.base[carrier.block]);
             let placed = self.surfaces.points_mut(member).iter_mut();
             for (place, own) in placed.zip(&self.points[points]) {
                 if let Point::Arm(arm) = own.point {
-                    *place = pose.point(arm);
+                    *place = base.point(arm);
                 }
             }
         }

@@ -20,6 +20,7 @@ use super::island::{Island, SolveSettings};
 use super::position::{PARTING_RATE, Turned};
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
+use crate::linalg::cone::SETTLING;
 use crate::math::{Mat2, REAL_EPSILON, exp, is_held};
 use crate::system::{Block, Response};
 
@@ -44,10 +45,6 @@ const FEW_PASSES: usize = 6;
 
 /// Share of its way's margin by which a true gap or slip may miss what the law asks for (-).
 const CLOSE_ENOUGH: f64 = 0.05;
-
-/// Part of what the multipliers of the last step miss that a step may leave (-), as far down as rapier's numbers hold positions: what comes to rest
-/// is solved the finer the less it moves, and comes to rest. Where that is left to rounding, towers in an `f64` world tremble for good.
-const SETTLING: f64 = 5e-4;
 
 /// Multiple of the tolerance within which the multipliers of the last step are right but for what happened since.
 const NEAR: f64 = 1e5;
@@ -299,9 +296,10 @@ impl Island {
         }
     }
 
-    /// Notes how fine the laws are to hold at the least, by what the multipliers of the last step miss, if there are any.
+    /// Notes how fine the laws are to hold at the least: by what the multipliers of the last step miss, if there are any, as far down as rapier's
+    /// numbers hold positions. With a tolerance of lengths alone, what rests in an `f64` world may tremble for good.
     fn note_start(&mut self, guessed: Option<f64>, settings: &SolveSettings) {
-        let of_guess = guessed.map_or(f64::INFINITY, |guessed| SETTLING * guessed);
+        let of_guess = guessed.map_or(f64::INFINITY, |guessed| SETTLING.get() * guessed);
         self.finest = of_guess.max(REAL_EPSILON * self.extent(settings));
     }
 

@@ -18,9 +18,8 @@ use crate::constraint::contact::{
 };
 use crate::constraint::joint::{JointGrip, JointRow};
 use crate::linalg::complementarity::{RowKind, Solver, Status};
-use crate::math::{Vec2, cross};
+use crate::math::{HashMap, Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point};
-use std::collections::HashMap;
 
 /// A set of blocks and candidates, and the buffers to solve them.
 #[derive(Debug, Default)]

@@ -389,12 +389,9 @@ impl Island {
             rows,
             entries,
         };
-        let solver = match of_others {
-            None => first,
-            Some(index) => {
-                others[index].adopt(&problem, first)?;
-                &mut others[index]
-            }
+        let (solver, like) = match of_others {
+            None => (first, None),
+            Some(index) => (&mut others[index], Some(&*first)),
         };
         let unit = match asked.of {
             Response::Position | Response::Velocity => asked.unit,
@@ -405,7 +402,7 @@ impl Island {
         solver.settings.slip_tolerance = 1e-4;
         solver.settings.tolerance = 1e-6;
         solver.scales_start = asked.of == Response::Velocity;
-        let outcome = solver.solve(&problem, multipliers, slip, answer)?;
+        let outcome = solver.solve_like(like, &problem, multipliers, slip, answer)?;
         let n = self.kinds.len();
         self.multipliers.fill(0.0);
         self.statuses.clear();

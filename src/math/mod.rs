@@ -57,6 +57,7 @@ pub fn add_node_vec(dofs: &mut [f64], node: usize, value: Vec2) {
 }
 
 mod elementary;
+mod hashed;
 pub(crate) mod judged;
 mod mix;
 #[cfg(feature = "serde-serialize")]
@@ -67,6 +68,7 @@ mod sum;
 mod wide;
 
 pub use elementary::{atan, atan2, cos, exp, exp_m1, hypot, ln, ln_1p, sin, sin_cos, tan};
+pub(crate) use hashed::{HashMap, HashSet};
 pub use mix::mix;
 pub use real::{REAL_EPSILON, are_held, from_rapier, is_held, to_rapier};
 pub use sum::{sum_over, sum_over_dofs};

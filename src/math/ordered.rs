@@ -1,7 +1,7 @@
 //! Maps in snapshots: as lists in the order of their keys, so that equal maps are equal bytes.
 
+use crate::math::HashMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::collections::HashMap;
 use std::hash::Hash;
 
 /// Writes a map as a list of pairs.

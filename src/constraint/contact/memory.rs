@@ -2,7 +2,7 @@
 
 use super::candidate::{ContactKey, Owner};
 use crate::constraint::geometry::Feature;
-use std::collections::{HashMap, HashSet};
+use crate::math::{HashMap, HashSet};
 
 /// The last state of one contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,6 +1,6 @@
 //! What a joint row remembers from one step to the next: its multiplier, for the warm start, and how fast it was driven.
 
-use std::collections::HashMap;
+use crate::math::HashMap;
 
 /// What a joint row belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -2,10 +2,9 @@ use super::super::outlines::Outline;
 use super::*;
 use crate::constraint::contact::{ContactKey, Kinematics, Owner};
 use crate::constraint::geometry::Pose2;
-use crate::math::{Vec2, cross, perp, sin_cos};
+use crate::math::{HashSet, Vec2, cross, perp, sin_cos};
 use crate::path::samples::Random;
 use crate::system::{Block, RigidBlock, RigidMotion};
-use std::collections::HashSet;
 
 const OWNERS: [Owner; 2] = [Owner::Collider(0), Owner::Collider(1)];
 

@@ -31,7 +31,7 @@ impl FeasiblePath {
                     let n = body.positions().len();
                     body.stop_at(&self.nodes[first..first + n]);
                 }
-                (Block::Rigid(body), _) => body.stop_at(base.centre, base.angle),
+                (Block::Rigid(body), _) => body.stop_at(base.centre, base.angle()),
                 _ => {}
             }
         }

@@ -1,8 +1,8 @@
 //! Members of the path: ways between them, their points, and where their blocks are at the base.
 
 use crate::constraint::contact::{ContactLaw, Owner};
-use crate::math::{Vec2, rotation};
-use crate::system::{Point, RigidMotion};
+use crate::math::{Mat2, Vec2, rotation};
+use crate::system::Point;
 
 /// Two members that are kept apart.
 #[derive(Clone, Copy, Debug)]
@@ -42,12 +42,12 @@ pub(super) struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// Where it is, with the node that it stands for there (m) and the axes of its body turned by `angle` (rad).
-    pub fn beside(&self, node: Vec2, angle: f64) -> Vec2 {
+    /// Where it is, with the node that it stands for there (m) and its body turned by this.
+    pub fn beside(&self, node: Vec2, axes: &Mat2) -> Vec2 {
         if self.round == 0.0 {
             return node;
         }
-        node - rotation(angle) * self.corner
+        node - axes * self.corner
     }
 }
 
@@ -55,16 +55,42 @@ impl SurfacePoint {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct BlockBase {
     pub centre: Vec2,
-    pub angle: f64,
+    angle: f64,
+    /// What turns it by its angle.
+    axes: Mat2,
     pub nodes: Option<usize>,
 }
 
 impl BlockBase {
-    pub fn motion(&self) -> RigidMotion {
-        RigidMotion {
-            centre: self.centre,
-            angle: self.angle,
-            ..RigidMotion::default()
+    pub fn new(centre: Vec2, angle: f64, nodes: Option<usize>) -> Self {
+        Self {
+            centre,
+            angle,
+            axes: rotation(angle),
+            nodes,
         }
+    }
+
+    pub fn angle(&self) -> f64 {
+        self.angle
+    }
+
+    pub fn axes(&self) -> &Mat2 {
+        &self.axes
+    }
+
+    /// Puts it elsewhere (m, rad).
+    pub fn place(&mut self, centre: Vec2, angle: f64) {
+        *self = Self::new(centre, angle, self.nodes);
+    }
+
+    /// Position of the material point at `arm` (body axes, m).
+    pub fn point(&self, arm: Vec2) -> Vec2 {
+        self.centre + self.axes * arm
+    }
+
+    /// `arm` (body axes, m) of a position.
+    pub fn arm(&self, point: Vec2) -> Vec2 {
+        self.axes.transpose() * (point - self.centre)
     }
 }

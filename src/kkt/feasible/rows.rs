@@ -2,7 +2,7 @@
 
 use super::{Carrier, FeasiblePath};
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
-use crate::math::{Vec2, node_vec, perp, rotation};
+use crate::math::{Vec2, node_vec, perp};
 use crate::path::{NearPair, Target, add_beyond};
 use crate::system::{Block, Grip, Point};
 
@@ -138,7 +138,7 @@ impl FeasiblePath {
             if carrier.is_flex {
                 self.points[at].point
             } else {
-                Point::Arm(self.base[carrier.block].motion().arm(position))
+                Point::Arm(self.base[carrier.block].arm(position))
             }
         };
         let first = (own.block, held(own, near.point), 1.0, lever(own));
@@ -192,7 +192,7 @@ impl FeasiblePath {
             .members_of(near)
             .map(|member| self.carriers[member].block);
         let corner = |vertex: usize, block: usize| {
-            let corner = rotation(self.base[block].angle) * self.points[vertex].corner;
+            let corner = self.base[block].axes() * self.points[vertex].corner;
             corner - corner.dot(&near.normal) * near.normal
         };
         match near.target {
@@ -207,7 +207,7 @@ impl FeasiblePath {
         let block = self.carriers[self.members_of(near)[side]].block;
         let own = &self.points[vertex];
         let towards = if side == 0 { -near.normal } else { near.normal };
-        let corner = rotation(self.base[block].angle) * own.corner;
+        let corner = self.base[block].axes() * own.corner;
         towards.dot(&corner) - own.round
     }
 
@@ -216,7 +216,7 @@ impl FeasiblePath {
         let base = &self.base[block];
         match (point, base.nodes) {
             (Point::Node(node), Some(first)) => node_vec(&self.nodes[first..], node),
-            (Point::Arm(arm), _) => base.motion().point(arm),
+            (Point::Arm(arm), _) => base.point(arm),
             (Point::Node(_), None) => base.centre,
         }
     }
@@ -236,7 +236,7 @@ impl FeasiblePath {
             Block::Flex(_) => self.at_base(block, grip.point) - own.start_position(grip.point),
             Block::Rigid(body) => {
                 let start = body.start();
-                base.centre - start.centre + (base.angle - start.angle) * perp(grip.lever)
+                base.centre - start.centre + (base.angle() - start.angle) * perp(grip.lever)
             }
         }
     }
@@ -257,7 +257,7 @@ impl FeasiblePath {
             }
             (Block::Rigid(body), _) => {
                 let end = body.current();
-                end.centre - base.centre + (end.angle - base.angle) * perp(grip.lever)
+                end.centre - base.centre + (end.angle - base.angle()) * perp(grip.lever)
             }
             _ => Vec2::zeros(),
         }

@@ -17,7 +17,7 @@ pub(super) fn straight_part(path: &FeasiblePath, blocks: &[Block]) -> f64 {
                 continue;
             }
             let block = path.carriers[member].block;
-            let turn = (angle_of(&blocks[block]) - path.base[block].angle).abs();
+            let turn = (angle_of(&blocks[block]) - path.base[block].angle()).abs();
             if turn > MOST_TURN {
                 part = part.min(MOST_TURN / turn);
             }

@@ -101,6 +101,7 @@ impl Interior {
             slip,
             a,
             status,
+            ..
         } = state;
         let measure = reduced.measure(problem, a, forces, slip, settings, status);
         let suffices = measure.is_within(settings, reduced.enough);

@@ -47,6 +47,7 @@ mod law;
 mod problem;
 mod proximal;
 mod reduced;
+mod settings;
 mod slip;
 mod sweep;
 mod system;
@@ -55,7 +56,9 @@ mod tests;
 
 pub use law::ConeStatus;
 pub use problem::{ConeEntry, ConeError, ConeLaw, ConeProblem, ConeRow};
+pub use settings::{ConeOutcome, ConeSettings};
 
+use crate::math::judged::Judged;
 use interior::Interior;
 use law::project;
 use proximal::{Ending, Proximal};
@@ -69,50 +72,9 @@ const LEVELS: [f64; 3] = [1e2, 1e4, 1e6];
 /// Factorizations allowed to warm proximal steps until the residual is lower by [`GAIN`](proximal); few if they have failed the last time.
 const N_WARM: [usize; 2] = [12, 3];
 
-/// The part of the error at the start that may be left (-).
-const SETTLING: f64 = 5e-4;
-
-/// What is good enough, and how much work it may take.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ConeSettings {
-    /// The natural-map residual to reach, relative to the largest force (-).
-    pub tolerance: f64,
-    /// The error of `w` that is good enough whatever the forces are, and the gap that dilation may leave under a sliding contact, in
-    /// the unit of `w`.
-    pub gap_tolerance: f64,
-    /// The part of its slip that sigma may miss (-), which leaves a gap of `mu` times that slip.
-    pub slip_tolerance: f64,
-    /// Factorizations of `H` in one call.
-    pub max_factorizations: usize,
-}
-
-impl Default for ConeSettings {
-    fn default() -> Self {
-        Self {
-            tolerance: 1e-9,
-            gap_tolerance: 0.0,
-            slip_tolerance: 1e-3,
-            max_factorizations: 100,
-        }
-    }
-}
-
-/// What a solve did and how good the answer is.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ConeOutcome {
-    /// The natural map of all rows with the slips handed back, in square roots of energy (`sqrt(W_ii) P`), relative to the largest force (-).
-    pub residual: f64,
-    /// The gap that dilation leaves, `max mu |sigma - |w_t||`, or the overlap that it hides where no force acts, in the unit of `w`.
-    pub dilation: f64,
-    /// Factorizations of `H`.
-    pub n_factorizations: usize,
-    /// Analyses of a new pattern.
-    pub n_analyses: usize,
-    /// Whether both are within the settings.
-    pub is_solved: bool,
-    /// Whether the interior point was asked.
-    pub used_interior_point: bool,
-}
+/// The part of the error at the start that may be left (-), here and in the passes of a step: what comes to rest is solved the finer the less it
+/// moves, and comes to rest.
+pub(crate) const SETTLING: Judged = Judged::new("linalg::SETTLING", 5e-4);
 
 /// Forces and the motion they cause, in whole multipliers.
 #[derive(Debug, Clone, Default)]
@@ -121,6 +83,8 @@ struct State {
     slip: Vec<f64>,
     a: Vec<f64>,
     status: Vec<ConeStatus>,
+    /// What the forces miss, where `a` is the motion that they cause and this is known.
+    measure: Option<Measure>,
 }
 
 /// Solves cone problems of any size; holds factors and scratch, which only grow.
@@ -176,6 +140,19 @@ impl ConeSolver {
         slip: &mut [f64],
         acceleration: &mut Vec<f64>,
     ) -> Result<ConeOutcome, ConeError> {
+        self.solve_like(None, problem, multipliers, slip, acceleration)
+    }
+
+    /// [`Self::solve`], with the pattern of another solver that has solved all the rows of the problem, and more, if this one knows of none that
+    /// has them: what is pressed is among what is near.
+    pub(crate) fn solve_like(
+        &mut self,
+        other: Option<&Self>,
+        problem: &ConeProblem,
+        multipliers: &mut [[f64; 2]],
+        slip: &mut [f64],
+        acceleration: &mut Vec<f64>,
+    ) -> Result<ConeOutcome, ConeError> {
         let n_rows = problem.rows.len();
         for (what, found) in [
             ("the multipliers", multipliers.len()),
@@ -191,7 +168,8 @@ impl ConeSolver {
         }
         problem.check()?;
         let (n_factorizations, n_analyses) = (self.system.n_factorizations, self.system.n_analyses);
-        self.system.prepare(problem)?;
+        self.system
+            .prepare(problem, other.map(|other| &other.system))?;
         self.reduced.restate(problem);
         if self.scales_start {
             self.scale_start(problem, multipliers);
@@ -207,14 +185,6 @@ impl ConeSolver {
             used_interior_point,
             ..outcome
         })
-    }
-
-    /// Takes over the pattern of another solver that has solved all the rows of a problem, and more, if this one knows of none that has
-    /// them: what is pressed is among what is near.
-    pub(crate) fn adopt(&mut self, problem: &ConeProblem, other: &Self) -> Result<(), ConeError> {
-        problem.check()?;
-        self.system.adopt(problem, &other.system);
-        Ok(())
     }
 
     /// Takes the multipliers `p` as often as the energy `½ s² pᵀW p + s pᵀw` is least, `s = -pᵀw / pᵀW p`, with `w` where they are zero.
@@ -287,6 +257,7 @@ impl ConeSolver {
 
     /// `a = A⁻¹ (load + Gᵀ P)`.
     fn move_by_forces(&mut self, problem: &ConeProblem) {
+        self.state.measure = None;
         self.state.a.resize(problem.matrix.n_dofs(), 0.0);
         self.reduced
             .total_load(problem, &self.state.forces, &mut self.state.a);
@@ -301,11 +272,13 @@ impl ConeSolver {
             slip,
             a,
             status,
+            measure,
         } = &mut self.state;
         let start = self
             .reduced
             .measure(problem, a, forces, slip, &self.settings, status);
-        self.reduced.enough = self.settings.gap_tolerance.min(SETTLING * start.miss);
+        *measure = Some(start);
+        self.reduced.enough = self.settings.gap_tolerance.min(SETTLING.get() * start.miss);
     }
 
     /// Runs one solver after the other until one succeeds; whether the interior point was among them.
@@ -331,6 +304,7 @@ impl ConeSolver {
             &self.settings,
             n_left,
         );
+        self.state.measure = None;
         if suffices {
             return true;
         }
@@ -355,6 +329,7 @@ impl ConeSolver {
             slip,
             a,
             status,
+            ..
         } = &mut self.state;
         let swept = self
             .reduced
@@ -384,16 +359,21 @@ impl ConeSolver {
         multipliers: &mut [[f64; 2]],
         slip: &mut [f64],
     ) -> ConeOutcome {
-        self.move_by_forces(problem);
+        let known = self.state.measure;
+        if known.is_none() {
+            self.move_by_forces(problem);
+        }
         let (settings, state) = (&self.settings, &mut self.state);
-        let measure = self.reduced.measure(
-            problem,
-            &state.a,
-            &state.forces,
-            &state.slip,
-            settings,
-            &mut state.status,
-        );
+        let measure = known.unwrap_or_else(|| {
+            self.reduced.measure(
+                problem,
+                &state.a,
+                &state.forces,
+                &state.slip,
+                settings,
+                &mut state.status,
+            )
+        });
         for (index, row) in problem.rows.iter().enumerate() {
             let acted = row.acted();
             multipliers[index] = [0, 1].map(|k| state.forces[index][k] - acted[k]);

@@ -203,6 +203,13 @@ impl ConeRow {
     }
 }
 
+/// Whether all numbers are finite, told without a branch for each.
+fn are_finite(values: &[f64]) -> bool {
+    const EXPONENT: u64 = f64::INFINITY.to_bits();
+    let exponents = values.iter().map(|value| value.to_bits() & EXPONENT);
+    exponents.fold(true, |are, exponent| are & (exponent != EXPONENT))
+}
+
 /// `G x` of the row with these entries.
 pub(super) fn motion(entries: &[ConeEntry], x: &[f64]) -> [f64; 2] {
     let mut motion = [0.0; 2];
@@ -225,22 +232,17 @@ impl<'a> ConeProblem<'a> {
                 expected: n_dofs,
             });
         }
-        if let Some((dof, &value)) = self
-            .load
-            .iter()
-            .enumerate()
-            .find(|(_, value)| !value.is_finite())
+        let mut load = self.load.iter().enumerate();
+        if !are_finite(self.load)
+            && let Some((dof, &value)) = load.find(|(_, value)| !value.is_finite())
         {
             return Err(ConeError::Load { dof, value });
         }
-        let is_finite = |node: &usize| {
-            self.matrix
-                .row_blocks(*node)
-                .iter()
-                .flatten()
-                .all(|value| value.is_finite())
-        };
-        if let Some(node) = (0..self.matrix.n_nodes()).find(|node| !is_finite(node)) {
+        let is_finite = |node: &usize| are_finite(self.matrix.row_blocks(*node).as_flattened());
+        let mut nodes = 0..self.matrix.n_nodes();
+        if !are_finite(self.matrix.blocks().as_flattened())
+            && let Some(node) = nodes.find(|node| !is_finite(node))
+        {
             return Err(ConeError::Matrix { node });
         }
         for (row, data) in self.rows.iter().enumerate() {

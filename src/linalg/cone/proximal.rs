@@ -110,16 +110,19 @@ impl Proximal {
         let mut renewed = f64::INFINITY;
         let mut refined: Option<Measure> = None;
         let (mut best, mut last, mut n_idle) = (f64::INFINITY, f64::INFINITY, 0);
-        let mut measure = reduced.measure(
-            problem,
-            &state.a,
-            &state.forces,
-            &state.slip,
-            settings,
-            &mut state.status,
-        );
+        let mut measure = state.measure.take().unwrap_or_else(|| {
+            reduced.measure(
+                problem,
+                &state.a,
+                &state.forces,
+                &state.slip,
+                settings,
+                &mut state.status,
+            )
+        });
         if measure.is_within(settings, reduced.enough) {
             if measure.residual <= FINE * settings.tolerance {
+                state.measure = Some(measure);
                 return (Ending::Solved, measure);
             }
             // a factor at hand refines it: what rests would creep by the tolerance of every step
@@ -179,6 +182,8 @@ impl Proximal {
             let has_moved = reduced.enough > 0.0 && system.n_changes > n_changes + 1;
             let is_undilated = measure.relative_dilation <= settings.tolerance;
             if is_solved && (has_moved || is_fine && is_undilated) {
+                std::mem::swap(&mut state.a, &mut self.settled);
+                state.measure = Some(measure);
                 return (Ending::Solved, measure);
             }
             let is_better = |best: Measure| {

@@ -75,7 +75,11 @@ pub(super) struct System {
 
 impl System {
     /// Makes the pattern cover the rows and the factor of `A` fit its values.
-    pub fn prepare(&mut self, problem: &ConeProblem) -> Result<(), CholeskyError> {
+    pub fn prepare(
+        &mut self,
+        problem: &ConeProblem,
+        other: Option<&Self>,
+    ) -> Result<(), CholeskyError> {
         self.is_own = false;
         (self.n_changes, self.correction.n_substitutions) = (0, 0);
         let has_pattern = self
@@ -83,7 +87,9 @@ impl System {
             .as_ref()
             .is_some_and(|analysis| analysis.matrix.has_pattern_of(problem.matrix));
         if !has_pattern || !self.place_rows(problem) {
-            self.analyze(problem, has_pattern);
+            if !other.is_some_and(|other| self.adopt(problem, other)) {
+                self.analyze(problem, has_pattern);
+            }
             self.place_rows(problem);
         }
         let Some(analysis) = &mut self.analysis else {
@@ -105,26 +111,21 @@ impl System {
         Ok(())
     }
 
-    /// Takes over what another system knows, if its pattern covers the rows and the one at hand does not: an analysis costs as much as
-    /// ten factorizations.
-    pub fn adopt(&mut self, problem: &ConeProblem, other: &Self) {
+    /// Takes over what another system knows, if its pattern covers the rows: an analysis costs as much as ten factorizations. Returns whether it
+    /// does.
+    fn adopt(&mut self, problem: &ConeProblem, other: &Self) -> bool {
         let Some(theirs) = &other.analysis else {
-            return;
+            return false;
         };
-        let own = self.analysis.as_ref();
-        let has_pattern =
-            own.is_some_and(|analysis| analysis.matrix.has_pattern_of(problem.matrix));
-        if has_pattern && self.place_rows(problem)
-            || !theirs.matrix.has_pattern_of(problem.matrix)
-            || !covers(&theirs.hull, problem)
-        {
-            return;
+        if !theirs.matrix.has_pattern_of(problem.matrix) || !covers(&theirs.hull, problem) {
+            return false;
         }
         self.analysis = Some(theirs.clone());
         self.has_bodies = other.has_bodies;
         self.has_factor = false;
         self.is_only_touched = false;
         self.spans.clear();
+        true
     }
 
     /// Couples all nodes of each row, beside those that `A` couples.

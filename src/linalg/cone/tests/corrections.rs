@@ -19,7 +19,7 @@ fn piece(row: &ConeRow, which: usize) -> [f64; 3] {
 
 fn prepared(problem: &ConeProblem) -> System {
     let mut system = System::default();
-    assert_eq!(system.prepare(problem), Ok(()));
+    assert_eq!(system.prepare(problem, None), Ok(()));
     system
 }
 
@@ -97,7 +97,7 @@ fn only_what_rows_touch_is_made_anew() -> Result<(), Box<dyn std::error::Error>>
         part.entries.truncate(part.rows.len());
         let problem = part.problem();
         assert!(problem.entries.iter().all(|one| one.node < 8));
-        system.prepare(&problem)?;
+        system.prepare(&problem, None)?;
         for shift in 0..3 {
             let piece_of = |(index, row)| piece(row, index + shift + round);
             let weights: Vec<[f64; 3]> = problem.rows.iter().enumerate().map(piece_of).collect();
