@@ -1,7 +1,27 @@
 //! Symmetric sparse matrices of 2×2 node blocks: `A = Σ_c B_cᵀ A_c B_c`, summed cell by cell.
 
 pub(super) use super::pattern::Pattern;
+use crate::math::{Number, Wide};
+use faer::traits::pulp::{Arch, Simd, WithSimd};
 use std::sync::Arc;
+
+/// `y = A x`, by the widest instructions that the machine has.
+struct Multiply<'a> {
+    matrix: &'a BlockMatrix,
+    x: &'a [f64],
+    y: &'a mut [f64],
+}
+
+impl WithSimd for Multiply<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for (node, out) in self.y.chunks_exact_mut(2).enumerate() {
+            out.copy_from_slice(&self.matrix.multiply_node(node, self.x));
+        }
+    }
+}
 
 /// A symmetric matrix over interleaved dofs `[x0, y0, x1, y1, ...]`, stored as rows of 2×2 node
 /// blocks.
@@ -280,9 +300,7 @@ impl BlockMatrix {
     /// If `x` or `y` does not have `n_dofs` entries.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         self.assert_vectors(x, y);
-        for (node, out) in y.chunks_exact_mut(2).enumerate() {
-            out.copy_from_slice(&self.multiply_node(node, x));
-        }
+        Arch::new().dispatch(Multiply { matrix: self, x, y });
     }
 
     /// Adds `alpha A x` to `y`.
@@ -302,21 +320,20 @@ impl BlockMatrix {
     ///
     /// # Panics
     /// If `x` has fewer than `n_dofs` entries.
-    #[inline]
+    #[inline(always)]
     pub fn multiply_node(&self, node: usize, x: &[f64]) -> [f64; 2] {
         let row = self.pattern.row(node);
+        let places = x.as_chunks::<2>().0;
         // Four sums, so that the products of a block go side by side.
-        let mut sums = [0.0; 4];
+        let mut sums = Wide::ZERO;
         for (&other, block) in self.pattern.columns[row.clone()]
             .iter()
             .zip(&self.values[row])
         {
-            let x = &x[2 * other as usize..][..2];
-            sums[0] += block[0] * x[0];
-            sums[1] += block[1] * x[1];
-            sums[2] += block[2] * x[0];
-            sums[3] += block[3] * x[1];
+            let [x, y] = places[other as usize];
+            sums += Wide(*block) * Wide([x, y, x, y]);
         }
+        let Wide(sums) = sums;
         [sums[0] + sums[1], sums[2] + sums[3]]
     }
 
