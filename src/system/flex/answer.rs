@@ -31,6 +31,12 @@ impl Answer {
         }
     }
 
+    /// Another factor is about to be made: what the last one has answered counts no more.
+    pub fn expect_factor(&mut self) {
+        self.n_factorizations += 1;
+        self.compliance.clear();
+    }
+
     /// Replaces forces by what they move.
     pub fn solve(&mut self, dofs: &mut [f64]) {
         self.factor.solve_in_place(dofs);

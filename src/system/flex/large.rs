@@ -14,19 +14,21 @@
 //! so that positions answer forces as those of other blocks do, `b0 A⁻¹`, and velocities impulses, `A⁻¹`. Vibrations decay as the member's
 //! spectral radius says, see [`Beta2::decay`](crate::integrator::Beta2::decay).
 
-mod equation;
 mod led;
 mod motion;
 mod path;
+mod problem;
 mod reference;
+mod trial;
 
-use self::equation::{equation_of, factorize};
 use self::led::Led;
 use self::motion::resolve;
+use self::problem::Problem;
 use self::reference::{Reference, is_near};
+use self::trial::Trial;
 use super::shared::Shared;
 use crate::body::{FlexState, Frame, Linearized};
-use crate::fe::finite_strain::{Deformation, FiniteStrainModel};
+use crate::fe::finite_strain::{FiniteStrainModel, Linearization};
 use crate::large::{Evaluation, MOST_CUTS, SLOWEST, most_growth};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cholesky::CholeskyError;
@@ -45,22 +47,13 @@ const MOST_ITERATIONS: usize = 24;
 /// What a step by energy and momentum needs beside what all blocks have.
 #[derive(Clone, Debug)]
 pub(super) struct LargeStrain {
-    pub(super) model: Arc<FiniteStrainModel>,
-    deformation: Deformation,
-    tangent: BlockMatrix,
-    /// `x + dt v` (m).
-    coast: Vec<f64>,
-    /// Mean force over the step, applied and of contacts (N).
-    load: Vec<f64>,
-    residual: Vec<f64>,
-    /// Mean force that holds the held dofs (N).
-    pub(super) reaction: Vec<f64>,
+    problem: Problem,
+    trial: Trial,
     /// Mean acceleration over the step (m/s²).
     pub(super) acceleration: Vec<f64>,
     /// The part of the velocities that the step resolves, at its beginning and at its end (m/s).
     pub(super) start_resolved: Vec<f64>,
     pub(super) resolved: Vec<f64>,
-    row_sum: f64,
     /// Whether the tangent is indefinite where the step begins: under the same forces the body may end it in more ways than one.
     pub(super) is_ambiguous: bool,
     /// Whether what is not found without detours need not be found: the step is cut then.
@@ -72,54 +65,54 @@ pub(super) struct LargeStrain {
 impl LargeStrain {
     /// A body of a model of large strain, and the pattern of its matrix.
     pub fn new(model: Arc<FiniteStrainModel>) -> (Self, BlockMatrix) {
-        let tangent = model.new_matrix();
-        let effective = tangent.clone();
-        let zeros = || vec![0.0; model.n_dofs()];
+        let (trial, effective) = Trial::new(&model);
+        let zeros = vec![0.0; model.n_dofs()];
         let large = Self {
-            deformation: model.deformation(model.rest_positions()),
-            tangent,
-            coast: zeros(),
-            load: zeros(),
-            residual: zeros(),
-            reaction: zeros(),
-            acceleration: zeros(),
-            start_resolved: zeros(),
-            resolved: zeros(),
-            row_sum: 0.0,
+            problem: Problem::new(model),
+            trial,
+            acceleration: zeros.clone(),
+            start_resolved: zeros.clone(),
+            resolved: zeros,
             is_ambiguous: false,
             may_give_up: false,
             led: Led::default(),
             reference: Reference::default(),
-            model,
         };
         (large, effective)
     }
 
+    /// The body's model.
+    pub fn model(&self) -> &FiniteStrainModel {
+        &self.problem.model
+    }
+
+    /// Mean force that holds the held dofs (N).
+    pub fn reaction(&self) -> &[f64] {
+        &self.trial.reaction
+    }
+
     /// Takes over a body of the same model, whose inner pressures may have changed; `false` if its matrix couples other nodes.
     pub fn take_over(&mut self, model: &Arc<FiniteStrainModel>) -> bool {
-        if Arc::ptr_eq(&self.model, model) {
+        if Arc::ptr_eq(&self.problem.model, model) {
             return true;
         }
-        let fits = self.model.has_layout_of(model);
+        let fits = self.problem.model.has_layout_of(model);
         if fits {
-            self.model = Arc::clone(model);
+            self.problem.model = Arc::clone(model);
         }
         fits
     }
 
     /// Begins a step at the committed state, which has been taken over; the iterate is where the last step's acceleration leads.
     pub fn predict(&mut self, shared: &mut Shared, state: &FlexState) -> Result<(), CholeskyError> {
-        let dt = shared.step.dt;
         shared.now.turn = Mat2::identity();
         shared.now.frame = state.frame;
         shared.contact.clear();
         self.led.forget();
-        self.deformation.begin_with(&state.flowed);
-        self.model.begin(&state.position, &mut self.deformation);
+        self.trial.deformation.begin_with(&state.flowed);
+        self.begin_at(&state.position);
         shared.energy.flow = 0.0;
-        for (dof, coast) in self.coast.iter_mut().enumerate() {
-            *coast = state.position[dof] + dt * state.velocity[dof];
-        }
+        self.problem.begin(shared.step.dt, state);
         shared.start.momentum = start_spin_momentum(shared);
         let outcome = self.factorize(shared, state);
         if outcome.is_ok() {
@@ -135,6 +128,12 @@ impl LargeStrain {
         }
         self.follow_positions(shared);
         outcome
+    }
+
+    /// Begins the deformation at these positions (m).
+    fn begin_at(&mut self, positions: &[f64]) {
+        let deformation = &mut self.trial.deformation;
+        self.problem.model.begin(positions, deformation);
     }
 
     /// Begins the iterations where the velocities that the step resolves lead, with the last step's acceleration: without forces and at small
@@ -167,56 +166,36 @@ impl LargeStrain {
         at: &[f64],
         start: &[f64],
     ) -> Result<bool, CholeskyError> {
-        let equation = equation_of(
-            &self.model,
-            &shared.step,
-            self.led.takes_end,
-            [&self.load, &shared.start.position, &self.coast],
-            &shared.shape.is_fixed,
-        );
-        let key = (&self.model, &equation);
+        let equation = (self.problem).equation(&shared.step, &shared.start, &shared.shape);
+        let key = (&self.problem.model, &equation);
         if self.reference.is_of(key, at, &shared.answer.factor) {
-            return Ok(is_near(self.reference.gradients(), &self.deformation));
+            let gradients = self.reference.gradients();
+            return Ok(is_near(gradients, &self.trial.deformation));
         }
         // A run that was restored.
-        self.model.begin(at, &mut self.deformation);
-        let gradients = self.deformation.start_gradients().to_vec();
-        self.model.begin(start, &mut self.deformation);
-        if self.model.flows() || !is_near(&gradients, &self.deformation) {
+        self.begin_at(at);
+        let gradients = self.trial.deformation.start_gradients().to_vec();
+        self.begin_at(start);
+        if self.problem.model.flows() || !is_near(&gradients, &self.trial.deformation) {
             return Ok(false);
         }
-        self.model.begin(at, &mut self.deformation);
+        self.begin_at(at);
         self.factorize_at(shared, at)?;
-        self.model.begin(start, &mut self.deformation);
+        self.begin_at(start);
         Ok(!self.is_ambiguous)
     }
 
     /// Factorizes where the deformation begins, at these positions.
     fn factorize_at(&mut self, shared: &mut Shared, at: &[f64]) -> Result<(), CholeskyError> {
-        let equation = equation_of(
-            &self.model,
-            &shared.step,
-            self.led.takes_end,
-            [&self.load, &shared.start.position, &self.coast],
-            &shared.shape.is_fixed,
-        );
+        let equation = (self.problem).equation(&shared.step, &shared.start, &shared.shape);
         let scale = shared.step.weights.b0;
-        let matrices = (&mut self.tangent, &mut shared.answer.effective);
-        let deformation = &self.deformation;
-        shared.answer.n_factorizations += 1;
-        let found = factorize(
-            &equation,
-            scale,
-            deformation,
-            matrices,
-            &mut shared.answer.factor,
-        )?;
-        self.row_sum = found.row_sum;
+        let asked = (&equation, Linearization::Consistent);
+        let found = (self.trial).factorize(asked, scale, &mut shared.answer)?;
         self.is_ambiguous = !found.is_definite;
-        let (key, place) = ((&self.model, &equation), (at, deformation));
+        let key = (&self.problem.model, &equation);
+        let place = (at, &self.trial.deformation);
         let factor = &shared.answer.factor;
         self.reference.note(key, place, factor, found.is_definite);
-        shared.answer.compliance.clear();
         Ok(())
     }
 
@@ -227,7 +206,7 @@ impl LargeStrain {
             left = self.iterate(shared);
             self.led.is_led = left > 0.0 && !self.may_give_up && self.led.has_base();
             if self.led.is_led {
-                self.led.takes_end = true;
+                self.problem.takes_end = true;
                 self.linearize_at_base(shared);
             }
         } else {
@@ -252,54 +231,32 @@ impl LargeStrain {
     /// Pins move at the mean velocity of their step, and what they hold gets that velocity in it, not twice as much.
     fn ease_pins(&mut self, shared: &Shared) {
         for &dof in &shared.shape.fixed_dofs {
-            let late =
-                (shared.now.position[dof] - self.coast[dof]) / (shared.step.dt * shared.step.dt);
-            self.reaction[dof] -= shared.shape.arms.node_mass[dof / 2] * late;
+            let way = shared.now.position[dof] - self.problem.coast[dof];
+            let late = way / (shared.step.dt * shared.step.dt);
+            self.trial.reaction[dof] -= shared.shape.arms.node_mass[dof / 2] * late;
         }
     }
 
     fn iterate(&mut self, shared: &mut Shared) -> f64 {
-        for &dof in &shared.shape.fixed_dofs {
-            shared.now.position[dof] =
-                shared.shape.model.rest_positions()[dof] + shared.loads.prescribed[dof];
-        }
+        shared.place_pins();
         let scale = shared.step.weights.b0;
-        for (dof, load) in self.load.iter_mut().enumerate() {
-            *load = shared.loads.force[dof] + shared.contact.nodal[dof];
-        }
-        let Self {
-            model,
-            deformation,
-            tangent,
-            coast,
-            load,
-            residual,
-            reaction,
-            row_sum,
-            may_give_up,
-            led,
-            ..
-        } = self;
-        let not_found = match may_give_up {
+        self.problem.take_loads(shared);
+        let Self { problem, trial, .. } = self;
+        let not_found = match self.may_give_up {
             true => f64::INFINITY,
             false => NOT_FOUND,
         };
-        let equation = equation_of(
-            model,
-            &shared.step,
-            led.takes_end,
-            [load, &shared.start.position, coast],
-            &shared.shape.is_fixed,
-        );
+        let equation = problem.equation(&shared.step, &shared.start, &shared.shape);
+        let asked = (&equation, Linearization::Consistent);
         let mut last: Option<Evaluation> = None;
         let (mut n_cuts, mut n_iterations, mut n_guesses) = (0, 0, 0);
         // Whether the factor is that of where the last increment began.
         let mut is_fresh = false;
         let mut renews = false;
         loop {
-            let outcome = equation.evaluate(&shared.now.position, deformation, residual, reaction);
+            let outcome = trial.evaluate(&equation, &shared.now.position);
             // Forces that rounding of the positions makes, which may grow and shrink as they like.
-            let rounding = f64::EPSILON * *row_sum * shared.extent();
+            let rounding = f64::EPSILON * trial.row_sum * shared.extent();
             let bound = last.map_or(f64::INFINITY, |last| {
                 most_growth() * last.norm.max(rounding)
             });
@@ -356,35 +313,18 @@ impl LargeStrain {
             }
             is_fresh = is_slow || std::mem::take(&mut renews);
             if is_fresh {
-                shared.answer.n_factorizations += 1;
-                let matrices = (&mut *tangent, &mut shared.answer.effective);
-                let found = factorize(
-                    &equation,
-                    scale,
-                    deformation,
-                    matrices,
-                    &mut shared.answer.factor,
-                );
-                shared.answer.compliance.clear();
-                let Ok(found) = found else {
+                let Ok(found) = trial.factorize(asked, scale, &mut shared.answer) else {
                     // What is asked of the body from here on is answered as where the step began.
-                    model.begin(&shared.start.position, deformation);
-                    let matrices = (&mut *tangent, &mut shared.answer.effective);
-                    let _ = factorize(
-                        &equation,
-                        scale,
-                        deformation,
-                        matrices,
-                        &mut shared.answer.factor,
-                    );
+                    let deformation = &mut trial.deformation;
+                    problem.model.begin(&shared.start.position, deformation);
+                    let _ = trial.refill(asked, scale, &mut shared.answer);
                     return not_found;
                 };
-                *row_sum = found.row_sum;
-                if *may_give_up && !found.is_definite {
+                if self.may_give_up && !found.is_definite {
                     return not_found;
                 }
             }
-            shared.local.copy_from_slice(residual);
+            shared.local.copy_from_slice(&trial.residual);
             shared.answer.solve(&mut shared.local);
             for (x, increment) in shared.now.position.iter_mut().zip(&mut shared.local) {
                 *increment *= scale;

@@ -210,7 +210,7 @@ impl FlexBlock {
         let late = late
             .map(|(dof, f)| f * (self.shared.now.position[dof] - self.shared.start.position[dof]));
         let pressure = self.large_strain().map_or(0.0, |large| {
-            let model = &large.model;
+            let model = large.model();
             model.pressure_work(&self.shared.start.position, &self.shared.now.position)
         });
         work + late.sum::<f64>() + self.pin_work() + pressure
@@ -237,7 +237,7 @@ impl FlexBlock {
             return Vec2::zeros();
         }
         if let Some(large) = self.large_strain() {
-            return node_vec(&large.reaction, node);
+            return node_vec(large.reaction(), node);
         }
         let rayleigh = self.shared.shape.model.rayleigh();
         let stiffness = self.shared.shape.model.stiffness();

@@ -111,6 +111,14 @@ impl Shared {
         self.loads.begin(&self.shape, load, state.loads.lag);
     }
 
+    /// Puts held dofs where they are at the end of the step.
+    pub fn place_pins(&mut self) {
+        for &dof in &self.shape.fixed_dofs {
+            let rest = self.shape.model.rest_positions()[dof];
+            self.now.position[dof] = rest + self.loads.prescribed[dof];
+        }
+    }
+
     /// Size of the coordinates that round-off is relative to (m).
     pub fn extent(&self) -> f64 {
         self.shape.extent.max(self.now.frame.centre.amax())

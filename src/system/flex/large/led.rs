@@ -21,8 +21,6 @@
 pub(super) struct Led {
     /// Whether it is. Not where the iterate has been put elsewhere: increments count from where the base has led.
     pub is_led: bool,
-    /// Whether the stress is that of the end, for the rest of the step once a body has been led in it.
-    pub takes_end: bool,
     /// Positions at the base of the path (m); none where there is no path.
     pub base: Vec<f64>,
     /// Contact forces at the iterate (N).
@@ -38,7 +36,7 @@ pub(super) struct Led {
 impl Led {
     /// Begins a step.
     pub fn forget(&mut self) {
-        (self.is_led, self.takes_end) = (false, false);
+        self.is_led = false;
         self.reach = 1.0;
         self.base.clear();
     }

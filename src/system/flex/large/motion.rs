@@ -1,8 +1,8 @@
 //! The end of a step of a body of large strain: velocities, accelerations, ways back to its beginning, and the state to commit.
 
-use super::equation::total_decay;
 use super::{LargeStrain, TOLERANCE};
 use crate::body::{FlexState, Frame, FrameMotion};
+use crate::large::Inertia;
 use crate::math::{
     Vec2, add_node_vec, cross, node_vec, perp, rotation, rounding, set_node_vec, sum_over,
 };
@@ -63,7 +63,7 @@ impl LargeStrain {
     /// is taken of a mode of frequency ω is `χ (1 - r)²` of its velocity, `r = 1/(1 + ω² dt²/4)`: energy, always, and nothing where `χ` is zero.
     /// What the step resolves loses a share of the fourth order of `ω dt` to it, besides the damping that it is said to have.
     fn damp_unresolved(&mut self, shared: &mut Shared) {
-        let share = total_decay(&shared.step, self.model.damping()).min(1.0);
+        let share = self.problem.decay(&shared.step).min(1.0);
         if share == 0.0 {
             return;
         }
@@ -78,9 +78,9 @@ impl LargeStrain {
             &shared.start.frame,
             &mut shared.answer,
             motion,
-            &mut self.residual,
+            &mut self.trial.residual,
         );
-        let unresolved = fast.iter().zip(&self.residual);
+        let unresolved = fast.iter().zip(&self.trial.residual);
         for (velocity, (fast, resolved)) in shared.now.velocity.iter_mut().zip(unresolved) {
             *velocity -= share * (fast - resolved);
         }
@@ -88,15 +88,18 @@ impl LargeStrain {
 
     /// Measures the elastic energy of the iterate.
     pub fn measure_elastic_energy(&self, shared: &mut Shared) {
-        let flowed = self.deformation.flowed();
-        let energy = self.model.energy_after(&shared.now.position, flowed);
+        let flowed = self.trial.deformation.flowed();
+        let energy = self
+            .problem
+            .model
+            .energy_after(&shared.now.position, flowed);
         (shared.energy.elastic, shared.energy.flow) = (energy.stored, energy.dissipated);
     }
 
     /// Elastic energy that rounding of the positions may make and take (J).
     pub fn rounding_energy(&self, shared: &Shared) -> f64 {
         let rounding = f64::EPSILON * shared.extent();
-        0.5 * shared.shape.n_dofs() as f64 * self.row_sum * rounding * rounding
+        0.5 * shared.shape.n_dofs() as f64 * self.trial.row_sum * rounding * rounding
     }
 
     /// Goes back to where the step began.
@@ -147,7 +150,7 @@ impl LargeStrain {
     /// Work of the pins that move, by their mean force over the step and, of what is at the pins, its mean velocity (J).
     pub fn pin_work(&self, shared: &Shared) -> f64 {
         let arrays = [
-            &self.reaction[..],
+            self.reaction(),
             &shared.now.position,
             &shared.start.position,
         ];
@@ -168,7 +171,7 @@ impl LargeStrain {
         let (factor, dt) = (&shared.answer.factor, shared.step.dt);
         self.reference.tell(factor, dt, &mut state.linearized);
         let flowed = &mut state.flowed;
-        state.flow_energy += self.model.commit_flow(&shared.now.position, flowed);
+        state.flow_energy += self.problem.model.commit_flow(&shared.now.position, flowed);
         state.torque = 0.0;
         state.loads.last.force.clear();
         state.frame = shared.now.frame;
@@ -209,21 +212,19 @@ impl LargeStrain {
 
     /// `2/dt² + α/dt` (1/s²).
     fn momentum_factor(&self, shared: &Shared) -> f64 {
-        let dt = shared.step.dt;
-        2.0 / (dt * dt) + self.model.damping().mass / dt
+        let Inertia { acceleration, drag } = self.problem.inertia(&shared.step);
+        acceleration + drag
     }
 
     /// Load less inertia force of a node at `x` (N): all that inner forces would have to be.
     fn lacking_force(&self, shared: &Shared, node: usize, x: Vec2) -> Vec2 {
-        let dt = shared.step.dt;
-        let (inertia, drag) = (2.0 / (dt * dt), self.model.damping().mass / dt);
-        let (coast, start) = (
-            node_vec(&self.coast, node),
-            node_vec(&shared.start.position, node),
-        );
+        let Inertia { acceleration, drag } = self.problem.inertia(&shared.step);
+        let coast = node_vec(&self.problem.coast, node);
+        let start = node_vec(&shared.start.position, node);
         // About where the iterate is, so that no digits are lost far from the origin.
         let mass = shared.shape.arms.node_mass[node];
-        node_vec(&self.load, node) - mass * (inertia * (x - coast) + drag * (x - start))
+        node_vec(&self.problem.load, node)
+            - mass * (acceleration * (x - coast) + drag * (x - start))
     }
 
     /// How far the centre of a free body is from where the forces bring it (m).

@@ -1,8 +1,9 @@
 //! What a feasible path asks of a body of large strain: where it begins, how far it may be gone, and to stop on the way.
 
-use super::equation::{equation_of, factorize, factorize_definite, impulsive};
+use super::trial::impulsive;
 use super::{LargeStrain, NOT_FOUND};
 use crate::body::Frame;
+use crate::fe::finite_strain::Linearization;
 use crate::math::judged::{Judged, NEGLIGIBLE};
 use crate::system::flex::shared::Shared;
 
@@ -23,7 +24,7 @@ impl LargeStrain {
         if !self.led.is_led {
             return 0.0;
         }
-        self.led.takes_end = true;
+        self.problem.takes_end = true;
         self.linearize_at_base(shared);
         self.follow_positions(shared);
         self.led.left
@@ -59,36 +60,14 @@ impl LargeStrain {
     /// Answers impulses by what the body is at the iterate.
     pub fn answer_as_at_the_end(&mut self, shared: &mut Shared) {
         let scale = shared.step.weights.b0;
-        let equation = equation_of(
-            &self.model,
-            &shared.step,
-            self.led.takes_end,
-            [&self.load, &shared.start.position, &self.coast],
-            &shared.shape.is_fixed,
-        );
-        let (residual, reaction) = (&mut self.residual, &mut self.reaction);
-        let outcome = equation.evaluate(
-            &shared.now.position,
-            &mut self.deformation,
-            residual,
-            reaction,
-        );
+        let equation = (self.problem).equation(&shared.step, &shared.start, &shared.shape);
+        let outcome = self.trial.evaluate(&equation, &shared.now.position);
         if outcome.is_err() {
             return;
         }
-        shared.answer.n_factorizations += 1;
-        shared.answer.compliance.clear();
-        let matrices = (&mut self.tangent, &mut shared.answer.effective);
-        let found = factorize_definite(
-            (&equation, impulsive(&equation)),
-            scale,
-            &self.deformation,
-            matrices,
-            &mut shared.answer.factor,
-        );
-        if let Ok(found) = found {
-            self.row_sum = found.row_sum;
-        }
+        // Where there is no such factor the one at hand has to do.
+        let asked = (&equation, impulsive(&equation));
+        let _ = self.trial.factorize(asked, scale, &mut shared.answer);
         self.ease_pins(shared);
     }
 
@@ -96,49 +75,22 @@ impl LargeStrain {
     pub fn linearize_at_base(&mut self, shared: &mut Shared) {
         let scale = shared.step.weights.b0;
         shared.now.position.copy_from_slice(&self.led.base);
-        for &dof in &shared.shape.fixed_dofs {
-            shared.now.position[dof] =
-                shared.shape.model.rest_positions()[dof] + shared.loads.prescribed[dof];
-        }
-        for (dof, load) in self.load.iter_mut().enumerate() {
-            *load = shared.loads.force[dof] + shared.contact.nodal[dof];
-        }
+        shared.place_pins();
+        self.problem.take_loads(shared);
         self.led.force.clear();
         self.led.force.extend_from_slice(&shared.contact.nodal);
         self.led.left = f64::INFINITY;
-        let equation = equation_of(
-            &self.model,
-            &shared.step,
-            self.led.takes_end,
-            [&self.load, &shared.start.position, &self.coast],
-            &shared.shape.is_fixed,
-        );
-        let (residual, reaction) = (&mut self.residual, &mut self.reaction);
-        let outcome = equation.evaluate(
-            &shared.now.position,
-            &mut self.deformation,
-            residual,
-            reaction,
-        );
+        let equation = (self.problem).equation(&shared.step, &shared.start, &shared.shape);
+        let outcome = self.trial.evaluate(&equation, &shared.now.position);
         if !outcome.is_ok_and(|now| now.norm.is_finite()) {
             return;
         }
-        shared.answer.n_factorizations += 1;
-        let matrices = (&mut self.tangent, &mut shared.answer.effective);
-        let deformation = &self.deformation;
-        let found = factorize(
-            &equation,
-            scale,
-            deformation,
-            matrices,
-            &mut shared.answer.factor,
-        );
-        shared.answer.compliance.clear();
-        let Ok(found) = found else {
+        let asked = (&equation, Linearization::Consistent);
+        let found = self.trial.factorize(asked, scale, &mut shared.answer);
+        if found.is_err() {
             return;
-        };
-        self.row_sum = found.row_sum;
-        shared.local.copy_from_slice(&self.residual);
+        }
+        shared.local.copy_from_slice(&self.trial.residual);
         // Of cells that are all but flat the stiffness may leave nothing of the masses in the factor: their momentum is asked for by itself.
         let lacking = match shared.shape.kind {
             Frame::Free => self.lacking_shift(shared).norm() / shared.shape.size,
@@ -161,35 +113,25 @@ impl LargeStrain {
     /// Finds how far towards the iterate no cell turns over and, of what is led, the forces that are out of balance do work; returns how far the
     /// body is from its end, relative to its size.
     pub fn look_ahead(&mut self, shared: &Shared) -> f64 {
-        for (dof, load) in self.load.iter_mut().enumerate() {
-            *load = shared.loads.force[dof] + shared.contact.nodal[dof];
-        }
-        let equation = equation_of(
-            &self.model,
-            &shared.step,
-            self.led.takes_end,
-            [&self.load, &shared.start.position, &self.coast],
-            &shared.shape.is_fixed,
-        );
+        self.problem.take_loads(shared);
+        let equation = (self.problem).equation(&shared.step, &shared.start, &shared.shape);
         // Forces that rounding of the positions makes do work in no direction.
-        let rounding = f64::EPSILON * self.row_sum * shared.extent();
-        let led = &mut self.led;
+        let rounding = f64::EPSILON * self.trial.row_sum * shared.extent();
+        let (led, trial) = (&mut self.led, &mut self.trial);
         let way = led.base.iter().zip(&shared.now.position);
         let length: f64 = way.map(|(from, to)| (to - from).abs()).sum();
         let least = match led.is_led {
             true => -f64::from(2 * N_PLACES) * rounding * length,
             false => f64::NEG_INFINITY,
         };
-        let (residual, reaction) = (&mut self.residual, &mut self.reaction);
-        let deformation = &mut self.deformation;
         // The power of what is out of balance along the way; none where a cell is turned over.
         let mut power = |part: f64| {
             led.place.clear();
             let way = led.base.iter().zip(&shared.now.position);
             led.place
                 .extend(way.clone().map(|(from, to)| from + part * (to - from)));
-            let outcome = equation.evaluate(&led.place, deformation, residual, reaction);
-            let power = (way.zip(&*residual)).map(|((from, to), force)| force * (to - from));
+            let outcome = trial.evaluate(&equation, &led.place);
+            let power = (way.zip(&trial.residual)).map(|((from, to), force)| force * (to - from));
             outcome
                 .is_ok_and(|now| now.norm.is_finite())
                 .then(|| power.sum::<f64>())
@@ -220,7 +162,7 @@ impl LargeStrain {
     pub fn stop_at(&mut self, shared: &mut Shared, positions: &[f64]) {
         shared.now.position.copy_from_slice(positions);
         self.led.is_led = false;
-        if self.led.takes_end {
+        if self.problem.takes_end {
             self.answer_as_at_the_end(shared);
         }
         shared.now.follow_centre(&shared.shape, &shared.start.frame);
