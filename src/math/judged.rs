@@ -4,6 +4,7 @@
 //! them larger or smaller. Anywhere else such a value is the number that it holds.
 
 use std::cmp::Ordering;
+use std::fmt;
 use std::ops::{Div, Mul, Neg};
 
 /// Share of what it belongs to below which a law, a way or an error is no matter (-): results are meant to some thousandths, and nothing that is
@@ -11,9 +12,9 @@ use std::ops::{Div, Mul, Neg};
 pub(crate) const NEGLIGIBLE: Judged = Judged::new("math::NEGLIGIBLE", 1e-3);
 
 /// A value of judgement, in the unit that stands beside it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(crate) struct Judged {
-    #[cfg_attr(not(test), allow(dead_code, reason = "tests know it by its name"))]
+    /// What tests know it by.
     name: &'static str,
     value: f64,
 }
@@ -40,6 +41,12 @@ impl Judged {
     #[cfg(test)]
     pub fn get(self) -> f64 {
         self.value * tests::scale_of(self.name)
+    }
+}
+
+impl fmt::Debug for Judged {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {:e}", self.name, self.value)
     }
 }
 
