@@ -14,14 +14,13 @@
 
 pub mod support;
 
-use clap::Parser;
 use foil2d::pipeline::Quality;
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
 use serde::Serialize;
 use std::error::Error;
-use support::cli::{Options, print_json};
-use support::film::{FORCE, Film, Legend, View};
+use support::cli::Options;
+use support::film::{Film, Legend, View};
 
 const GRAVITY: f64 = 9.81;
 const DT: f64 = 1.0 / 240.0;
@@ -216,22 +215,14 @@ impl Scene {
 
     fn draw(&self, film: &mut Film, time: f64) -> Result<(), Box<dyn Error>> {
         let arm = &self.flex_bodies[self.arm];
-        let stress = arm.von_mises()?;
         let panel = film.panel(format!("{time:.2} s"));
         panel.line(
             [[-3.0, 0.0], [12.0, 0.0]],
             "stroke=\"#555\" stroke-width=\"3\"",
         );
-        for cell in arm.mesh().cells() {
-            let corners = cell.corners();
-            let mean = corners.iter().map(|&node| stress[node]).sum::<f64>();
-            let points = corners.iter().map(|&node| arm.position(node));
-            panel.cell(points, mean / corners.len() as f64 / 1e6);
-        }
+        panel.stress(arm, 1e6)?;
         panel.disc(self.ball(), RADIUS, "fill=\"#b33\"");
-        for node in 0..arm.n_nodes() {
-            panel.force(arm.position(node), arm.contact_force(node), FORCE);
-        }
+        panel.contact_forces(arm);
         Ok(())
     }
 }
@@ -303,7 +294,6 @@ pub fn run(options: &Options, mut film: Option<&mut Film>) -> Result<Outcome, Bo
 
 #[allow(dead_code, reason = "tests call `run`")]
 fn main() -> Result<(), Box<dyn Error>> {
-    let options = Options::parse();
     let view = View {
         x: [-1.6, 3.4],
         y: [-0.1, 3.4],
@@ -315,13 +305,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         longest: 0.6,
     };
     let notes = vec!["An arm of 1.2 m by 60 mm, 100 MPa; a ball of 1 kg.".to_owned()];
-    let mut film = Film::new("Catapult", notes, view, legend);
-    let outcome = run(&options, Some(&mut film))?;
-    if options.steps.is_none() {
-        std::fs::create_dir_all("out")?;
-        std::fs::write("out/catapult.svg", film.to_svg())?;
-        println!("film strip: out/catapult.svg");
-    }
-    print_json(&outcome);
-    Ok(())
+    let film = Film::new("Catapult", notes, view, legend);
+    film.record("catapult", run)
 }

@@ -11,17 +11,15 @@
 
 pub mod support;
 
-use clap::Parser;
 use foil2d::fe::material::Rayleigh;
-use foil2d::fe::recovery::Stress;
 use foil2d::pipeline::Quality;
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
 use serde::Serialize;
 use std::error::Error;
-use support::cli::{Options, print_json};
+use support::cli::Options;
 use support::doctor::require_sound;
-use support::film::{FORCE, Film, Legend, View};
+use support::film::{Film, Legend, View};
 
 const LENGTH: f64 = 2.4;
 const THICKNESS: f64 = 0.04;
@@ -151,22 +149,11 @@ impl Scene {
 
     fn draw(&self, film: &mut Film, time: f64) -> Result<(), Box<dyn Error>> {
         let body = self.body();
-        let stress: Vec<Stress> = body.stress()?;
         let panel = film.panel(format!("{time:.2} s"));
         panel.disc(PEG, PEG_RADIUS, "fill=\"#555\"");
-        for cell in body.mesh().cells() {
-            let corners = cell.corners();
-            let mean = corners
-                .iter()
-                .map(|&node| stress[node].von_mises())
-                .sum::<f64>();
-            let points = corners.iter().map(|&node| body.position(node));
-            panel.cell(points, mean / corners.len() as f64 / 1e6);
-        }
+        panel.stress(body, 1e6)?;
         panel.disc(self.ball_at(), BALL_RADIUS, "fill=\"#b33\"");
-        for node in 0..body.n_nodes() {
-            panel.force(body.position(node), body.contact_force(node), FORCE);
-        }
+        panel.contact_forces(body);
         Ok(())
     }
 }
@@ -223,7 +210,6 @@ pub fn run(options: &Options, mut film: Option<&mut Film>) -> Result<Outcome, Bo
 
 #[allow(dead_code, reason = "tests call `run`")]
 fn main() -> Result<(), Box<dyn Error>> {
-    let options = Options::parse();
     let view = View {
         x: [-1.5, 2.7],
         y: [0.2, 3.4],
@@ -236,13 +222,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let notes =
         vec!["A rope, 2.4 m by 40 mm, 20 MPa, with a ball of 2 kg; a fixed peg.".to_owned()];
-    let mut film = Film::new("Rope around a peg", notes, view, legend);
-    let outcome = run(&options, Some(&mut film))?;
-    if options.steps.is_none() {
-        std::fs::create_dir_all("out")?;
-        std::fs::write("out/rope.svg", film.to_svg())?;
-        println!("film strip: out/rope.svg");
-    }
-    print_json(&outcome);
-    Ok(())
+    let film = Film::new("Rope around a peg", notes, view, legend);
+    film.record("rope", run)
 }

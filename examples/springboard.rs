@@ -11,14 +11,13 @@
 
 pub mod support;
 
-use clap::Parser;
 use foil2d::pipeline::{Participant, Quality};
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
 use serde::Serialize;
 use std::error::Error;
-use support::cli::{Options, print_json};
-use support::film::{FORCE, Film, Legend, View};
+use support::cli::Options;
+use support::film::{Film, Legend, View};
 
 const GRAVITY: f64 = 9.81;
 const DT: f64 = 1.0 / 240.0;
@@ -152,22 +151,14 @@ impl Scene {
 
     fn draw(&self, film: &mut Film, time: f64) -> Result<(), Box<dyn Error>> {
         let board = &self.flex_bodies[self.board];
-        let stress = board.von_mises()?;
         let panel = film.panel(format!("{time:.2} s"));
         panel.line(
             [[0.0, -0.4], [0.0, 0.3]],
             "stroke=\"#555\" stroke-width=\"5\"",
         );
-        for cell in board.mesh().cells() {
-            let corners = cell.corners();
-            let mean = corners.iter().map(|&node| stress[node]).sum::<f64>();
-            let points = corners.iter().map(|&node| board.position(node));
-            panel.cell(points, mean / corners.len() as f64 / 1e6);
-        }
+        panel.stress(board, 1e6)?;
         panel.disc(self.jumper(), RADIUS, "fill=\"#b33\"");
-        for node in 0..board.n_nodes() {
-            panel.force(board.position(node), board.contact_force(node), FORCE);
-        }
+        panel.contact_forces(board);
         Ok(())
     }
 }
@@ -293,7 +284,6 @@ pub fn run(options: &Options, film: Option<&mut Film>) -> Result<Outcome, Box<dy
 
 #[allow(dead_code, reason = "tests call `run`")]
 fn main() -> Result<(), Box<dyn Error>> {
-    let options = Options::parse();
     let view = View {
         x: [-0.1, 3.3],
         y: [-1.2, 0.9],
@@ -305,13 +295,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         longest: 0.6,
     };
     let notes = vec!["A board of 3 m by 40 mm, 7.7 GPa; a jumper of 70 kg.".to_owned()];
-    let mut film = Film::new("Springboard", notes, view, legend);
-    let outcome = run(&options, Some(&mut film))?;
-    if options.steps.is_none() {
-        std::fs::create_dir_all("out")?;
-        std::fs::write("out/springboard.svg", film.to_svg())?;
-        println!("film strip: out/springboard.svg");
-    }
-    print_json(&outcome);
-    Ok(())
+    let film = Film::new("Springboard", notes, view, legend);
+    film.record("springboard", run)
 }

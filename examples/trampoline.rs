@@ -11,14 +11,13 @@
 
 pub mod support;
 
-use clap::Parser;
 use foil2d::pipeline::Quality;
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
 use serde::Serialize;
 use std::error::Error;
-use support::cli::{Options, print_json};
-use support::film::{FORCE, Film, Legend, View};
+use support::cli::Options;
+use support::film::{Film, Legend, View};
 
 const GRAVITY: f64 = 9.81;
 const DT: f64 = 1.0 / 120.0;
@@ -152,7 +151,6 @@ impl Scene {
 
     fn draw(&self, film: &mut Film, time: f64) -> Result<(), Box<dyn Error>> {
         let strip = &self.flex_bodies[self.strip];
-        let stress = strip.von_mises()?;
         let panel = film.panel(format!("{time:.2} s"));
         for side in [-1.0, 1.0] {
             let x = side * (0.5 * LENGTH + DRAWN);
@@ -161,17 +159,10 @@ impl Scene {
                 "stroke=\"#555\" stroke-width=\"4\"",
             );
         }
-        for cell in strip.mesh().cells() {
-            let corners = cell.corners();
-            let mean = corners.iter().map(|&node| stress[node]).sum::<f64>();
-            let points = corners.iter().map(|&node| strip.position(node));
-            panel.cell(points, mean / corners.len() as f64 / 1e3);
-        }
+        panel.stress(strip, 1e3)?;
         let at = self.world.bodies[self.ball].translation();
         panel.disc([at.x, at.y].map(f64::from), RADIUS, "fill=\"#b33\"");
-        for node in 0..strip.n_nodes() {
-            panel.force(strip.position(node), strip.contact_force(node), FORCE);
-        }
+        panel.contact_forces(strip);
         Ok(())
     }
 }
@@ -259,7 +250,6 @@ pub fn run(options: &Options, film: Option<&mut Film>) -> Result<Outcome, Box<dy
 
 #[allow(dead_code, reason = "tests call `run`")]
 fn main() -> Result<(), Box<dyn Error>> {
-    let options = Options::parse();
     let view = View {
         x: [-1.8, 1.8],
         y: [0.0, 2.6],
@@ -272,13 +262,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let notes =
         vec!["A strip of 3 m by 8 mm, 2 MPa, drawn by a tenth; a ball of 20 kg.".to_owned()];
-    let mut film = Film::new("Trampoline", notes, view, legend);
-    let outcome = run(&options, Some(&mut film))?;
-    if options.steps.is_none() {
-        std::fs::create_dir_all("out")?;
-        std::fs::write("out/trampoline.svg", film.to_svg())?;
-        println!("film strip: out/trampoline.svg");
-    }
-    print_json(&outcome);
-    Ok(())
+    let film = Film::new("Trampoline", notes, view, legend);
+    film.record("trampoline", run)
 }

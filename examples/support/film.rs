@@ -1,6 +1,11 @@
 //! A film strip as one SVG: panels with the same view of a scene, a colour bar, and charts below.
 
 use super::chart::Chart;
+use super::cli::{Options, print_json};
+use clap::Parser;
+use foil2d::body::FlexBody;
+use serde::Serialize;
+use std::error::Error;
 use std::fmt::Write;
 
 const MARGIN: f64 = 24.0;
@@ -131,6 +136,25 @@ impl Panel {
         self.polygon(points, &style);
     }
 
+    /// Adds the cells of a body in the colours of its von Mises stress, in units of so many Pa.
+    pub fn stress(&mut self, body: &FlexBody, unit: f64) -> Result<(), Box<dyn Error>> {
+        let stress = body.von_mises()?;
+        for cell in body.mesh().cells() {
+            let corners = cell.corners();
+            let mean = corners.iter().map(|&node| stress[node]).sum::<f64>();
+            let points = corners.iter().map(|&node| body.position(node));
+            self.cell(points, mean / corners.len() as f64 / unit);
+        }
+        Ok(())
+    }
+
+    /// Adds the contact forces on the nodes of a body.
+    pub fn contact_forces(&mut self, body: &FlexBody) {
+        for node in 0..body.n_nodes() {
+            self.force(body.position(node), body.contact_force(node), FORCE);
+        }
+    }
+
     /// Adds a disc.
     pub fn disc(&mut self, centre: [f64; 2], radius: f64, style: &str) {
         let [x, y] = self.view.place(centre);
@@ -199,6 +223,24 @@ impl Film {
     /// Appends a chart to the row below the panels.
     pub fn chart(&mut self, chart: Chart) {
         self.charts.push(chart);
+    }
+
+    /// Runs an example with the arguments of the program and tells its headline numbers; the film of a whole run is `out/{name}.svg`.
+    pub fn record<T: Serialize>(
+        mut self,
+        name: &str,
+        run: impl FnOnce(&Options, Option<&mut Self>) -> Result<T, Box<dyn Error>>,
+    ) -> Result<(), Box<dyn Error>> {
+        let options = Options::parse();
+        let outcome = run(&options, Some(&mut self))?;
+        if options.steps.is_none() {
+            std::fs::create_dir_all("out")?;
+            let path = format!("out/{name}.svg");
+            std::fs::write(&path, self.to_svg())?;
+            println!("film strip: {path}");
+        }
+        print_json(&outcome);
+        Ok(())
     }
 
     /// The whole strip.
