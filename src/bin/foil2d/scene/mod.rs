@@ -1,4 +1,6 @@
 //! Scenes as they are written: in TOML, SI units throughout.
+//!
+//! Keys that both kinds of bodies have are written down at both: what serde flattens neither refuses unknown keys nor knows where its values stand.
 
 mod flexible;
 mod output;
