@@ -22,7 +22,8 @@
 //! | `turn` | the mean rotation of a body, by which a factor is turned |
 //! | `stepper` | [`LargeStepper`]: a step, in halves where it is not found |
 //! | `equilibrium` | [`LoadStepper`]: equilibrium under loads that grow, in smaller increments where it is not found |
-//! | `increments` | how far increments of a load case go |
+//! | `load_case` | a load case gone through in increments |
+//! | `increments` | how far these go |
 //! | `contact` | [`ContactStepper`]: equilibrium between rigid obstacles, with Coulomb's friction |
 //! | `continuation` | [`PathStepper`]: equilibrium along a path, past limit points and onto paths that cross |
 //! | `error` | [`LargeError`] |
@@ -34,6 +35,7 @@ mod equation;
 mod equilibrium;
 mod error;
 mod increments;
+mod load_case;
 mod motion;
 mod newton;
 mod settings;
@@ -46,8 +48,9 @@ pub use continuation::{
     PathStepper,
 };
 pub(crate) use equation::{Equation, Evaluation, Inertia};
-pub use equilibrium::{LoadCase, LoadReport, LoadStepper};
+pub use equilibrium::LoadStepper;
 pub use error::LargeError;
+pub use load_case::{LoadCase, LoadReport};
 pub use motion::WorldMotion;
 pub(crate) use newton::{MOST_CUTS, SLOWEST, largest_row_sum};
 pub use settings::LargeSettings;

@@ -362,7 +362,7 @@ pub(crate) fn largest_row_sum(matrix: &BlockMatrix) -> f64 {
     row_sums.fold(0.0, f64::max)
 }
 
-fn largest(values: &[f64]) -> f64 {
+pub(super) fn largest(values: &[f64]) -> f64 {
     values
         .iter()
         .fold(0.0, |most: f64, value| most.max(value.abs()))

@@ -17,8 +17,10 @@
 //! |---|---|
 //! | `obstacle` | [`Obstacle`]: gap, normal and curvature |
 //! | `touch` | what a node does at an obstacle, and its equations |
-//! | `stepper` | [`ContactStepper`]: increments of a load case |
+//! | `iteration` | the iteration, from an increment's guess to its equilibrium |
+//! | `stepper` | [`ContactStepper`]: load cases |
 
+mod iteration;
 mod obstacle;
 mod stepper;
 mod touch;
