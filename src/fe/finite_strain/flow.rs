@@ -13,13 +13,12 @@
 //! step, when modes beyond it are brought there and what they lose counts as dissipated.
 
 use super::Inadmissible;
-use super::cells::{
-    CellGroup, add_point, deformation_gradient, gather, scatter, subtract, with_node_count,
-};
+use super::cells::{CellGroup, with_node_count};
 use super::deformed::Deformed;
 use super::hourglass::{Hourglass, Shape};
 use super::linearization::Linearization;
-use super::model::{Deformation, FiniteStrainModel};
+use super::model::FiniteStrainModel;
+use super::one_cell::{add_point, deformation_gradient, gather, scatter, subtract};
 use super::point::{Form, moduli_of_pair, stress_of_sums};
 use crate::fe::LEAST_LEFT;
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants, J2Plasticity, PlasticState};
@@ -34,27 +33,6 @@ pub struct FlowEnergy {
     pub stored: f64,
     /// Dissipated by plastic flow on the way there (J), never negative.
     pub dissipated: f64,
-}
-
-impl Deformation {
-    /// Lets the step begin with what has flowed before, as [`FiniteStrainModel::virgin`] orders it.
-    ///
-    /// # Panics
-    /// If it is not that of the same body.
-    pub fn begin_with(&mut self, flowed: &[PlasticState]) {
-        assert_eq!(flowed.len(), self.start.flowed.len(), "one state per point");
-        self.start.flowed.copy_from_slice(flowed);
-    }
-
-    /// What has flowed before the step.
-    pub fn flowed(&self) -> &[PlasticState] {
-        &self.start.flowed
-    }
-
-    /// The same, to be [committed](FiniteStrainModel::commit_flow).
-    pub fn flowed_mut(&mut self) -> &mut [PlasticState] {
-        &mut self.start.flowed
-    }
 }
 
 impl FiniteStrainModel {

@@ -12,25 +12,22 @@
 //! thousand `κ V` leave a ten-thousandth of the area. It is an energy of the invariant `J` like any other, and with its slope between
 //! the ends of a step it conserves energy and both momenta.
 
+mod barrier;
+
+use self::barrier::{FLAT, guard_energy, slopes};
 use super::Inadmissible;
-use super::cells::{CellGroup, add_point, deformation_gradient, gather, scatter, subtract};
+use super::cells::CellGroup;
 use super::deformed::Deformed;
 use super::linearization::Linearization;
+use super::one_cell::{add_point, deformation_gradient, gather, scatter, subtract};
 use super::point::{Form, cofactor, invariants, law_moduli, middle};
-use crate::fe::LEAST_LEFT;
 use crate::fe::element::{Element, MAX_NODES, Tri3, kinematics::physical_gradient};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::linalg::block_matrix::BlockMatrix;
-use crate::math::{LANES, Wide, judged::Judged, rounding};
-
-/// `J0`, below which a place is guarded (-): a crushed rectangle is left to its law until nine tenths of its area are gone.
-const FLAT: Judged = LEAST_LEFT;
+use crate::math::{LANES, Wide, rounding};
 
 /// Rounding that a bound on `J` may have (-), far above that of a few sums.
 const ROUNDING: f64 = rounding::SHARE;
-
-/// Change of `J` by itself below which the slope of the energy is its derivative in the middle (-): the error is its square by 24.
-const SMALL: f64 = 1e-4;
 
 /// A gradient that turns what it deforms inside out.
 const TURNED: [f64; 4] = [1.0, 0.0, 0.0, -1.0];
@@ -332,91 +329,6 @@ impl CellGroup {
                 let mut blocks = [[[0.0; 4]; N]; N];
                 add_point(gradient, &moduli, share * unit, &mut blocks);
                 scatter(&blocks, places, matrix);
-            }
-        }
-    }
-}
-
-/// Energy of a place of which the share `j` is left (J); infinite if none is.
-fn guard_energy(unit: f64, j: f64) -> f64 {
-    if unit == 0.0 || j >= FLAT {
-        return 0.0;
-    }
-    unit * barrier(j)
-}
-
-/// `f(J/J0)`.
-fn barrier(j: f64) -> f64 {
-    let z = j / FLAT;
-    if z >= 1.0 {
-        return 0.0;
-    }
-    if z <= 0.0 {
-        return f64::INFINITY;
-    }
-    (1.0 - z) * (1.0 - z) * (1.0 - z) / z
-}
-
-/// First and second derivatives of [`barrier`].
-fn derivatives(j: f64) -> [f64; 2] {
-    let z = j / FLAT;
-    if z >= 1.0 {
-        return [0.0; 2];
-    }
-    let by = (1.0 - z) / z;
-    [
-        -by * by * (1.0 + 2.0 * z) / FLAT,
-        2.0 * (1.0 / (z * z * z) - 1.0) / (FLAT.get() * FLAT.get()),
-    ]
-}
-
-/// The slope that a step between two `J` does its work with, and what it rises by with the last.
-fn slopes(form: Form, before: f64, after: f64) -> [f64; 2] {
-    // What begins turned, as a state that was read may be, is pushed as at its end.
-    if form == Form::Equilibrium || before <= 0.0 {
-        let [slope, rise] = derivatives(after);
-        return [slope, form.share_of_end() * rise];
-    }
-    let change = after - before;
-    if change.abs() <= SMALL * before.min(after) {
-        let [slope, rise] = derivatives(0.5 * (before + after));
-        return [slope, 0.5 * rise];
-    }
-    let slope = (barrier(after) - barrier(before)) / change;
-    [slope, (derivatives(after)[0] - slope) / change]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_barrier_has_the_derivatives_that_it_says() {
-        for j in [1e-3, 0.02, 0.05, 0.0999, 0.1001] {
-            let size = 1e-5 * j;
-            let rise = |f: &dyn Fn(f64) -> f64| (f(j + size) - f(j - size)) / (2.0 * size);
-            let [first, second] = derivatives(j);
-            let [slope, bend] = [rise(&barrier), rise(&|j| derivatives(j)[0])];
-            assert!((slope - first).abs() < 1e-6 * first.abs() + 1e-6, "{j}");
-            assert!((bend - second).abs() < 1e-5 * second.abs() + 1e-1, "{j}");
-        }
-    }
-
-    #[test]
-    fn the_slope_of_a_step_does_the_work_that_the_energy_rises_by() {
-        let form = Form::EnergyMomentum { decay: 0.1 };
-        for before in [0.005, 0.05, 0.2] {
-            for after in [0.004, 0.05 + 1e-7, 0.05 + 1e-5, 0.0999, 0.3] {
-                let [slope, rise] = slopes(form, before, after);
-                let error = slope * (after - before) - (barrier(after) - barrier(before));
-                assert!(error.abs() < 1e-12, "{before} to {after}: {error:e}");
-                let size = 1e-4 * after;
-                let of = |after| slopes(form, before, after)[0];
-                let actual = (of(after + size) - of(after - size)) / (2.0 * size);
-                assert!(
-                    (actual - rise).abs() < 1e-3 * rise.abs() + 1e-6,
-                    "{before} to {after}: {actual} {rise}"
-                );
             }
         }
     }

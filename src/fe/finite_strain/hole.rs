@@ -135,12 +135,15 @@ impl Hole {
         slope
     }
 
+    /// Work of a constant pressure on the way from one placement of all nodes to another (J).
+    pub(super) fn work(&self, from: &[f64], to: &[f64]) -> f64 {
+        let at = |positions| move |place| relative(&self.nodes, place, positions);
+        let growth = self.growth(at(from), at(to));
+        self.thickness * self.pressure.at(1.0) * growth
+    }
+
     /// `A' - A` from the differences of the positions (m²).
-    pub(super) fn growth(
-        &self,
-        start: impl Fn(usize) -> [f64; 2],
-        end: impl Fn(usize) -> [f64; 2],
-    ) -> f64 {
+    fn growth(&self, start: impl Fn(usize) -> [f64; 2], end: impl Fn(usize) -> [f64; 2]) -> f64 {
         let products = self.terms.iter().map(|term| {
             let [a, b] = [term.from, term.to].map(|place| {
                 let (from, to) = (start(place), end(place));

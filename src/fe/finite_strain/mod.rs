@@ -17,6 +17,7 @@
 //! |---|---|
 //! | `point` | stress and moduli at one quadrature point |
 //! | `cells` | cells of one node count, and their kernels |
+//! | `one_cell` | what a cell takes from its nodes, and gives to forces and matrix |
 //! | `deformed` | gradients and what has flowed, at the quadrature points |
 //! | `flow` | bodies whose law flows: the same kernels after what has flowed, and its commitment |
 //! | `hourglass` | the modes that the one point of a four-node cell does not see |
@@ -42,15 +43,17 @@ mod hourglass;
 mod lanes;
 mod linearization;
 mod model;
+mod one_cell;
 mod point;
 mod pressure;
 mod solid;
 mod stress;
 
+pub use deformed::Deformation;
 pub use description::{FiniteStrainDescription, FiniteStrainError};
 pub use flow::FlowEnergy;
 pub use linearization::Linearization;
-pub use model::{Deformation, FiniteStrainModel};
+pub use model::FiniteStrainModel;
 pub use point::Form;
 pub use pressure::{ATMOSPHERE, InnerPressure, PressureError};
 pub use solid::Solid;

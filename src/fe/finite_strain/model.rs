@@ -2,7 +2,7 @@
 
 use super::Inadmissible;
 use super::cells::CellGroup;
-use super::deformed::Deformed;
+use super::deformed::{Deformation, Deformed};
 use super::description::{FiniteStrainDescription, FiniteStrainError};
 use super::hole::{Hole, area, loop_of, n_holes, relative, terms_of};
 use super::hourglass::Hourglass;
@@ -19,33 +19,6 @@ use crate::fe::model::{ModelError, element_of, placed_nodes};
 use crate::fe::record::ElementRecord;
 use crate::linalg::block_matrix::BlockMatrix;
 use std::sync::Arc;
-
-/// Gradients of deformation at the quadrature points: at the beginning of a step, and at the end last asked for.
-#[derive(Clone, Debug)]
-pub struct Deformation {
-    pub(super) start: Deformed,
-    end: Deformed,
-}
-
-impl Deformation {
-    /// Makes the end of the step the beginning of the next.
-    pub fn accept(&mut self) {
-        std::mem::swap(&mut self.start, &mut self.end);
-        // What has flowed belongs to the beginning.
-        std::mem::swap(&mut self.start.flowed, &mut self.end.flowed);
-    }
-
-    /// `F` at all quadrature points where the step begins.
-    pub(crate) fn start_gradients(&self) -> &[[f64; 4]] {
-        &self.start.gradients
-    }
-
-    /// Quadrature points that are turned inside out at the beginning of the step.
-    pub fn n_inverted(&self) -> usize {
-        let is_inverted = |[xx, xy, yx, yy]: &&[f64; 4]| xx * yy - xy * yx <= 0.0;
-        self.start.gradients.iter().filter(is_inverted).count()
-    }
-}
 
 /// The assembled, immutable model of one body at large strain, with lumped masses.
 ///
@@ -245,12 +218,7 @@ impl FiniteStrainModel {
         for hole in &self.holes {
             hole.gather_into(positions, &mut deformation.start.around[hole.positions()]);
         }
-        let Deformation { start, end } = deformation;
-        end.gradients.copy_from_slice(&start.gradients);
-        end.amplitudes.copy_from_slice(&start.amplitudes);
-        end.positions.copy_from_slice(&start.positions);
-        end.is_flat.copy_from_slice(&start.is_flat);
-        end.around.copy_from_slice(&start.around);
+        deformation.stay();
     }
 
     /// Subtracts the internal force (N) from `residual`, for a step that ends at `positions` (m), and keeps its deformation for
@@ -410,11 +378,7 @@ impl FiniteStrainModel {
         self.assert_length(from);
         self.assert_length(to);
         let constant = self.holes.iter().filter(|hole| !hole.pressure.is_gas());
-        let works = constant.map(|hole| {
-            let at = |positions| move |place| relative(&hole.nodes, place, positions);
-            let growth = hole.growth(at(from), at(to));
-            hole.thickness * hole.pressure.at(1.0) * growth
-        });
+        let works = constant.map(|hole| hole.work(from, to));
         works.sum()
     }
 

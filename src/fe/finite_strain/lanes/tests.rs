@@ -1,6 +1,6 @@
 use super::*;
-use crate::fe::finite_strain::cells::{deformation_gradient, gather as gather_one};
-use crate::fe::finite_strain::point::stress;
+use crate::fe::finite_strain::one_cell::{deformation_gradient, gather as gather_one};
+use crate::fe::finite_strain::point::{invariants, stress};
 use crate::fe::finite_strain::{
     Deformation, FiniteStrainDescription, FiniteStrainError, FiniteStrainModel,
 };

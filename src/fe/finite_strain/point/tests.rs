@@ -174,7 +174,7 @@ fn moduli_for_impulses_are_semidefinite_bounded_and_know_of_no_turn() {
             assert!(least_eigenvalue(moduli) > -1e-12 * size);
             let volume = 0.3 * kind.share(&gradient, &moduli, 0.3);
             let mut blocks = [[[0.0; 4]; 3]; 3];
-            crate::fe::finite_strain::cells::add_point(&gradient, &moduli, volume, &mut blocks);
+            crate::fe::finite_strain::one_cell::add_point(&gradient, &moduli, volume, &mut blocks);
             for (a, row) in blocks.iter().enumerate() {
                 assert!(
                     row[a][0] + row[a][3] <= 50.0 * (1.0 + 1e-12),
