@@ -1,17 +1,8 @@
+use super::tests::PAIR;
 use super::{Target, add_beyond};
 use crate::math::Vec2;
 use crate::path::samples::Random;
-use crate::path::{MemberPair, MotionKind, Path, Surfaces};
-
-const PAIR: MemberPair = MemberPair {
-    one: 0,
-    other: 1,
-    name: 7,
-    closing: 0.01,
-    margin: 0.01,
-    least: f64::INFINITY,
-    is_asleep: false,
-};
+use crate::path::{MotionKind, Path, Surfaces};
 
 /// Over a ridge there is nothing beyond the edge that a point is over; in a valley the line of the other one is.
 #[test]

@@ -1,17 +1,10 @@
 //! Rows of a member with itself.
 
+use super::tests::PAIR;
 use crate::math::Vec2;
 use crate::path::{MemberPair, MotionKind, Path, Surfaces, Target};
 
-const OWN: MemberPair = MemberPair {
-    one: 0,
-    other: 0,
-    name: 7,
-    closing: 0.01,
-    margin: 0.01,
-    least: f64::INFINITY,
-    is_asleep: false,
-};
+const OWN: MemberPair = MemberPair { other: 0, ..PAIR };
 
 #[test]
 fn a_member_against_itself_leaves_out_the_edges_of_a_point_but_not_their_ends() {
