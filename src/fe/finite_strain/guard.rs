@@ -20,7 +20,7 @@ use super::cells::CellGroup;
 use super::deformed::Deformed;
 use super::linearization::Linearization;
 use super::one_cell::{add_point, deformation_gradient, gather, scatter, subtract};
-use super::point::{Form, cofactor, invariants, law_moduli, middle};
+use super::point::{Form, cofactor, invariants, law_moduli};
 use crate::fe::element::{Element, MAX_NODES, Tri3, kinematics::physical_gradient};
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants};
 use crate::linalg::block_matrix::BlockMatrix;
@@ -283,10 +283,7 @@ impl CellGroup {
                         law: law.name(),
                     });
                 }
-                let at = match form {
-                    Form::Equilibrium => end,
-                    Form::EnergyMomentum { .. } => middle(start, end),
-                };
+                let at = form.gradient_of(start, end);
                 let slope = unit * slopes(form, before, after)[0];
                 let stress = cofactor(at).map(|part| slope * part);
                 let force = gradient
@@ -319,10 +316,7 @@ impl CellGroup {
                     Linearization::Consistent => slope,
                     Linearization::Definite | Linearization::Impulsive { .. } => 0.0,
                 };
-                let at = match form {
-                    Form::Equilibrium => end,
-                    Form::EnergyMomentum { .. } => middle(start, end),
-                };
+                let at = form.gradient_of(start, end);
                 // The area of what turns as a whole stays: no turn is resisted.
                 let moduli = law_moduli(at, [0.0, slope], [0.0, 0.0, rise / scale], scale);
                 let share = kind.share(gradient, &moduli, *unit);

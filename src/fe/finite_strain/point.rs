@@ -26,6 +26,15 @@ impl Form {
             Self::EnergyMomentum { .. } => 0.5,
         }
     }
+
+    /// The gradient that forces are taken at.
+    #[inline(always)]
+    pub(super) fn gradient_of<T: Number>(self, start: [T; 4], end: [T; 4]) -> [T; 4] {
+        match self {
+            Self::Equilibrium => end,
+            Self::EnergyMomentum { .. } => middle(start, end),
+        }
+    }
 }
 
 /// Four parts, written out: the closures of iterators are not always inlined, and then not in registers.
@@ -74,10 +83,7 @@ pub(super) fn stress_of_sums<T: Number>(
     [turned, rest]: [T; 2],
     [start, end]: [[T; 4]; 2],
 ) -> [T; 4] {
-    let at = match form {
-        Form::Equilibrium => end,
-        Form::EnergyMomentum { .. } => middle(start, end),
-    };
+    let at = form.gradient_of(start, end);
     let [xx, xy, yx, yy] = at;
     // Twice α, β, γ and δ of the two parts.
     let (turned, rest) = (turned * 0.5, rest * 0.5);
@@ -198,10 +204,7 @@ fn moduli_under<T: Number>(
     (pair, second): ([T; 2], [T; 3]),
     ([start, end], stress): ([[T; 4]; 2], [T; 3]),
 ) -> [[T; 4]; 4] {
-    let at = match form {
-        Form::Equilibrium => end,
-        Form::EnergyMomentum { .. } => middle(start, end),
-    };
+    let at = form.gradient_of(start, end);
     let mut moduli = law_moduli(at, pair, second, form.share_of_end());
     if let Form::EnergyMomentum { decay } = form
         && decay > 0.0
