@@ -146,6 +146,45 @@ mod tests {
         assert!(height < held - 0.3, "it falls: {height} m");
     }
 
+    /// Nothing else touches the ring, so over any time the pull of the mouse gives it its weight and what it gains in momentum.
+    #[test]
+    fn a_flexible_body_follows_the_mouse_which_pulls_with_its_weight() {
+        let mut playground = Playground::new().expect("a world");
+        let (ring, body) = playground.flex_bodies.iter().nth(2).expect("the ring");
+        let [x, y] = body.centre_of_mass();
+        let (node, weight) = (body.pick([x, y + 0.6]).node, 9.81 * body.mass());
+        let start = body.position(node);
+        lift(&mut playground, [x, y + 0.6]);
+        let Some(Held::Flexible { spring, .. }) = playground.held else {
+            panic!("the ring is held");
+        };
+        let before = playground.flex_bodies[ring].momentum();
+        let (mut pull, mut below) = ([0.0; 2], 0.0);
+        let n_steps = 60;
+        for _ in 0..n_steps {
+            playground.step().expect("a step");
+            let attached = playground.flex_bodies.attachment(spring).expect("a spring");
+            pull = [0, 1].map(|k| pull[k] + playground.dt() * attached.force()[k]);
+            below += start[1] + 1.0 - playground.flex_bodies[ring].position(node)[1];
+        }
+        let after = playground.flex_bodies[ring].momentum();
+        let seconds = f64::from(n_steps) * playground.dt();
+        let expected = [
+            after[0] - before[0],
+            after[1] - before[1] + weight * seconds,
+        ];
+        for (pull, expected) in pull.into_iter().zip(expected) {
+            let error = (pull - expected).abs() / (weight * seconds);
+            assert!(error < 1e-5, "{pull} N s against {expected} N s");
+        }
+        // It hangs under the cursor by what the weight stretches the spring.
+        let (below, stretch) = (below / f64::from(n_steps), 9.81 / (FREQUENCY * FREQUENCY));
+        assert!(
+            (below / stretch - 1.0).abs() < 0.05,
+            "{below} m against {stretch} m"
+        );
+    }
+
     #[test]
     fn a_rigid_box_follows_the_mouse_and_falls_when_let_go() {
         let mut playground = Playground::new().expect("a world");
