@@ -11,6 +11,7 @@
 //! | [`statics`] | equilibria and natural modes, without a world |
 //! | [`files`] | shapes from other programs, and results for them |
 //! | [`embedding`] | flexible bodies in an app that exists: events, joints, saving, sleep |
+//! | [`other_apps`] | rapier's testbed, macroquad, Bevy |
 //! | [`performance`] | what a step costs, and how to make it cost less |
 //! | [`soft_bodies`] | coming from rapier's own soft bodies |
 //! | [`equations`] | the equations of the source, and where each is computed |
@@ -25,6 +26,7 @@ pub mod first_beam;
 pub mod large_or_small;
 pub mod limits;
 pub mod mesh_and_step;
+pub mod other_apps;
 pub mod performance;
 pub mod reports;
 pub mod soft_bodies;
