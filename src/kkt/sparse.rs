@@ -397,7 +397,7 @@ impl Island {
             Response::Position | Response::Velocity => asked.unit,
             Response::Acceleration | Response::ByMass => asked.unit * asked.unit,
         };
-        // A fifth of what a pass accepts.
+        // A fifth of what a pass accepts at the most; where it accepts less, the solver goes by what the start misses, as it does.
         solver.settings.gap_tolerance = 0.2 * LARGE_TOLERANCE * self.path.least_margin() / unit;
         solver.settings.slip_tolerance = 1e-4;
         solver.settings.tolerance = 1e-6;

@@ -110,7 +110,8 @@ impl Proximal {
         let mut renewed = f64::INFINITY;
         let mut refined: Option<Measure> = None;
         let (mut best, mut last, mut n_idle) = (f64::INFINITY, f64::INFINITY, 0);
-        let mut measure = state.measure.take().unwrap_or_else(|| {
+        let known = state.measure.take();
+        let mut measure = known.unwrap_or_else(|| {
             reduced.measure(
                 problem,
                 &state.a,
@@ -122,7 +123,7 @@ impl Proximal {
         });
         if measure.is_within(settings, reduced.enough) {
             if measure.residual <= FINE * settings.tolerance {
-                state.measure = Some(measure);
+                state.measure = known;
                 return (Ending::Solved, measure);
             }
             // a factor at hand refines it: what rests would creep by the tolerance of every step

@@ -75,6 +75,8 @@ pub(super) struct System {
 
 impl System {
     /// Makes the pattern cover the rows and the factor of `A` fit its values.
+    ///
+    /// - `other`: whose pattern is taken over if it covers the rows and the one at hand does not.
     pub fn prepare(
         &mut self,
         problem: &ConeProblem,
