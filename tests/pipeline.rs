@@ -19,3 +19,5 @@ mod steering;
 mod support;
 #[path = "pipeline/time.rs"]
 mod time;
+#[path = "pipeline/wedged.rs"]
+mod wedged;
