@@ -88,7 +88,7 @@ impl EnergyReport {
     }
 }
 
-/// Wall-clock time of the stages (s); zero without the feature `timing`.
+/// Wall-clock time of the stages (s); zero without the feature `timing`, and on `wasm32-unknown-unknown`, which has no clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StageTimes {
     /// Rapier's step, and the one without length before it where there was one.
