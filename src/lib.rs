@@ -47,7 +47,7 @@ pub mod system;
 pub mod prelude {
     pub use crate::body::{
         Attachment, AttachmentBuilder, AttachmentHandle, ContactInertia, FlexBody, FlexBodyBuilder,
-        FlexBodyHandle, FlexBodySet, Pin,
+        FlexBodyHandle, FlexBodySet, Pin, PreStretch,
     };
     pub use crate::fe::finite_strain::InnerPressure;
     pub use crate::fe::material::hyperelastic::{

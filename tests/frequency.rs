@@ -12,6 +12,7 @@ use std::sync::Arc;
 fn model(mesh: Mesh, poisson: f64, mass_kind: MassKind, massless: Vec<bool>) -> Model {
     Model::assemble(ModelDescription {
         rest_positions: mesh.nodes().iter().flatten().copied().collect(),
+        placed_positions: Vec::new(),
         mesh: Arc::new(mesh),
         elements: Vec::new(),
         material: Arc::new(LinearElastic::plane_stress(YOUNG, poisson).density(DENSITY)),

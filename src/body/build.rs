@@ -25,25 +25,28 @@ impl FlexBodyBuilder {
         let (material, regions) = self.materials.clone().resolve(&mesh)?;
         let n_nodes = mesh.n_nodes();
         let is_fixed = self.fixed_dofs(n_nodes)?;
-        let turn = rotation(self.rotation);
-        let rest: Vec<f64> = mesh
-            .nodes()
-            .iter()
-            .flat_map(|&node| {
-                let placed = turn * Vec2::from(node) + self.translation;
-                [placed.x, placed.y]
-            })
-            .collect();
-        check_places(&rest)?;
+        let placed = self.place(&mesh, [1.0; 2]);
+        check_places(&placed)?;
+        let stretches = self.pre_stretches(&material, &regions)?;
+        let rest = stretches.map(|stretches| self.place(&mesh, stretches));
+        if let Some(rest) = &rest {
+            check_unstretched(rest)?;
+        }
+        let (rest, placed_positions) = match rest {
+            Some(rest) => (rest, placed.clone()),
+            None => (placed.clone(), Vec::new()),
+        };
         let large = self.large_description(&mesh, &rest, &material, &regions)?;
-        let frame = frame_of(&rest, &is_fixed, large.is_some()).ok_or(BuildError::RotatingPins)?;
+        let frame =
+            frame_of(&placed, &is_fixed, large.is_some()).ok_or(BuildError::RotatingPins)?;
         let massless = match large {
             // What the two ends of a step share of its stress lets nodes without mass swing for ever.
             Some(_) => vec![false; n_nodes],
             None => self.massless_nodes(&mesh, &is_fixed, frame)?,
         };
         let model = Model::assemble(ModelDescription {
-            rest_positions: rest.clone(),
+            rest_positions: rest,
+            placed_positions,
             mesh,
             elements: self.elements.clone(),
             material,
@@ -65,10 +68,41 @@ impl FlexBodyBuilder {
             self.contact,
             self.user_data,
         );
-        body.set_initial_velocity(&self.initial_velocity(&body, &rest)?);
+        body.set_initial_velocity(&self.initial_velocity(&body, &placed)?);
         body.load(nodal_force, self.body_force, self.gravity_scale);
         body.n_idle_pins = self.n_idle_pins;
         Ok(body)
+    }
+
+    /// The nodes in the world's axes, interleaved (m), of the body that is the mesh when it is stretched so along the axes of the mesh.
+    fn place(&self, mesh: &Mesh, stretches: [f64; 2]) -> Vec<f64> {
+        let about = middle(mesh.nodes());
+        let turn = rotation(self.rotation);
+        let place = |node: &[f64; 2]| {
+            // Not shrunk: to the last digit as it is drawn.
+            let own = |axis: usize| {
+                node[axis] - (1.0 - 1.0 / stretches[axis]) * (node[axis] - about[axis])
+            };
+            let placed = turn * Vec2::new(own(0), own(1)) + self.translation;
+            [placed.x, placed.y]
+        };
+        mesh.nodes().iter().flat_map(place).collect()
+    }
+
+    /// How far the body is stretched where it is built; `None` if it is not.
+    fn pre_stretches(
+        &self,
+        material: &Arc<dyn Material>,
+        regions: &[(u32, Arc<dyn Material>)],
+    ) -> Result<Option<[f64; 2]>, BuildError> {
+        match self.pre_stretch {
+            None => Ok(None),
+            Some(_) if self.is_large == Some(false) => Err(BuildError::PreStretchSmallStrain),
+            Some(asked) => {
+                let stretches = asked.stretches(material, regions)?;
+                Ok(Some(stretches).filter(|stretches| *stretches != [1.0; 2]))
+            }
+        }
     }
 
     /// The body of large strain: unless the user has said otherwise, wherever there is a law and nothing is asked for that such bodies have
@@ -96,7 +130,8 @@ impl FlexBodyBuilder {
         let mut materials = regions.iter().map(|(_, own)| own).chain([material]);
         let is_asked = self.is_large == Some(true)
             || materials.any(|own| own.hyperelastic().is_some())
-            || !pressures.is_empty();
+            || !pressures.is_empty()
+            || self.pre_stretch.is_some();
         let description = FiniteStrainDescription::of_material(
             Arc::clone(mesh),
             rest.to_vec(),
@@ -134,6 +169,9 @@ impl FlexBodyBuilder {
     }
 
     fn check_numbers(&self) -> Result<(), BuildError> {
+        if let Some(pre_stretch) = &self.pre_stretch {
+            pre_stretch.check()?;
+        }
         let finite = "give a finite number";
         let positive = "give zero or a positive finite number";
         let numbers = [
@@ -280,11 +318,11 @@ impl FlexBodyBuilder {
         Ok(force)
     }
 
-    fn initial_velocity(&self, body: &FlexBody, rest: &[f64]) -> Result<Vec<f64>, BuildError> {
-        let n_nodes = rest.len() / 2;
+    fn initial_velocity(&self, body: &FlexBody, placed: &[f64]) -> Result<Vec<f64>, BuildError> {
+        let n_nodes = placed.len() / 2;
         let centre: Vec2 = body.centre_of_mass().into();
-        let mut velocity = Vec::with_capacity(rest.len());
-        for point in rest.chunks_exact(2) {
+        let mut velocity = Vec::with_capacity(placed.len());
+        for point in placed.chunks_exact(2) {
             let v = self.linvel + self.angvel * perp(Vec2::new(point[0], point[1]) - centre);
             velocity.extend([v.x, v.y]);
         }
@@ -331,6 +369,29 @@ fn check_places(rest: &[f64]) -> Result<(), BuildError> {
         }),
         None => Ok(()),
     }
+}
+
+/// Refuses stretches after which nothing is left of the body, or more than rapier's precision can hold.
+fn check_unstretched(rest: &[f64]) -> Result<(), BuildError> {
+    match rest.iter().find(|x| !is_held(**x)) {
+        Some(&value) => Err(BuildError::Number {
+            name: "a coordinate of the stress-free shape",
+            value,
+            cure: "give a pre-stretch nearer to one",
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The middle of the box around points (m).
+fn middle(points: &[[f64; 2]]) -> [f64; 2] {
+    [0, 1].map(|axis| {
+        let along = points.iter().map(|point| point[axis]);
+        let ends = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+            [low.min(x), high.max(x)]
+        });
+        0.5 * ends[0] + 0.5 * ends[1]
+    })
 }
 
 /// Mass (kg) and trace of the stiffness (N/m) beyond which products of theirs overflow, or vanish.

@@ -4,6 +4,7 @@ use super::contact_inertia::ContactInertia;
 use super::contact_settings::ContactSettings;
 use super::materials::Materials;
 use super::pin::Pin;
+use super::pre_stretch::PreStretch;
 use super::region::Region;
 use crate::fe::element::Element;
 use crate::fe::finite_strain::InnerPressure;
@@ -39,6 +40,7 @@ pub struct FlexBodyBuilder {
     /// Whether the body is one of large strain, if the user has said so.
     pub(super) is_large: Option<bool>,
     pub(super) inner_pressure: Option<InnerPressure>,
+    pub(super) pre_stretch: Option<PreStretch>,
     pub(super) thickness: f64,
     pub(super) mass_kind: MassKind,
     pub(super) contact_inertia: ContactInertia,
@@ -105,6 +107,7 @@ impl FlexBodyBuilder {
             materials: Materials::default(),
             is_large: None,
             inner_pressure: None,
+            pre_stretch: None,
             thickness: 1.0,
             mass_kind: MassKind::default(),
             contact_inertia: ContactInertia::default(),
@@ -201,7 +204,32 @@ impl FlexBodyBuilder {
         self
     }
 
-    /// Thickness out of the plane (m); 1 by default.
+    /// Builds the body under tension, or pressure: where its mesh is, it is stretched so far along the axes of the mesh. The body is one of large strain.
+    ///
+    /// Moduli, density, thickness and the gas of [`inner_pressure`](Self::inner_pressure) are those of the stress-free shape, which is the mesh shrunk by the
+    /// stretches: the mass is less by as much. Displacements count from the mesh. What holds the tension is up to pins and attachments.
+    ///
+    /// ```
+    /// use foil2d::prelude::*;
+    /// let string = FlexBodyBuilder::rectangle([1.0, 0.01], [50, 1])
+    ///     .material(LinearElastic::plane_stress(2e9, 0.0).density(1100.0))
+    ///     .pre_stretch(PreStretch::along_x(1.02))
+    ///     .pin_where(|[x, _]| x == 0.0 || x == 1.0, Pin::both())
+    ///     .build()?;
+    /// // Neo-Hookean, without contraction: σ = E/2 (λ - 1/λ).
+    /// let tension = string.stress()?[60].xx;
+    /// assert!((tension / (1e9 * (1.02 - 1.0 / 1.02)) - 1.0).abs() < 1e-9);
+    /// // As a string has it, and some bending: √(σ/ρ)/2L, in Hz.
+    /// let lowest = string.natural_modes(1, 1e-8)?.frequencies()[0] / std::f64::consts::TAU;
+    /// assert!((lowest / (0.5 * (tension * 1.02 / 1100.0).sqrt()) - 1.0).abs() < 0.05);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn pre_stretch(mut self, pre_stretch: impl Into<PreStretch>) -> Self {
+        self.pre_stretch = Some(pre_stretch.into());
+        self
+    }
+
+    /// Thickness out of the plane (m), free of stress; 1 by default.
     pub fn thickness(mut self, thickness: f64) -> Self {
         self.thickness = thickness;
         self

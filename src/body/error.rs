@@ -60,6 +60,42 @@ pub enum BuildError {
         "the mesh has no hole for an inner pressure: take an annulus or a polygon with holes, or leave `.inner_pressure` out"
     )]
     NoHole,
+    /// A body of small strain that is to be stretched where it is built.
+    #[error(
+        "a pre-stretch needs a body of large strain, whose stiffness knows of stress: leave `.small_strain()` out"
+    )]
+    PreStretchSmallStrain,
+    /// The law has no state as stretched, or under as much stress, as asked for.
+    #[error(
+        "the law `{law}` has no state with the pre-stretch or stress {asked:?}: give less, or take a law that bears it"
+    )]
+    PreStretchBeyond {
+        /// Name of the law.
+        law: &'static str,
+        /// Stretches (-) or stresses (Pa) along x and y; a stretch along one axis twice.
+        asked: [f64; 2],
+    },
+    /// The material flows as stretched as asked for.
+    #[error(
+        "the material flows by the law `{law}` at the pre-stretches {stretches:?}: stay below its yield stress"
+    )]
+    PreStretchFlows {
+        /// Name of the law.
+        law: &'static str,
+        /// Stretches along x and y (-).
+        stretches: [f64; 2],
+    },
+    /// Regions of one body would be stretched in different ways.
+    #[error(
+        "under the stress of the pre-stretch, region {region} would have the stretches {:?} and others {:?}, which do not fit together: give both stretches, `.pre_stretch([x, y])`",
+        .stretches[1], .stretches[0]
+    )]
+    PreStretchRegion {
+        /// The region.
+        region: u32,
+        /// Stretches along x and y (-) of the rest of the body, and of the region.
+        stretches: [[f64; 2]; 2],
+    },
     /// No material was given.
     #[error(
         "the body has no material: call `.material(LinearElastic::plane_stress(E, nu).density(rho))`"

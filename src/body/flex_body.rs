@@ -179,7 +179,8 @@ impl FlexBody {
 
     /// Displacement of a node from where it was built (m).
     pub fn displacement(&self, node: usize) -> [f64; 2] {
-        (node_vec(&self.state.position, node) - node_vec(self.model.rest_positions(), node)).into()
+        (node_vec(&self.state.position, node) - node_vec(self.model.placed_positions(), node))
+            .into()
     }
 
     /// Velocity of a node (m/s).

@@ -40,7 +40,7 @@ pub struct Arms {
 impl Arms {
     /// Measures a model about the centre that `frame` turns about.
     pub fn new(model: &Model, frame: Frame) -> Self {
-        let rest = model.rest_positions();
+        let rest = model.placed_positions();
         let node_mass = model.mass().node_sums();
         let mass: f64 = node_mass.iter().sum();
         let origin = match frame {

@@ -21,6 +21,7 @@ mod frame;
 mod handle;
 mod materials;
 mod pin;
+mod pre_stretch;
 #[cfg(feature = "serde-serialize")]
 mod record;
 mod region;
@@ -44,6 +45,7 @@ pub use flex_body::FlexBody;
 pub use frame::{Arms, Frame, frame_of};
 pub use handle::FlexBodyHandle;
 pub use pin::Pin;
+pub use pre_stretch::PreStretch;
 #[cfg(feature = "serde-serialize")]
 pub(crate) use record::{SetRecord, SetRecordError};
 pub use region::Region;

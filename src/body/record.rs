@@ -121,7 +121,7 @@ impl BodyRecord {
             return Err(ModelRecordError::Length("the positions of the tangent"));
         }
         let is_large = large.is_some();
-        let frame: Option<Frame> = frame_of(model.rest_positions(), &self.is_fixed, is_large);
+        let frame: Option<Frame> = frame_of(model.placed_positions(), &self.is_fixed, is_large);
         let frame = frame.ok_or(ModelRecordError::Length("pins"))?;
         Ok(FlexBody {
             arms: Arms::new(&model, frame),

@@ -134,12 +134,16 @@ pub struct FlexState {
 }
 
 impl FlexState {
-    /// A body at rest in its reference placement, where gases that are shut in have energy.
+    /// A body that does not move where it was built; it has energy where it is stretched there, and where gases are shut in.
     pub(super) fn at_rest(model: &Model, large: Option<&FiniteStrainModel>, centre: Vec2) -> Self {
-        let rest = model.rest_positions();
-        let zeros = vec![0.0; rest.len()];
+        let placed = model.placed_positions();
+        let energy = |large: &FiniteStrainModel| match model.is_placed_at_rest() {
+            true => large.rest_energy(),
+            false => large.energy_after(placed, &large.virgin()).stored,
+        };
+        let zeros = vec![0.0; placed.len()];
         Self {
-            position: rest.to_vec(),
+            position: placed.to_vec(),
             velocity: zeros.clone(),
             frame: FrameMotion {
                 centre,
@@ -151,7 +155,7 @@ impl FlexState {
             loads: KnownLoads::default(),
             torque: 0.0,
             kinetic_energy: 0.0,
-            elastic_energy: large.map_or(0.0, |large| large.rest_energy()),
+            elastic_energy: large.map_or(0.0, energy),
             flowed: Vec::new(),
             flow_energy: 0.0,
             linearized: Linearized::default(),

@@ -27,7 +27,7 @@ pub(crate) fn contact_offset(model: &Model, extent: f64) -> f64 {
 
 /// Shortest boundary segment at rest (m).
 fn shortest_edge(model: &Model) -> f64 {
-    let rest = model.rest_positions();
+    let rest = model.placed_positions();
     let segments = model.mesh().boundary().segments().iter();
     let lengths = segments.map(|[a, b]| (node_vec(rest, *b) - node_vec(rest, *a)).norm_squared());
     lengths.fold(f64::INFINITY, f64::min).sqrt()

@@ -110,7 +110,7 @@ impl FlexCores {
     /// Draws a surface inwards; returns by how much (m).
     fn draw(&mut self, body: &FlexBlock, inset: Inset) -> f64 {
         let boundary = body.model().mesh().boundary();
-        let rest = body.model().rest_positions();
+        let rest = body.model().placed_positions();
         self.ring.clear();
         let mut round = inset.length;
         for own in boundary.loops() {

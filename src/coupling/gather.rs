@@ -144,7 +144,7 @@ impl Gatherer {
                 outcome.is_ok()
             });
         }
-        let rest = body.model().rest_positions();
+        let rest = body.model().placed_positions();
         let pins = sources
             .under_way
             .pins(index, settings.span, rest, body.prescribed());

@@ -117,6 +117,19 @@ impl Model {
         &self.description.rest_positions
     }
 
+    /// Where the body was built, in the world's axes, interleaved (m): at rest, but for a body that is stretched there.
+    pub fn placed_positions(&self) -> &[f64] {
+        match self.is_placed_at_rest() {
+            true => self.rest_positions(),
+            false => &self.description.placed_positions,
+        }
+    }
+
+    /// Whether the body was built without strains.
+    pub fn is_placed_at_rest(&self) -> bool {
+        self.description.placed_positions.is_empty()
+    }
+
     /// The stiffness matrix `K` (N/m).
     pub fn stiffness(&self) -> &BlockMatrix {
         &self.stiffness

@@ -45,8 +45,10 @@ pub enum ModelError {
 pub struct ModelDescription {
     /// Nodes and cells, in the body's reference placement.
     pub mesh: Arc<Mesh>,
-    /// Reference positions of the nodes in the world's axes, interleaved (m): the mesh, placed.
+    /// Unstrained positions of the nodes in the world's axes, interleaved (m): the mesh, placed.
     pub rest_positions: Vec<f64>,
+    /// Where the nodes are when the body is built, in the world's axes, interleaved (m): displacements count from there. Empty where that is at rest.
+    pub placed_positions: Vec<f64>,
     /// Elements that replace the default ones of their node count.
     pub elements: Vec<Arc<dyn Element>>,
     /// The constitutive law, but for the regions that follow.

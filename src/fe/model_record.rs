@@ -53,6 +53,8 @@ pub(crate) struct ModelRecord {
     nodes: Vec<[f64; 2]>,
     cells: Vec<(CellKind, Vec<usize>)>,
     rest_positions: Vec<f64>,
+    /// None where the body was built at rest.
+    placed_positions: Vec<f64>,
     elements: Vec<ElementRecord>,
     material: MaterialRecord,
     /// Region of every cell, names of regions, and their materials.
@@ -89,6 +91,7 @@ impl ModelRecord {
                 .map(|cell| (cell.kind, cell.nodes.to_vec()))
                 .collect(),
             rest_positions: description.rest_positions.clone(),
+            placed_positions: description.placed_positions.clone(),
             elements: elements?,
             material: record_of(&description.material)?,
             cell_regions: mesh.cells().map(|cell| cell.region).collect(),
@@ -116,6 +119,9 @@ impl ModelRecord {
         if self.rest_positions.len() != 2 * n_nodes {
             return Err(ModelRecordError::Length("rest positions"));
         }
+        if ![0, 2 * n_nodes].contains(&self.placed_positions.len()) {
+            return Err(ModelRecordError::Length("placed positions"));
+        }
         if [&self.massless, &self.held].map(Vec::len) != [n_nodes; 2] {
             return Err(ModelRecordError::Length("flags"));
         }
@@ -134,6 +140,7 @@ impl ModelRecord {
         let model = Model::assemble(ModelDescription {
             mesh: Arc::new(mesh),
             rest_positions: self.rest_positions,
+            placed_positions: self.placed_positions,
             elements: elements?,
             material,
             regions: regions.collect::<Result<_, ModelRecordError>>()?,

@@ -110,7 +110,7 @@ mod tests {
         let mut state = body.state().clone();
         let started = block.start(step, &mut state, &load);
         assert!(started.is_ok() && block.predict(step, &state, &load).is_ok());
-        let rest = body.model().rest_positions();
+        let rest = body.model().placed_positions();
         let upper = (0..body.model().n_nodes()).filter(|node| rest[2 * node + 1] > 0.8 - 1e-9);
         let middle = upper.min_by(|a, b| {
             let off = |node: &usize| (rest[2 * node] - 0.5).abs();

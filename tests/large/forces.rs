@@ -242,6 +242,7 @@ fn a_quadrilateral_at_rest_answers_as_with_its_inner_modes() {
         let small = Model::assemble(ModelDescription {
             mesh: Arc::clone(&description.mesh),
             rest_positions: description.rest_positions.clone(),
+            placed_positions: Vec::new(),
             elements: Vec::new(),
             material: Arc::new(constants.linear(1000.0)),
             regions: Vec::new(),

@@ -25,6 +25,7 @@ pub fn describe(
 ) -> Model {
     Model::assemble(ModelDescription {
         rest_positions: mesh.nodes().iter().flatten().copied().collect(),
+        placed_positions: Vec::new(),
         mesh: Arc::new(mesh),
         elements: Vec::new(),
         material: Arc::new(material),

@@ -89,7 +89,7 @@ impl FeasiblePath {
         let asked = way.closing + way.reach;
         let points = &self.surfaces.points()[self.surfaces.members()[member].points.clone()];
         let first = self.references.len();
-        let rest = body.model().rest_positions();
+        let rest = body.model().placed_positions();
         let nodes = body.model().mesh().boundary().nodes().iter();
         self.references
             .extend(nodes.map(|&node| node_vec(rest, node)));

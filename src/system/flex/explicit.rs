@@ -110,7 +110,7 @@ impl Explicit {
         self.accelerate(shared, true);
         let dt = shared.step.dt;
         let half = 0.5 * dt * dt;
-        let rest = shared.shape.model.rest_positions();
+        let rest = shared.shape.model.placed_positions();
         for (dof, free) in self.free_position.iter_mut().enumerate() {
             *free = if shared.shape.is_fixed[dof] {
                 rest[dof] + shared.loads.prescribed[dof]

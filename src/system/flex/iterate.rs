@@ -58,7 +58,7 @@ impl Iterate {
     /// Writes the world positions of displacements in the frame.
     pub fn place(&mut self, shape: &Shape) {
         if shape.kind == Frame::Fixed {
-            let rest = shape.model.rest_positions();
+            let rest = shape.model.placed_positions();
             let places = self.position.iter_mut().zip(rest);
             for ((x, rest), u) in places.zip(&self.displacement) {
                 *x = rest + u;

@@ -64,7 +64,10 @@ pub(super) fn take_up_load(shared: &mut Shared, known: &KnownLoads) {
 /// velocity of its pins from step to step.
 pub(super) fn take_up_jump(shared: &mut Shared) {
     let dt = shared.step.dt;
-    let (rest, start) = (shared.shape.model.rest_positions(), &shared.start.position);
+    let (rest, start) = (
+        shared.shape.model.placed_positions(),
+        &shared.start.position,
+    );
     let jump = |dof: usize| {
         (rest[dof] + shared.loads.prescribed[dof] - start[dof]) / dt - shared.start.velocity[dof]
     };

@@ -26,7 +26,7 @@ pub(super) struct Shape {
 impl Shape {
     /// Measures a model whose dofs in `is_fixed` are pinned.
     pub fn new(model: Arc<Model>, is_fixed: Vec<bool>, kind: Frame) -> Self {
-        let rest = model.rest_positions();
+        let rest = model.placed_positions();
         Self {
             arms: Arms::new(&model, kind),
             kind,
@@ -150,7 +150,7 @@ fn clearance_of(model: &Model) -> f64 {
     let boundary = model.mesh().boundary();
     let nodes = boundary.nodes().iter();
     let points: Vec<Vec2> = nodes
-        .map(|&node| node_vec(model.rest_positions(), node))
+        .map(|&node| node_vec(model.placed_positions(), node))
         .collect();
     // Segment k starts at boundary node k.
     let edges: Vec<[u32; 2]> = (0..boundary.segments().len())

@@ -114,7 +114,7 @@ impl Shared {
     /// Puts held dofs where they are at the end of the step.
     pub fn place_pins(&mut self) {
         for &dof in &self.shape.fixed_dofs {
-            let rest = self.shape.model.rest_positions()[dof];
+            let rest = self.shape.model.placed_positions()[dof];
             self.now.position[dof] = rest + self.loads.prescribed[dof];
         }
     }

@@ -182,7 +182,7 @@ impl LargeStrain {
                 .now
                 .position
                 .iter()
-                .zip(shared.shape.model.rest_positions());
+                .zip(shared.shape.model.placed_positions());
             for (u, (x, rest)) in state.displacement.iter_mut().zip(pairs) {
                 *u = x - rest;
             }

@@ -156,7 +156,7 @@ impl SmallStrain {
                 .now
                 .position
                 .iter()
-                .zip(shared.shape.model.rest_positions());
+                .zip(shared.shape.model.placed_positions());
             for (u, (x, rest)) in shared.now.displacement.iter_mut().zip(pairs) {
                 *u = x - rest;
             }
