@@ -1,12 +1,12 @@
-//! A ball on a trampoline: a strip between two posts that is pulled taut, and the same strip slack.
+//! A ball on a trampoline: a strip between two posts that is built taut, and the same strip slack.
 //!
 //! ```text
 //!                 O   ball, 20 kg, falls 1 m
 //!   |<--=========================-->|
-//!   |        3 m, 8 mm thick        |     the ends are pinned, and drawn apart
+//!   |        3 m, 8 mm thick        |     the ends are pinned, 3.3 m from each other
 //! ```
 //!
-//! The pins move the ends apart before the ball comes: tension before the load, as of any net. How deep the ball goes follows from energy: what
+//! `pre_stretch` builds it under tension: as long as its posts are apart, and a tenth less free of stress. How deep the ball goes follows from energy: what
 //! it loses in height the strip stores.
 
 pub mod support;
@@ -29,16 +29,14 @@ const YOUNG: f64 = 2e6;
 const MASS: f64 = 20.0;
 const RADIUS: f64 = 0.15;
 const DROP: f64 = 1.0;
-/// How far each end is drawn (m).
-const DRAWN: f64 = 0.15;
-/// Steps of drawing and of bouncing.
-const DRAW: usize = 60;
-const BOUNCE: usize = 300;
+/// How much longer than free of stress the taut strip is (-).
+const STRETCH: f64 = 1.1;
+const STEPS: usize = 300;
 
 /// Headline numbers.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Outcome {
-    /// On the strip that is pulled taut.
+    /// On the strip that is built taut.
     pub taut: Bounce,
     /// On the same one as it is.
     pub slack: Bounce,
@@ -47,7 +45,7 @@ pub struct Outcome {
 /// What one ball does.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Bounce {
-    /// Tension before the ball comes (N), and what the neo-Hookean law that is Hooke's at rest says of a strip without weight: `E w h (λ - 1/λ)/2`.
+    /// Tension in the first step (N), and what the neo-Hookean law that is Hooke's at rest says: `E w h (λ - 1/λ)/2`.
     pub tension_n: [f64; 2],
     /// How deep the ball's lowest point goes below the posts (m), and what energy says of two straight threads without weight that obey Hooke's law.
     pub depth_m: [f64; 2],
@@ -67,21 +65,20 @@ struct Scene {
     pipeline: FlexPipeline,
     strip: FlexBodyHandle,
     ball: RigidBodyHandle,
-    /// Pinned nodes, and which way they are drawn.
-    ends: Vec<(usize, f64)>,
+    /// Pinned nodes of the right end.
+    right: Vec<usize>,
 }
 
 impl Scene {
-    fn new() -> Result<Self, Box<dyn Error>> {
+    /// A strip that is so much longer than free of stress.
+    fn new(stretch: f64) -> Result<Self, Box<dyn Error>> {
         let mut world = PhysicsWorld::new();
         world.gravity = Vector::new(0.0, -GRAVITY as Real);
         world.integration_parameters.dt = DT as Real;
         let at = HEIGHT + RADIUS + DROP;
-        // It waits above until the strip is taut.
         let (ball, _) = world.insert(
             RigidBodyBuilder::dynamic()
                 .translation(Vector::new(0.0, at as Real))
-                .gravity_scale(0.0)
                 .can_sleep(false),
             ColliderBuilder::ball(RADIUS as Real)
                 .mass(MASS as Real)
@@ -89,39 +86,29 @@ impl Scene {
         );
         let mut flex_bodies = FlexBodySet::new();
         let net = LinearElastic::plane_stress(YOUNG, 0.0).density(300.0);
-        let is_end = |[x, _]: [f64; 2]| !(1e-9..=LENGTH - 1e-9).contains(&x);
+        let span = stretch * LENGTH;
+        let is_right = move |[x, _]: [f64; 2]| x > span - 1e-9;
         let strip = flex_bodies.insert(
-            FlexBodyBuilder::rectangle([LENGTH, THICKNESS], [60, 1])
+            FlexBodyBuilder::rectangle([span, THICKNESS], [60, 1])
                 .material(net.rayleigh(1e-4))
                 .thickness(WIDTH)
-                .translation([-0.5 * LENGTH, HEIGHT - THICKNESS])
+                .pre_stretch(PreStretch::along_x(stretch))
+                .translation([-0.5 * span, HEIGHT - THICKNESS])
                 .friction(0.3)
-                .pin_where(is_end, Pin::both()),
+                .pin_where(move |at| at[0] < 1e-9 || is_right(at), Pin::both()),
             &mut world,
         )?;
         let nodes = flex_bodies[strip].mesh().nodes().iter().enumerate();
-        let ends = nodes.filter(|(_, at)| is_end(**at));
-        let ends = ends
-            .map(|(node, [x, _])| (node, (x - 0.5 * LENGTH).signum()))
-            .collect();
+        let right = nodes.filter(|(_, at)| is_right(**at));
+        let right = right.map(|(node, _)| node).collect();
         Ok(Self {
             world,
             flex_bodies,
             pipeline: FlexPipeline::new(),
             strip,
             ball,
-            ends,
+            right,
         })
-    }
-
-    fn draw_ends(&mut self, by: f64) -> Result<(), Box<dyn Error>> {
-        let Some(strip) = self.flex_bodies.get_mut(self.strip) else {
-            return Ok(());
-        };
-        for &(node, side) in &self.ends {
-            strip.set_pin_displacement(node, [side * by, 0.0])?;
-        }
-        Ok(())
     }
 
     /// Height of the ball's lowest point above the posts (m).
@@ -145,15 +132,15 @@ impl Scene {
     /// Force that holds the right end, along the strip (N).
     fn tension(&self) -> f64 {
         let strip = &self.flex_bodies[self.strip];
-        let right = self.ends.iter().filter(|(_, side)| *side > 0.0);
-        right.map(|&(node, _)| strip.reaction(node)[0]).sum()
+        let right = self.right.iter();
+        right.map(|&node| strip.reaction(node)[0]).sum()
     }
 
     fn draw(&self, film: &mut Film, time: f64) -> Result<(), Box<dyn Error>> {
         let strip = &self.flex_bodies[self.strip];
         let panel = film.panel(format!("{time:.2} s"));
         for side in [-1.0, 1.0] {
-            let x = side * (0.5 * LENGTH + DRAWN);
+            let x = side * 0.5 * STRETCH * LENGTH;
             panel.line(
                 [[x, 0.0], [x, HEIGHT]],
                 "stroke=\"#555\" stroke-width=\"4\"",
@@ -189,49 +176,41 @@ fn depth_of_threads(half: f64) -> f64 {
 }
 
 fn bounce(
-    drawn: f64,
+    stretch: f64,
     n_steps: usize,
     mut film: Option<&mut Film>,
 ) -> Result<Bounce, Box<dyn Error>> {
-    let mut scene = Scene::new()?;
-    let half = 0.5 * LENGTH + drawn;
-    let stretch = half / (0.5 * LENGTH);
+    let mut scene = Scene::new(stretch)?;
     let expected = 0.5 * YOUNG * WIDTH * THICKNESS * (stretch - 1.0 / stretch);
     let mut bounce = Bounce {
-        depth_m: [0.0, depth_of_threads(half)],
+        depth_m: [0.0, depth_of_threads(0.5 * stretch * LENGTH)],
         tension_n: [0.0, expected],
         ..Bounce::default()
     };
     let brought = MASS * GRAVITY * (DROP + bounce.depth_m[1]);
-    let (mut begin, mut lowest, mut is_back, mut highest) = (0.0, 0.0f64, false, 0.0f64);
+    let begin = scene.energy();
+    let (mut lowest, mut is_back, mut highest) = (0.0f64, false, 0.0f64);
     for step in 0..n_steps {
-        if step < DRAW {
-            scene.draw_ends(drawn * (step + 1) as f64 / DRAW as f64)?;
-        } else if step == DRAW {
-            bounce.tension_n[0] = scene.tension();
-            begin = scene.energy();
-            scene.world.bodies[scene.ball].set_gravity_scale(1.0, true);
-        }
         let report = scene
             .pipeline
             .step(&mut scene.world, &mut scene.flex_bodies)?;
+        if step == 0 {
+            bounce.tension_n[0] = scene.tension();
+        }
         bounce.unsolved += usize::from(report.quality() != Quality::Solved);
         bounce.max_penetration_m = bounce.max_penetration_m.max(report.gap_violation());
-        if step > DRAW {
-            let gained = (scene.energy() - begin) / brought;
-            bounce.energy_gained = bounce.energy_gained.max(gained);
-            lowest = lowest.min(scene.height());
-            is_back |= lowest < 0.0 && scene.height() > 0.0;
-            if is_back {
-                highest = highest.max(scene.height());
-            }
+        let gained = (scene.energy() - begin) / brought;
+        bounce.energy_gained = bounce.energy_gained.max(gained);
+        lowest = lowest.min(scene.height());
+        is_back |= lowest < 0.0 && scene.height() > 0.0;
+        if is_back {
+            highest = highest.max(scene.height());
         }
         if let Some(film) = film.as_deref_mut()
-            && step > DRAW
-            && step % 20 == 0
-            && step < DRAW + 180
+            && step % 20 == 19
+            && step < 180
         {
-            scene.draw(film, (step - DRAW) as f64 * DT)?;
+            scene.draw(film, (step + 1) as f64 * DT)?;
         }
     }
     bounce.depth_m[0] = -lowest;
@@ -241,10 +220,10 @@ fn bounce(
 
 /// Both strips; pictures of the taut one go to `film` if there is one.
 pub fn run(options: &Options, film: Option<&mut Film>) -> Result<Outcome, Box<dyn Error>> {
-    let n_steps = options.n_steps(DRAW + BOUNCE);
+    let n_steps = options.n_steps(STEPS);
     Ok(Outcome {
-        taut: bounce(DRAWN, n_steps, film)?,
-        slack: bounce(0.0, n_steps, None)?,
+        taut: bounce(STRETCH, n_steps, film)?,
+        slack: bounce(1.0, n_steps, None)?,
     })
 }
 
@@ -261,7 +240,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         longest: 0.5,
     };
     let notes =
-        vec!["A strip of 3 m by 8 mm, 2 MPa, drawn by a tenth; a ball of 20 kg.".to_owned()];
+        vec!["A strip of 3 m by 8 mm, 2 MPa, built longer by a tenth; a ball of 20 kg.".to_owned()];
     let film = Film::new("Trampoline", notes, view, legend);
     film.record("trampoline", run)
 }

@@ -5,13 +5,14 @@ use super::contact_inertia::ContactInertia;
 use super::error::BuildError;
 use super::flex_body::FlexBody;
 use super::frame::{Frame, frame_of};
+use super::placing;
 use crate::fe::finite_strain::{
     FiniteStrainDescription, FiniteStrainError, FiniteStrainModel, InnerPressure,
 };
 use crate::fe::material::Material;
 use crate::fe::mesh::Mesh;
 use crate::fe::model::{MassKind, Model, ModelDescription};
-use crate::math::{Vec2, is_held, perp, rotation};
+use crate::math::{Vec2, is_held, perp};
 use std::sync::Arc;
 
 impl FlexBodyBuilder {
@@ -25,12 +26,13 @@ impl FlexBodyBuilder {
         let (material, regions) = self.materials.clone().resolve(&mesh)?;
         let n_nodes = mesh.n_nodes();
         let is_fixed = self.fixed_dofs(n_nodes)?;
-        let placed = self.place(&mesh, [1.0; 2]);
-        check_places(&placed)?;
+        let pose = (self.rotation, self.translation);
+        let placed = placing::placed(&mesh, pose, [1.0; 2]);
+        placing::check_places(&placed)?;
         let stretches = self.pre_stretches(&material, &regions)?;
-        let rest = stretches.map(|stretches| self.place(&mesh, stretches));
+        let rest = stretches.map(|stretches| placing::placed(&mesh, pose, stretches));
         if let Some(rest) = &rest {
-            check_unstretched(rest)?;
+            placing::check_unstretched(rest)?;
         }
         let (rest, placed_positions) = match rest {
             Some(rest) => (rest, placed.clone()),
@@ -72,21 +74,6 @@ impl FlexBodyBuilder {
         body.load(nodal_force, self.body_force, self.gravity_scale);
         body.n_idle_pins = self.n_idle_pins;
         Ok(body)
-    }
-
-    /// The nodes in the world's axes, interleaved (m), of the body that is the mesh when it is stretched so along the axes of the mesh.
-    fn place(&self, mesh: &Mesh, stretches: [f64; 2]) -> Vec<f64> {
-        let about = middle(mesh.nodes());
-        let turn = rotation(self.rotation);
-        let place = |node: &[f64; 2]| {
-            // Not shrunk: to the last digit as it is drawn.
-            let own = |axis: usize| {
-                node[axis] - (1.0 - 1.0 / stretches[axis]) * (node[axis] - about[axis])
-            };
-            let placed = turn * Vec2::new(own(0), own(1)) + self.translation;
-            [placed.x, placed.y]
-        };
-        mesh.nodes().iter().flat_map(place).collect()
     }
 
     /// How far the body is stretched where it is built; `None` if it is not.
@@ -356,42 +343,6 @@ impl FlexBodyBuilder {
         }
         Ok(velocity)
     }
-}
-
-/// Refuses nodes that rapier's precision cannot hold.
-fn check_places(rest: &[f64]) -> Result<(), BuildError> {
-    let place = |node: usize| [rest[2 * node], rest[2 * node + 1]];
-    let is_lost = |&node: &usize| !place(node).into_iter().all(is_held);
-    match (0..rest.len() / 2).find(is_lost) {
-        Some(node) => Err(BuildError::Place {
-            node,
-            place: place(node),
-        }),
-        None => Ok(()),
-    }
-}
-
-/// Refuses stretches after which nothing is left of the body, or more than rapier's precision can hold.
-fn check_unstretched(rest: &[f64]) -> Result<(), BuildError> {
-    match rest.iter().find(|x| !is_held(**x)) {
-        Some(&value) => Err(BuildError::Number {
-            name: "a coordinate of the stress-free shape",
-            value,
-            cure: "give a pre-stretch nearer to one",
-        }),
-        None => Ok(()),
-    }
-}
-
-/// The middle of the box around points (m).
-fn middle(points: &[[f64; 2]]) -> [f64; 2] {
-    [0, 1].map(|axis| {
-        let along = points.iter().map(|point| point[axis]);
-        let ends = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
-            [low.min(x), high.max(x)]
-        });
-        0.5 * ends[0] + 0.5 * ends[1]
-    })
 }
 
 /// Mass (kg) and trace of the stiffness (N/m) beyond which products of theirs overflow, or vanish.

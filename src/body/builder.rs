@@ -66,8 +66,7 @@ impl FlexBodyBuilder {
         Self::from_result(Ok(mesh.into()))
     }
 
-    /// A body from raw nodes (m) and cells of one kind, each a list of indices of nodes, counter-clockwise. What is wrong with them is told by [`build`](Self::build)
-    /// or by the insertion.
+    /// A body from raw nodes (m) and cells of one kind, each a list of nodes, counter-clockwise. What is wrong with them is told by [`build`](Self::build).
     pub fn cells<C: AsRef<[usize]>>(nodes: Vec<[f64; 2]>, kind: CellKind, cells: &[C]) -> Self {
         Self::from_result(Mesh::from_cells(nodes, kind, cells).map(Arc::new))
     }
@@ -204,26 +203,7 @@ impl FlexBodyBuilder {
         self
     }
 
-    /// Builds the body under tension, or pressure: where its mesh is, it is stretched so far along the axes of the mesh. The body is one of large strain.
-    ///
-    /// Moduli, density, thickness and the gas of [`inner_pressure`](Self::inner_pressure) are those of the stress-free shape, which is the mesh shrunk by the
-    /// stretches: the mass is less by as much. Displacements count from the mesh. What holds the tension is up to pins and attachments.
-    ///
-    /// ```
-    /// use foil2d::prelude::*;
-    /// let string = FlexBodyBuilder::rectangle([1.0, 0.01], [50, 1])
-    ///     .material(LinearElastic::plane_stress(2e9, 0.0).density(1100.0))
-    ///     .pre_stretch(PreStretch::along_x(1.02))
-    ///     .pin_where(|[x, _]| x == 0.0 || x == 1.0, Pin::both())
-    ///     .build()?;
-    /// // Neo-Hookean, without contraction: σ = E/2 (λ - 1/λ).
-    /// let tension = string.stress()?[60].xx;
-    /// assert!((tension / (1e9 * (1.02 - 1.0 / 1.02)) - 1.0).abs() < 1e-9);
-    /// // As a string has it, and some bending: √(σ/ρ)/2L, in Hz.
-    /// let lowest = string.natural_modes(1, 1e-8)?.frequencies()[0] / std::f64::consts::TAU;
-    /// assert!((lowest / (0.5 * (tension * 1.02 / 1100.0).sqrt()) - 1.0).abs() < 0.05);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// Builds the body under tension or compression: it is stretched so where its mesh is, see [`PreStretch`]. The body is one of large strain.
     pub fn pre_stretch(mut self, pre_stretch: impl Into<PreStretch>) -> Self {
         self.pre_stretch = Some(pre_stretch.into());
         self

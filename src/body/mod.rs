@@ -21,6 +21,7 @@ mod frame;
 mod handle;
 mod materials;
 mod pin;
+mod placing;
 mod pre_stretch;
 #[cfg(feature = "serde-serialize")]
 mod record;

@@ -19,15 +19,25 @@ const STAGES: u32 = 32;
 /// Iterations of a stage; some six are needed, and halvings of a step that leads where the law has no energy.
 const MOST_ITERATIONS: u32 = 60;
 
-/// How a body is stretched where it is built, along the axes of its mesh, which are those of the world before `rotation`: see
-/// [`FlexBodyBuilder::pre_stretch`](super::FlexBodyBuilder::pre_stretch).
+/// How a body is stretched where it is built, along the axes of its mesh: for [`FlexBodyBuilder::pre_stretch`](super::FlexBodyBuilder::pre_stretch).
+///
+/// Moduli, density, thickness and the gas of an inner pressure are those of the stress-free shape, which is the mesh shrunk by the stretches: the mass is
+/// that of the shrunk mesh. Displacements count from the mesh itself. What holds the tension is up to pins and attachments; a free body contracts.
 ///
 /// ```
 /// use foil2d::prelude::*;
-/// let both: PreStretch = [1.05, 1.0].into();
-/// let alone = PreStretch::along_x(1.05);
-/// let stress = PreStretch::by_stress([2e6, 0.0]);
-/// # let _ = (both, alone, stress);
+/// let string = FlexBodyBuilder::rectangle([1.0, 0.005], [50, 1])
+///     .material(LinearElastic::plane_stress(2e9, 0.0).density(1100.0))
+///     .pre_stretch(PreStretch::along_x(1.02))
+///     .pin_where(|[x, _]| x == 0.0 || x == 1.0, Pin::both())
+///     .build()?;
+/// // Neo-Hookean, without contraction: σ = E/2 (λ - 1/λ).
+/// let tension = string.stress()?[60].xx;
+/// assert!((tension / (1e9 * (1.02 - 1.0 / 1.02)) - 1.0).abs() < 1e-9);
+/// // The note of such a string, and some bending: √(σ/ρ)/2L (Hz), the density ρ as it is stretched.
+/// let lowest = string.natural_modes(1, 1e-8)?.frequencies()[0] / std::f64::consts::TAU;
+/// assert!((lowest / (0.5 * (tension * 1.02 / 1100.0).sqrt()) - 1.0).abs() < 0.03);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreStretch(Kind);
@@ -58,7 +68,8 @@ impl PreStretch {
     }
 
     /// Cauchy's stresses along x and y (Pa), tension positive: those that [`FlexBody::stress`](super::FlexBody::stress) tells of the body as it is
-    /// built. A strip of height `h` pulls by `σ h t`, with the thickness `t` that it has when it is stretched.
+    /// built. A strip of height `h` pulls by `σ h t`, with the thickness `t` that it has when it is stretched. Laws whose stress per area as stretched has a
+    /// largest value are refused beyond it.
     pub fn by_stress(stress: [f64; 2]) -> Self {
         Self(Kind::Stress(stress))
     }

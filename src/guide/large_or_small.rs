@@ -57,5 +57,40 @@
 //! [`FlexBodyBuilder::region_material`](crate::body::FlexBodyBuilder::region_material), and holes an
 //! [`inner_pressure`](crate::body::FlexBodyBuilder::inner_pressure), constant or of a gas that is shut in: tyres and balloons.
 //!
+//! # Strings and membranes: tension from the start
+//!
+//! Thin bodies carry across by the tension along them: a string, a rope bridge, a trampoline. [`FlexBodyBuilder::pre_stretch`](crate::body::FlexBodyBuilder::pre_stretch)
+//! builds them under it, so that nothing has to be drawn apart first. The mesh is what stands in the world; free of stress the body is shorter, and its density,
+//! thickness and moduli are of that shape.
+//!
+//! ```
+//! use foil2d::prelude::*;
+//! use foil2d::rapier::prelude::*;
+//!
+//! let mut world = PhysicsWorld::new();
+//! let mut flex_bodies = FlexBodySet::new();
+//! // A line of 4 m and 2 cm, with 2 kPa of tension in it, between two walls.
+//! let line = FlexBodyBuilder::rectangle([4.0, 0.02], [40, 1])
+//!     .material(LinearElastic::plane_stress(1e6, 0.3).density(10.0))
+//!     .pre_stretch(PreStretch::by_stress([2e3, 0.0]))
+//!     .pin_where(|[x, _]| x == 0.0 || x == 4.0, Pin::both());
+//! let line = flex_bodies.insert(line, &mut world)?;
+//! FlexPipeline::new().step(&mut world, &mut flex_bodies)?;
+//! let pull: f64 = [40, 81].iter().map(|&node| flex_bodies[line].reaction(node)[0]).sum();
+//! assert!((pull / (2e3 * 0.02) - 1.0).abs() < 0.01);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | given | the body is |
+//! |---|---|
+//! | `[1.05, 1.0]` | stretched so along the x and the y of its mesh |
+//! | [`PreStretch::along_x`](crate::body::PreStretch::along_x)`(1.05)` | stretched so along x, with free sides, which contract as the law says |
+//! | [`PreStretch::by_stress`](crate::body::PreStretch::by_stress)`([2e5, 0.0])` | under that stress (Pa) |
+//!
+//! Stretches below one press: a strip that is pressed by more than its buckling load gives way at the first touch. Bodies of small strain have no stiffness by
+//! tension, so that `.small_strain()` is refused with it; what a material does not bear, or flows at, is refused too.
+//!
+//! # Laws of your own
+//!
 //! A law of your own is an `impl` of [`Hyperelastic`](crate::fe::material::hyperelastic::Hyperelastic), and
 //! [`conformance::check_law`](crate::fe::material::hyperelastic::conformance::check_law) tests it.

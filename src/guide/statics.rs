@@ -80,7 +80,7 @@
 //! # Natural modes
 //!
 //! [`FlexBody::natural_modes`](crate::body::FlexBody::natural_modes) tells the lowest frequencies and shapes of a body as it is pinned; of a body of large strain about where it is, so that a
-//! string has the notes of its tension:
+//! string has the notes of its tension ([`pre_stretch`](crate::body::FlexBodyBuilder::pre_stretch)):
 //!
 //! ```
 //! use foil2d::prelude::*;
