@@ -194,11 +194,11 @@ fn bounce(
         let report = scene
             .pipeline
             .step(&mut scene.world, &mut scene.flex_bodies)?;
+        bounce.unsolved += usize::from(report.quality() != Quality::Solved);
+        bounce.max_penetration_m = bounce.max_penetration_m.max(report.gap_violation());
         if step == 0 {
             bounce.tension_n[0] = scene.tension();
         }
-        bounce.unsolved += usize::from(report.quality() != Quality::Solved);
-        bounce.max_penetration_m = bounce.max_penetration_m.max(report.gap_violation());
         let gained = (scene.energy() - begin) / brought;
         bounce.energy_gained = bounce.energy_gained.max(gained);
         lowest = lowest.min(scene.height());
