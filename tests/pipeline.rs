@@ -3,6 +3,8 @@
 #[path = "pipeline/coming_and_going.rs"]
 mod coming_and_going;
 mod common;
+#[path = "pipeline/half_spaces.rs"]
+mod half_spaces;
 #[path = "pipeline/late_loads.rs"]
 mod late_loads;
 #[path = "pipeline/loads.rs"]
@@ -19,5 +21,3 @@ mod steering;
 mod support;
 #[path = "pipeline/time.rs"]
 mod time;
-#[path = "pipeline/wedged.rs"]
-mod wedged;

@@ -5,7 +5,7 @@ use super::inset::draw_inwards;
 use super::outlines::{Outline, Piece};
 use crate::constraint::geometry::Pose2;
 use crate::kkt::Island;
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, perp, rotation};
 use crate::system::{Block, RigidBlock};
 
 /// Half the length of a half-space's boundary, relative to the body that it meets.
@@ -28,6 +28,17 @@ impl RigidSurface<'_> {
             Block::Rigid(motion) => Some(motion),
             Block::Flex(_) => None,
         }
+    }
+
+    /// How high a place is over a half-space of the collider where the step begins (m); `None` of other pieces.
+    pub fn height(&self, piece: &Piece, place: Vec2, island: &Island) -> Option<f64> {
+        let Piece::HalfSpace { origin, normal } = piece else {
+            return None;
+        };
+        let start = self.motion(island)?.start();
+        let origin = start.point(self.offset.transform(*origin));
+        let normal = rotation(start.angle) * self.offset.rotate(*normal);
+        Some(normal.dot(&(place - origin)))
     }
 }
 
@@ -85,6 +96,11 @@ impl Draft {
                 .extend((0..n as u32).map(|a| [a, (a + 1) % n as u32])),
         }
         closing
+    }
+
+    /// The places of the core last drawn, in the axes of its block.
+    pub fn core_arms(&self) -> &[Vec2] {
+        &self.inset
     }
 
     /// Draws what a half-space or a chain has near a guest that stays `offset` (m) away from it; returns whether it has anything.

@@ -94,6 +94,9 @@ impl RigidCores {
         if is_round(other) && !bounds(other).is_some_and(|bounds| bounds.intersects(&near)) {
             return true;
         }
+        if self.is_below(way, [own, other], sides, doublings, island) {
+            return false;
+        }
         let Some(core) = self.core(way, own, (sides[own], doublings), island) else {
             return false;
         };
@@ -125,6 +128,39 @@ impl RigidCores {
             closing: core.closing + met.closing + way.law.skin,
             margin: core.margin + met.margin,
             reach: REACH_OF_WIDTH * core.width.min(met.width),
+        })
+    }
+
+    /// Whether the core of one piece would begin the step in a half-space, the other one: its boundary alone does not tell the sides apart.
+    fn is_below(
+        &mut self,
+        way: &RigidWay<'_>,
+        [own, other]: [usize; 2],
+        sides: [(u32, &Piece); 2],
+        doublings: u8,
+        island: &Island,
+    ) -> bool {
+        let (
+            Piece::Convex {
+                vertices,
+                radius,
+                width,
+            },
+            Piece::HalfSpace { .. },
+        ) = (sides[own].1, sides[other].1)
+        else {
+            return false;
+        };
+        let surface = &way.surfaces[own];
+        let rounding = f64::from(1u32 << doublings) * ROUNDING.get() * width;
+        self.draft.draw_core((vertices, *radius), surface, rounding);
+        let Some(motion) = surface.motion(island) else {
+            return false;
+        };
+        self.draft.core_arms().iter().any(|arm| {
+            let place = motion.start().point(*arm);
+            let height = way.surfaces[other].height(sides[other].1, place, island);
+            height.is_some_and(|height| height <= 0.0)
         })
     }
 

@@ -9,7 +9,7 @@ use super::outlines::Piece;
 use crate::body::OFFSET;
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::kkt::{Island, Way};
-use crate::math::{judged::Judged, rotation};
+use crate::math::judged::Judged;
 use crate::system::{Block, FlexBlock};
 
 /// Reach of rows between rigid bodies, relative to the thinner one's width, and of a flexible body's, relative to its shortest edge: bodies are
@@ -101,24 +101,12 @@ fn lead_pieces(
 
 /// Whether a node has begun the step in a half-space: its boundary alone does not tell the sides apart.
 fn is_below(surface: &RigidSurface<'_>, body: &FlexBlock, offset: f64, island: &Island) -> bool {
-    let Block::Rigid(motion) = &island.blocks[surface.block] else {
-        return false;
-    };
-    let spaces = surface
-        .outline
-        .pieces
-        .iter()
-        .filter_map(|piece| match piece {
-            Piece::HalfSpace { origin, normal } => Some((
-                motion.start().point(surface.offset.transform(*origin)),
-                rotation(motion.start().angle) * surface.offset.rotate(*normal),
-            )),
-            _ => None,
-        });
-    spaces.into_iter().any(|(origin, normal)| {
-        let nodes = body.model().mesh().boundary().nodes().iter();
-        let depth = |node: &usize| normal.dot(&(body.start_position(*node) - origin));
-        nodes.map(depth).any(|height| height <= -offset)
+    surface.outline.pieces.iter().any(|piece| {
+        let mut nodes = body.model().mesh().boundary().nodes().iter();
+        nodes.any(|&node| {
+            let height = surface.height(piece, body.start_position(node), island);
+            height.is_some_and(|height| height <= -offset)
+        })
     })
 }
 

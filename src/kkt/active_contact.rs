@@ -60,9 +60,6 @@ pub struct ActiveContact {
     /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and
     /// by. The solver's gap counts from here.
     pub allowance: f64,
-    /// The gap after the last pass that arrived (m), and whether an overlap that the step began with is left as nothing parts it.
-    pub(super) seen: f64,
-    pub(super) is_left: bool,
     /// What the contact was in the last step.
     pub remembered: Remembered,
     /// Where the contact was at the base of the path; `None` for signed rows, which know no path.

@@ -161,7 +161,6 @@ impl Island {
                 listing.keeps_rows = is_eased && arrives;
                 self.list_near(&listing);
                 self.leave_contradictions(arrives, settings);
-                self.leave_overlaps(arrives, kept);
                 error = self.measure(listing.keeps_rows);
                 is_idle = error > SLOWEST * last;
                 last = error;

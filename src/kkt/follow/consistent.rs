@@ -11,7 +11,7 @@
 //! each other grow no faster than what they cannot close. Along its tangent a contact gives way to the whole of its force, `p₀ = 0`: friction that
 //! holds a corner in a notch against itself slips by a thousandth of what the force alone would move it, and there is one answer.
 
-use super::{CLOSE_ENOUGH, FEW_PASSES, Island, LARGE_TOLERANCE, SLOWEST};
+use super::{CLOSE_ENOUGH, FEW_PASSES, Island, LARGE_TOLERANCE};
 use crate::kkt::delassus::compliance;
 use crate::kkt::island::SolveSettings;
 use crate::kkt::joint_system::Rows;
@@ -57,30 +57,6 @@ impl Island {
         };
         self.before_solve = before;
         is_consistent
-    }
-
-    /// Leaves overlaps of rigid bodies that the step began with, up to what they were, where they do not part as asked: what is wedged between others
-    /// is pressed from both sides, by forces that grow without end. Surfaces that yield part by and by.
-    ///
-    /// - `kept`: the share of them that was to stay (-).
-    pub(super) fn leave_overlaps(&mut self, arrives: bool, kept: f64) {
-        let least = CLOSE_ENOUGH * self.margin;
-        let overlaps = self
-            .contacts
-            .iter_mut()
-            .filter(|one| one.allowance < 0.0 && one.is_hard && !one.is_left);
-        for contact in overlaps.filter(|_| arrives) {
-            let gap = contact.kinematics.gap;
-            let before = std::mem::replace(&mut contact.seen, gap);
-            if gap < -least && before < -least && gap < SLOWEST * before {
-                let left = (contact.allowance + gap).max(contact.allowance / kept);
-                contact.kinematics.gap += contact.allowance - left;
-                contact.allowance = left;
-                contact.is_left = true;
-                // what contradicted each other asks for no more compliance
-                self.softness = 0.0;
-            }
-        }
     }
 
     /// Leaves open what joints and attachments cannot close as they contradict each other: a body that is welded to two places a little farther

@@ -94,8 +94,6 @@ impl ActiveContact {
             parting: [0.0; 2],
             status: [normal, tangential],
             allowance: 0.0,
-            seen: f64::INFINITY,
-            is_left: false,
             known: Some((kinematics.gap, moved(&kinematics, blocks))),
             apart: 0.0,
             losses: 0,
