@@ -25,7 +25,7 @@ pub(crate) fn contact_offset(model: &Model, extent: f64) -> f64 {
     (OFFSET * shortest_edge(model)).max(spacing)
 }
 
-/// Shortest boundary segment at rest (m).
+/// Shortest boundary segment as the body was built (m).
 fn shortest_edge(model: &Model) -> f64 {
     let rest = model.placed_positions();
     let segments = model.mesh().boundary().segments().iter();

@@ -30,15 +30,14 @@ impl RigidSurface<'_> {
         }
     }
 
-    /// How high a place is over a half-space of the collider where the step begins (m); `None` of other pieces.
-    pub fn height(&self, piece: &Piece, place: Vec2, island: &Island) -> Option<f64> {
+    /// A point of the boundary of a half-space, and the normal out of it, where the step begins (m, -); `None` of other pieces.
+    pub fn boundary(&self, piece: &Piece, island: &Island) -> Option<[Vec2; 2]> {
         let Piece::HalfSpace { origin, normal } = piece else {
             return None;
         };
         let start = self.motion(island)?.start();
         let origin = start.point(self.offset.transform(*origin));
-        let normal = rotation(start.angle) * self.offset.rotate(*normal);
-        Some(normal.dot(&(place - origin)))
+        Some([origin, rotation(start.angle) * self.offset.rotate(*normal)])
     }
 }
 

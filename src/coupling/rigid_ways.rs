@@ -36,6 +36,11 @@ pub(super) struct RigidCores {
     draft: Draft,
 }
 
+/// By how much a core of this width (m) is drawn inwards, twice as far each time (m).
+fn rounding(width: f64, doublings: u8) -> f64 {
+    f64::from(1u32 << doublings) * ROUNDING.get() * width
+}
+
 /// Two rigid colliders, how far around their swept boxes they may get (m), and by what they may turn (rad).
 pub(super) struct RigidWay<'a> {
     pub handles: [ColliderHandle; 2],
@@ -140,28 +145,24 @@ impl RigidCores {
         doublings: u8,
         island: &Island,
     ) -> bool {
+        let space = way.surfaces[other].boundary(sides[other].1, island);
+        let surface = &way.surfaces[own];
         let (
+            Some([origin, normal]),
+            Some(motion),
             Piece::Convex {
                 vertices,
                 radius,
                 width,
             },
-            Piece::HalfSpace { .. },
-        ) = (sides[own].1, sides[other].1)
+        ) = (space, surface.motion(island), sides[own].1)
         else {
             return false;
         };
-        let surface = &way.surfaces[own];
-        let rounding = f64::from(1u32 << doublings) * ROUNDING.get() * width;
-        self.draft.draw_core((vertices, *radius), surface, rounding);
-        let Some(motion) = surface.motion(island) else {
-            return false;
-        };
-        self.draft.core_arms().iter().any(|arm| {
-            let place = motion.start().point(*arm);
-            let height = way.surfaces[other].height(sides[other].1, place, island);
-            height.is_some_and(|height| height <= 0.0)
-        })
+        self.draft
+            .draw_core((vertices, *radius), surface, rounding(*width, doublings));
+        let mut places = (self.draft.core_arms().iter()).map(|arm| motion.start().point(*arm));
+        places.any(|place| normal.dot(&(place - origin)) <= 0.0)
     }
 
     /// The member of a convex piece, drawn when first asked for.
@@ -185,9 +186,9 @@ impl RigidCores {
             return None;
         };
         let surface = &way.surfaces[side];
-        let least = ROUNDING.get() * width;
-        let rounding = f64::from(1u32 << doublings) * least;
-        let closing = self.draft.draw_core((vertices, *radius), surface, rounding);
+        let least = rounding(*width, 0);
+        let inwards = rounding(*width, doublings);
+        let closing = self.draft.draw_core((vertices, *radius), surface, inwards);
         if closing <= 0.0 {
             return None;
         }

@@ -101,12 +101,11 @@ fn lead_pieces(
 
 /// Whether a node has begun the step in a half-space: its boundary alone does not tell the sides apart.
 fn is_below(surface: &RigidSurface<'_>, body: &FlexBlock, offset: f64, island: &Island) -> bool {
-    surface.outline.pieces.iter().any(|piece| {
+    let pieces = surface.outline.pieces.iter();
+    let mut spaces = pieces.filter_map(|piece| surface.boundary(piece, island));
+    spaces.any(|[origin, normal]| {
         let mut nodes = body.model().mesh().boundary().nodes().iter();
-        nodes.any(|&node| {
-            let height = surface.height(piece, body.start_position(node), island);
-            height.is_some_and(|height| height <= -offset)
-        })
+        nodes.any(|&node| normal.dot(&(body.start_position(node) - origin)) <= -offset)
     })
 }
 

@@ -53,7 +53,7 @@ pub(crate) struct ModelRecord {
     nodes: Vec<[f64; 2]>,
     cells: Vec<(CellKind, Vec<usize>)>,
     rest_positions: Vec<f64>,
-    /// None where the body was built at rest.
+    /// Empty where the body was built at rest.
     placed_positions: Vec<f64>,
     elements: Vec<ElementRecord>,
     material: MaterialRecord,
