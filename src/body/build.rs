@@ -5,6 +5,7 @@ use super::contact_inertia::ContactInertia;
 use super::error::BuildError;
 use super::flex_body::FlexBody;
 use super::frame::{Frame, frame_of};
+use super::materials::check_large_laws;
 use super::placing;
 use crate::fe::finite_strain::{
     FiniteStrainDescription, FiniteStrainError, FiniteStrainModel, InnerPressure,
@@ -92,8 +93,10 @@ impl FlexBodyBuilder {
         }
     }
 
-    /// The body of large strain: unless the user has said otherwise, wherever there is a law and nothing is asked for that such bodies have
-    /// not.
+    /// The body of large strain, unless the user has chosen small strain, or asked for what bodies of small strain alone have and for nothing
+    /// that only the others have.
+    ///
+    /// A material without a law for large strains decides nothing by itself: what a body does would depend on what its material lacks.
     fn large_description(
         &self,
         mesh: &Arc<Mesh>,
@@ -119,6 +122,16 @@ impl FlexBodyBuilder {
             || materials.any(|own| own.hyperelastic().is_some())
             || !pressures.is_empty()
             || self.pre_stretch.is_some();
+        let refusal = match (self.mass_kind, &self.contact_inertia) {
+            (MassKind::Consistent, _) => Some(BuildError::LargeConsistent),
+            (_, ContactInertia::RedistributedAt(_)) => Some(BuildError::LargeMassless),
+            _ => None,
+        };
+        match refusal {
+            Some(_) if !is_asked => return Ok(None),
+            Some(refusal) => return Err(refusal),
+            None => check_large_laws(material.as_ref(), regions)?,
+        }
         let description = FiniteStrainDescription::of_material(
             Arc::clone(mesh),
             rest.to_vec(),
@@ -131,16 +144,7 @@ impl FlexBodyBuilder {
         if let Some(description) = &mut description {
             description.pressures = pressures;
         }
-        let outcome = match (self.mass_kind, &self.contact_inertia, description) {
-            (MassKind::Consistent, ..) => Err(BuildError::LargeConsistent),
-            (_, ContactInertia::RedistributedAt(_), _) => Err(BuildError::LargeMassless),
-            (.., None) => Err(BuildError::NoLargeLaw),
-            (.., Some(description)) => Ok(Some(description)),
-        };
-        match outcome {
-            Err(_) if !is_asked => Ok(None),
-            outcome => outcome,
-        }
+        Ok(description)
     }
 
     /// Pressures in the holes of the mesh, if there is to be one.

@@ -165,8 +165,8 @@ impl FlexBodyBuilder {
     /// Makes a body that bends, stretches and folds as far as it likes, of the material's [law for large strains](Material::large_law). Of
     /// [`LinearElastic`](crate::fe::material::LinearElastic) that is the neo-Hookean law which is Hooke's at rest.
     ///
-    /// That is the default wherever the material has such a law and neither a consistent mass nor [`ContactInertia::RedistributedAt`] is asked for;
-    /// said, what stands against it is an error. Such a body costs a factorization or some in every step; its surface always carries its mass, and
+    /// That is the default unless a consistent mass or [`ContactInertia::RedistributedAt`] is asked for, which only bodies of small strain have; said,
+    /// these are errors. A material without such a law is refused unless one of these or [`small_strain`](Self::small_strain) is said. Such a body costs a factorization or some in every step; its surface always carries its mass, and
     /// explicit steps refuse it.
     pub fn large_strain(mut self) -> Self {
         self.is_large = Some(true);
@@ -221,7 +221,8 @@ impl FlexBodyBuilder {
         self
     }
 
-    /// Lumped (the default) or consistent mass; a consistent mass keeps its contact boundary's inertia.
+    /// Lumped (the default) or consistent mass; a consistent mass keeps its contact boundary's inertia, and makes the body one of
+    /// [small strain](Self::small_strain).
     pub fn mass_kind(mut self, kind: MassKind) -> Self {
         self.mass_kind = kind;
         self

@@ -8,7 +8,7 @@ pub enum ContactInertia {
     #[default]
     Redistributed,
     /// Only these nodes give their mass away, which may be a consistent one: for bodies one element thick, and for impacts on a
-    /// known part of the boundary.
+    /// known part of the boundary. They make the body one of [small strain](super::FlexBodyBuilder::small_strain).
     RedistributedAt(Vec<usize>),
     /// Every node keeps its mass; contacts get impulses at velocity level.
     Kept,

@@ -24,11 +24,17 @@ pub enum BuildError {
     /// The body of large strain cannot be assembled.
     #[error(transparent)]
     Large(#[from] FiniteStrainError),
-    /// A body of large strain whose material has no law for that.
+    /// The material has no law for large strains, and the body has not been said to be one of small strain.
     #[error(
-        "the material has no law for large strains: leave `.large_strain()` out, or take a `HyperelasticSolid` or `LinearElastic`"
+        "{}the material, {material}, has no law for large strains: choose `.small_strain()` for a body that bends and stretches little, take a `HyperelasticSolid`, or give a material of your own a `Material::large_law`",
+        .region.map_or(String::new(), |region| format!("in region {region} "))
     )]
-    NoLargeLaw,
+    NoLargeLaw {
+        /// The material, as `Debug` writes it.
+        material: String,
+        /// The region it was given to, if it was not given to the whole body.
+        region: Option<u32>,
+    },
     /// A material that flows in a body of small strain.
     #[error(
         "`.small_strain()` has no plastic flow, and the material flows by the law `{law}`: leave it out, or take a `LinearElastic` material"

@@ -3,7 +3,9 @@
 use super::error::BuildError;
 use super::region::Region;
 use crate::fe::material::Material;
+use crate::fe::material::hyperelastic::Hyperelastic;
 use crate::fe::mesh::Mesh;
+use crate::fe::model::Model;
 use std::sync::Arc;
 
 /// The number of a region in a mesh.
@@ -21,6 +23,45 @@ pub(super) struct Materials {
     /// That of every region without one of its own.
     pub main: Option<Arc<dyn Material>>,
     pub regions: Vec<(Region, Arc<dyn Material>)>,
+}
+
+/// Says that a material has no law for large strains.
+fn lawless(region: Option<u32>, material: &dyn Material) -> BuildError {
+    BuildError::NoLargeLaw {
+        material: format!("{material:?}"),
+        region,
+    }
+}
+
+/// The law for large strains of the material of a region, or of a whole body.
+pub(super) fn large_law_of(
+    region: Option<u32>,
+    material: &dyn Material,
+) -> Result<Arc<dyn Hyperelastic>, BuildError> {
+    let law = material.large_law();
+    law.ok_or_else(|| lawless(region, material))
+}
+
+/// Says which material of a model has no law for large strains.
+pub(super) fn missing_law(model: &Model) -> BuildError {
+    let regions = model.mesh().regions();
+    let without = |region: &&u32| model.material_of(**region).large_law().is_none();
+    match regions.iter().find(without) {
+        Some(&region) if regions.len() > 1 => lawless(Some(region), model.material_of(region)),
+        Some(&region) => lawless(None, model.material_of(region)),
+        None => lawless(None, model.material()),
+    }
+}
+
+/// Refuses the first of the materials that has no law for large strains, by its name and place.
+pub(super) fn check_large_laws(
+    main: &dyn Material,
+    regions: &[(u32, Arc<dyn Material>)],
+) -> Result<(), BuildError> {
+    for (region, own) in regions {
+        large_law_of(Some(*region), own.as_ref())?;
+    }
+    large_law_of(None, main).map(|_| ())
 }
 
 /// One material, and those of other regions by their numbers.

@@ -8,6 +8,7 @@
 //! ```
 
 use super::error::BuildError;
+use super::materials::large_law_of;
 use crate::fe::material::Material;
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants, PlasticState, principal_stress};
 use crate::math::rounding;
@@ -109,9 +110,9 @@ impl PreStretch {
         material: &Arc<dyn Material>,
         regions: &[(u32, Arc<dyn Material>)],
     ) -> Result<[f64; 2], BuildError> {
-        let stretches = self.stretches_of(law_of(material)?.as_ref())?;
+        let stretches = self.stretches_of(large_law_of(None, material.as_ref())?.as_ref())?;
         for (region, own) in regions {
-            let own = self.stretches_of(law_of(own)?.as_ref())?;
+            let own = self.stretches_of(large_law_of(Some(*region), own.as_ref())?.as_ref())?;
             let is_same = |axis: usize| {
                 (own[axis] - stretches[axis]).abs() <= rounding::SHARE * stretches[axis]
             };
@@ -191,10 +192,6 @@ impl PreStretch {
         }
         Some(at)
     }
-}
-
-fn law_of(material: &Arc<dyn Material>) -> Result<Arc<dyn Hyperelastic>, BuildError> {
-    material.large_law().ok_or(BuildError::NoLargeLaw)
 }
 
 fn diagonal([x, y]: [f64; 2]) -> [f64; 4] {

@@ -4,7 +4,7 @@ use super::build::check_range;
 use super::error::{BuildError, FlexBodyError, check_finite, check_held};
 use super::flex_body::FlexBody;
 use super::frame::Arms;
-use super::materials::number_of;
+use super::materials::{missing_law, number_of};
 use super::region::Region;
 use super::state::FlexState;
 use super::stillness::Stillness;
@@ -282,7 +282,7 @@ impl FlexBody {
             None => None,
             Some(before) => {
                 let description = FiniteStrainDescription::of_model(&model);
-                let mut description = description.ok_or(BuildError::NoLargeLaw)?;
+                let mut description = description.ok_or_else(|| missing_law(&model))?;
                 description.pressures = before.pressures().to_vec();
                 Some(Arc::new(FiniteStrainModel::assemble(description)?))
             }

@@ -6,7 +6,7 @@
 //! | meets itself | yes | no |
 //! | step | a nonlinear one: a factorization now and then | linear: one factorization for ever |
 //! | integrator | energy–momentum, the decay of the pipeline's member | any member of Beta-2, explicit ones too |
-//! | materials | any with a [law for large strains](crate::fe::material::Material::large_law) | any |
+//! | materials | with a [law for large strains](crate::fe::material::Material::large_law); without one [refused](crate::body::BuildError::NoLargeLaw) | any |
 //!
 //! A body of small strain that is bent further is another body than you mean, and the report says so:
 //!

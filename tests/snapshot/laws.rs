@@ -108,6 +108,7 @@ fn run(material: Own, element: OwnTriangle) -> (Run, FlexBodyHandle) {
     let body = FlexBodyBuilder::rectangle_of([0.5, 0.5], [4, 4], CellKind::Tri3)
         .element(element)
         .material(material)
+        .small_strain()
         .translation([0.0, 0.01]);
     let body = run.flexible(body);
     (0..20).for_each(|_| run.step(&Recorder::default()));

@@ -62,8 +62,8 @@ pub trait Material: Send + Sync + Debug {
         None
     }
 
-    /// The law that a body of the material has if it is asked to be one of large strain; that of [`hyperelastic`](Self::hyperelastic) unless
-    /// overridden. At rest it must be this material in the plane.
+    /// The law of bodies of large strain, which bodies are by default; that of [`hyperelastic`](Self::hyperelastic) unless overridden. At rest it must
+    /// be this material in the plane. Without one a body is refused unless it is said to be one of small strain.
     fn large_law(&self) -> Option<Arc<dyn Hyperelastic>> {
         self.hyperelastic().cloned()
     }

@@ -48,9 +48,10 @@ pub fn of_build(error: &BuildError, mesh: &Mesh) -> (Culprit, String) {
         BuildError::Large(FiniteStrainError::Material(error)) => {
             (Culprit::Material, of_material(error))
         }
-        BuildError::NoLargeLaw => (
+        BuildError::NoLargeLaw { .. } => (
             Culprit::Material,
-            "the material has no law for large strains: give `small_strain = true`".to_owned(),
+            "in plane stress with `poisson` from -0.5 down there is no law for large strains: give `small_strain = true`, or a `law` of plane strain"
+                .to_owned(),
         ),
         BuildError::FlowSmallStrain { .. } => (
             Culprit::SmallStrain,
