@@ -37,6 +37,7 @@ mod b50;
 mod b8;
 mod b9;
 mod bars;
+mod column;
 mod frame;
 mod modes;
 mod orders;

@@ -11,7 +11,7 @@ use std::error::Error;
 use std::sync::Arc;
 
 pub const HEIGHT: f64 = 0.01;
-const YOUNG: f64 = 1.2e7;
+pub const YOUNG: f64 = 1.2e7;
 /// `E h³/12` of a strip 1 m thick (N m²).
 pub const BENDING: f64 = YOUNG * HEIGHT * HEIGHT * HEIGHT / 12.0;
 

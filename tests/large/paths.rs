@@ -139,10 +139,10 @@ fn reversed(mesh: &Mesh) -> Mesh {
 fn lees_frame_snaps_through_and_back() {
     let Lee { mut path, loaded } = lee(1.0, false);
     for (v, expected) in [
-        (10.0, 0.96355),
-        (20.0, 1.34579),
-        (30.0, 1.59530),
-        (40.0, 1.78078),
+        (10.0, 0.96440),
+        (20.0, 1.34620),
+        (30.0, 1.59553),
+        (40.0, 1.78095),
     ] {
         let end = PathEnd::Place {
             dof: 2 * loaded + 1,
