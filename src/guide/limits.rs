@@ -13,7 +13,8 @@
 //!   tenths of its size, a step may take a second. See: [`Quality::Cut`](crate::pipeline::Quality::Cut), long steps. Do: take a stiffer material or shorter steps.
 //! - **Rolling.** What rolls or spins while it is pressed is braked, because contact forces act wholly within their step. See: a disc of rubber that rolls at 2 m/s loses 0.36 m/s in the first second at
 //!   1/60 s, 0.09 m/s at 1/240 s, and 0.05 m/s at 1/60 s with small strain. Do: shorten the step, or take `small_strain`.
-//! - **Plane stress** of Hooke's law: the thickness does not change as the body is stretched. Do: take `NeoHookeanSheet` or `MooneyRivlinSheet` where it matters.
+//! - **Plane stress** of Hooke's law: the thickness does not change as the body is stretched. Do: take `NeoHookeanSheet` or `MooneyRivlinSheet` where it matters. With Poisson's ratios from -0.5 down it
+//!   has no law for large strains and is refused ([`BuildError::NoLargeLaw`](crate::body::BuildError::NoLargeLaw)). Do: take `small_strain`, or plane strain.
 //! - **Surface.** It keeps its mass; [`ContactInertia::RedistributedAt`](crate::body::ContactInertia::RedistributedAt) is refused
 //!   ([`BuildError::LargeMassless`](crate::body::BuildError::LargeMassless)).
 //! - **Inner pressure** acts on the edges of its hole, not on what else lies in there; holes do not join where walls meet. A gas couples all nodes around its hole, at a cost that grows with the

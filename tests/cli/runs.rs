@@ -1,6 +1,6 @@
 //! Scenes that are run as they say.
 
-use super::{BEAM, STEEL, column, folder, last_row, told};
+use super::{BEAM, STEEL, column, complaint, folder, last_row, told};
 use std::path::Path;
 
 #[test]
@@ -228,14 +228,16 @@ fn the_example_is_sound_and_described() {
     );
 }
 
-/// A foam that grows thicker as it is drawn has no law for large strains in plane stress: it was refused with a modulus that nobody had given.
+/// A foam that grows thicker as it is drawn has no law for large strains in plane stress: whoever has not asked for small ones is told.
 #[test]
-fn what_has_no_law_for_large_strains_is_a_body_of_small_ones() {
+fn what_has_no_law_for_large_strains_is_asked_to_be_a_body_of_small_ones() {
     let folder = folder("auxetic");
-    let scene = format!(
-        "[world]\nduration = 0.1\n{}{BEAM}",
-        STEEL.replace("0.3", "-0.9")
-    );
+    let foam = STEEL.replace("0.3", "-0.9");
+    let scene = format!("[world]\nduration = 0.1\n{foam}{BEAM}");
+    std::fs::write(folder.join("scene.toml"), &scene).expect("a scene");
+    let refused = complaint(&["run", "scene.toml", "--quiet"], &folder);
+    assert!(refused.contains("`small_strain = true`"), "{refused}");
+    let scene = format!("{scene}small_strain = true\n");
     std::fs::write(folder.join("scene.toml"), scene).expect("a scene");
     let ran = told(&["run", "scene.toml", "--quiet"], &folder);
     assert!(ran.contains("6 steps, 0 cut, 0 unfinished"), "{ran}");
