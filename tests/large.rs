@@ -14,6 +14,8 @@ mod obstacles;
 mod paths;
 #[path = "large/robustness.rs"]
 mod robustness;
+#[path = "large/smoothed.rs"]
+mod smoothed;
 #[path = "large/statics.rs"]
 mod statics;
 #[path = "large/stress.rs"]

@@ -28,6 +28,16 @@ impl Stress {
         Self { xx, yy, xy, zz }
     }
 
+    /// The same with a pressure (Pa) added, tension positive.
+    pub(super) fn under(self, pressure: f64) -> Self {
+        Self {
+            xx: self.xx + pressure,
+            yy: self.yy + pressure,
+            zz: self.zz + pressure,
+            ..self
+        }
+    }
+
     /// The von Mises stress (Pa), `sqrt(3/2 s:s)` with s the deviator, all four components counted.
     pub fn von_mises(&self) -> f64 {
         let square = |x: f64| x * x;

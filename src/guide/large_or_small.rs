@@ -53,6 +53,9 @@
 //! | [`J2Plasticity`](crate::fe::material::hyperelastic::J2Plasticity) | metals that yield: what has flowed stays |
 //! | [`StVenantKirchhoff`](crate::fe::material::hyperelastic::StVenantKirchhoff) | comparisons |
 //!
+//! Rubber and metal that flows all but keep their volume, and some cells lock then: three-node triangles do, and eight-node quadrilaterals of `Corotated` and
+//! `StVenantKirchhoff`; six-node triangles, four-node quadrilaterals, and eight-node ones of the other laws do not.
+//!
 //! Regions of one body may have materials of their own,
 //! [`FlexBodyBuilder::region_material`](crate::body::FlexBodyBuilder::region_material), and holes an
 //! [`inner_pressure`](crate::body::FlexBodyBuilder::inner_pressure), constant or of a gas that is shut in: tyres and balloons.

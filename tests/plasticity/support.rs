@@ -4,7 +4,12 @@ use foil2d::fe::finite_strain::{FiniteStrainDescription, FiniteStrainModel};
 use foil2d::fe::material::hyperelastic::J2Plasticity;
 use foil2d::fe::mesh::{CellKind, generate::rectangle};
 
-pub const KINDS: [CellKind; 3] = [CellKind::Tri3, CellKind::Tri6, CellKind::Quad4];
+pub const KINDS: [CellKind; 4] = [
+    CellKind::Tri3,
+    CellKind::Tri6,
+    CellKind::Quad4,
+    CellKind::Quad8,
+];
 
 /// A rectangle `[0, w] x [0, h]` (m) of density 1000 kg/m³, 1 m thick.
 pub fn plate(

@@ -9,12 +9,14 @@
 
 pub mod conformance;
 pub mod kinematics;
+mod linear_fit;
 mod quad4;
 mod quad8;
 pub mod quadrature;
 mod tri3;
 mod tri6;
 
+pub(crate) use linear_fit::LinearFit;
 pub use quad4::Quad4;
 pub use quad8::Quad8;
 pub use quadrature::QuadraturePoint;

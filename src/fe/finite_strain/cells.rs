@@ -2,13 +2,15 @@
 
 use super::Inadmissible;
 use super::deformed::Deformed;
+use super::dilatation::{Dilatation, Smoothing};
 use super::guard::Guards;
 use super::hourglass::{Hourglass, Shape};
 use super::lanes::{Deform, Packs, PointEnergy, PointForces, PointTangent};
 use super::linearization::Linearization;
 use super::one_cell::{Kinematics, add_point, deformation_gradient, gather, scatter, subtract};
-use super::point::{self, Form};
+use super::point::{Form, derivatives};
 use super::solid::Solid;
+use super::treatment::Treatment;
 use crate::fe::material::hyperelastic::Hyperelastic;
 use crate::linalg::block_matrix::BlockMatrix;
 
@@ -32,6 +34,8 @@ pub(super) struct CellGroup {
     pub(super) first_point: usize,
     /// Of every cell the modes that its one point does not see, or none of any.
     pub(super) hourglass: Vec<Hourglass>,
+    /// Areas that are smoothed over each of its cells, if they are.
+    pub(super) dilatation: Option<Dilatation>,
     /// What keeps the nodes of the cells from turning, or nothing.
     pub(super) guards: Guards,
     /// Where its cells begin among all.
@@ -55,23 +59,27 @@ macro_rules! with_node_count {
 pub(super) use with_node_count;
 
 impl CellGroup {
-    /// The group of so many nodes and points a cell, of cells with hourglass modes or without, and of this material; an empty one if there is
-    /// none yet.
+    /// The group of so many nodes and points a cell, of this treatment and of this material; an empty one if there is none yet.
     pub(super) fn find<'a>(
         groups: &'a mut Vec<Self>,
         [n_nodes, n_points]: [usize; 2],
-        is_stiffened: bool,
+        treatment: Treatment,
         solid: &Solid,
     ) -> &'a mut Self {
         let is_it = |group: &Self| {
             group.n_nodes == n_nodes
                 && group.n_points == n_points
-                && group.hourglass.is_empty() != is_stiffened
+                && group.hourglass.is_empty() != (treatment == Treatment::Stiffened)
+                && group.dilatation.is_some() == (treatment == Treatment::Smoothed)
                 && group.solid.is_same(solid)
         };
         let at = groups.iter().position(is_it).unwrap_or(groups.len());
         if at == groups.len() {
+            let volumetric = solid.law.volumetric();
+            let volumetric = volumetric.filter(|_| treatment == Treatment::Smoothed);
+            let lambda = solid.law.constants().lambda();
             groups.push(Self {
+                dilatation: volumetric.map(|law| Dilatation::new(law, lambda)),
                 n_nodes,
                 n_points,
                 solid: solid.clone(),
@@ -114,6 +122,7 @@ impl CellGroup {
         let energy = with_node_count!(self, point_energy(law, positions));
         let stiffened = self.stiffened();
         energy
+            + with_node_count!(self, smoothed_energy(positions))
             + stiffened
                 .map(|(place, _)| self.hourglass[place].energy(&self.shape(place, positions)))
                 .sum::<f64>()
@@ -133,6 +142,14 @@ impl CellGroup {
     /// `F` at the points of one cell.
     pub(super) fn gradients_of(&self, place: usize, positions: &[f64]) -> Vec<[f64; 4]> {
         with_node_count!(self, point_gradients(place, positions))
+    }
+
+    /// What smoothed areas add to the pressure at the points of a cell at these gradients (Pa), tension positive.
+    pub(super) fn smoothed_pressures(&self, place: usize, gradients: &[[f64; 4]]) -> Vec<f64> {
+        match &self.dilatation {
+            Some(of) => of.pressures(self, place, gradients),
+            None => vec![0.0; gradients.len()],
+        }
     }
 
     /// Subtracts the internal force of the group, after writing the deformation of the end.
@@ -163,6 +180,7 @@ impl CellGroup {
         }
         let pair = (start, &*end);
         with_node_count!(self, subtract_guard_forces(law, form, pair, residual))?;
+        with_node_count!(self, subtract_smoothed_forces(form, pair, residual))?;
         let Some(law) = law.plasticity() else {
             return Ok(());
         };
@@ -199,6 +217,10 @@ impl CellGroup {
             }
         }
         with_node_count!(self, add_guard_tangent((form, kind), (start, end), matrix));
+        with_node_count!(
+            self,
+            add_smoothed_tangent((form, kind), (start, end), matrix)
+        );
         let is_done = kind == Linearization::Consistent && law.plasticity().is_none();
         for (place, point) in self.stiffened().filter(|_| !is_done) {
             let (_, gradients) = self.quad(place);
@@ -278,6 +300,35 @@ impl CellGroup {
         kernel.sum()
     }
 
+    /// What smoothed areas add to the stored energy (J).
+    pub(super) fn smoothed_energy<const N: usize>(&self, positions: &[f64]) -> f64 {
+        let of = self.dilatation.as_ref();
+        of.map_or(0.0, |of| of.energy::<N>(self, positions))
+    }
+
+    fn subtract_smoothed_forces<const N: usize>(
+        &self,
+        form: Form,
+        pair: (&Deformed, &Deformed),
+        residual: &mut [f64],
+    ) -> Result<(), Inadmissible> {
+        let of = self.dilatation.as_ref();
+        of.map_or(Ok(()), |of| {
+            of.subtract_forces::<N>(self, form, pair, residual)
+        })
+    }
+
+    fn add_smoothed_tangent<const N: usize>(
+        &self,
+        asked: (Form, Linearization),
+        pair: (&Deformed, &Deformed),
+        matrix: &mut BlockMatrix,
+    ) {
+        if let Some(of) = &self.dilatation {
+            of.add_tangent::<N>(self, asked, pair, matrix);
+        }
+    }
+
     fn subtract_point_forces<const N: usize>(
         &self,
         law: &dyn Hyperelastic,
@@ -316,17 +367,20 @@ impl CellGroup {
             };
             return tangent.add();
         }
+        let smoothing = Smoothing::of(self, form, (start, end));
         let points = self.points();
         let cells = self
             .kinematics::<N>()
             .zip(start.gradients[points.clone()].chunks_exact(self.n_points))
             .zip(end.gradients[points].chunks_exact(self.n_points))
             .zip(self.places.as_chunks::<N>().0.chunks_exact(N));
-        for (((cell, start), end), places) in cells {
-            let mut blocks = [[[0.0; 4]; N]; N];
+        for (place, (((cell, start), end), places)) in cells.enumerate() {
+            let (mut blocks, shifts) = ([[[0.0; 4]; N]; N], smoothing.shifts(place));
             let points = cell.gradients.iter().zip(cell.volumes).zip(start).zip(end);
-            for (((gradient, &volume), start), end) in points {
-                let moduli = point::moduli(law, form, kind, *start, *end);
+            for (point, (((gradient, &volume), start), end)) in points.enumerate() {
+                let (found, ends) = (derivatives(law, form, *start, *end), [*start, *end]);
+                let shift = shifts[point];
+                let moduli = smoothing.moduli(shift, law.constants(), (form, kind), found, ends);
                 let share = kind.share(gradient, &moduli, volume);
                 add_point(gradient, &moduli, share * volume, &mut blocks);
             }

@@ -15,11 +15,12 @@
 use super::Inadmissible;
 use super::cells::{CellGroup, with_node_count};
 use super::deformed::Deformed;
+use super::dilatation::Smoothing;
 use super::hourglass::{Hourglass, Shape};
 use super::linearization::Linearization;
 use super::model::FiniteStrainModel;
 use super::one_cell::{add_point, deformation_gradient, gather, scatter, subtract};
-use super::point::{Form, moduli_of_pair, stress_of_sums};
+use super::point::{Form, stress_of_sums};
 use crate::fe::LEAST_LEFT;
 use crate::fe::material::hyperelastic::{Hyperelastic, Invariants, J2Plasticity, PlasticState};
 use crate::fe::recovery::Stress;
@@ -88,6 +89,7 @@ impl FiniteStrainModel {
             );
             sum.stored += points.stored;
             sum.stored += with_node_count!(group, guards_energy(positions));
+            sum.stored += with_node_count!(group, smoothed_energy(positions));
             sum.dissipated += points.dissipated;
         }
         for hole in &self.holes {
@@ -140,9 +142,11 @@ impl FiniteStrainModel {
             };
             let states = &flowed[self.points_of(cell)];
             let gradients = group.gradients_of(place, positions);
-            let points = gradients.iter().zip(states);
-            let stresses = points.map(|(gradient, state)| cauchy(law, state, *gradient));
-            let stresses: Vec<Stress> = stresses.collect();
+            let pressures = group.smoothed_pressures(place, &gradients);
+            let points = gradients.iter().zip(states).zip(pressures);
+            let stresses: Vec<Stress> = points
+                .map(|((gradient, state), pressure)| cauchy(law, state, *gradient).under(pressure))
+                .collect();
             return match group.hourglass.is_empty() {
                 true => stresses,
                 false => vec![stresses[0]; group.n_nodes],
@@ -297,6 +301,8 @@ impl CellGroup {
         (start, end): (&Deformed, &Deformed),
         matrix: &mut BlockMatrix,
     ) {
+        let is_added = kind == Linearization::Consistent;
+        let smoothing = Smoothing::of(self, form, (start, end)).unless(is_added);
         let points = self.points();
         let n = self.n_points;
         let cells = self
@@ -305,13 +311,14 @@ impl CellGroup {
             .zip(end.gradients[points.clone()].chunks_exact(n))
             .zip(start.flowed[points].chunks_exact(n))
             .zip(self.places.as_chunks::<N>().0.chunks_exact(N));
-        for ((((cell, start), end), flowed), places) in cells {
-            let mut blocks = [[[0.0; 4]; N]; N];
+        for (place, ((((cell, start), end), flowed), places)) in cells.enumerate() {
+            let (mut blocks, shifts) = ([[[0.0; 4]; N]; N], smoothing.shifts(place));
             for (point, state) in flowed.iter().enumerate() {
                 let gradient = cell.gradients[point].map(|gradient| state.gradient(gradient));
                 let pair = [start[point], end[point]].map(|f| state.elastic(f));
-                let derivatives = derivatives(law, form, state, pair);
-                let moduli = moduli_of_pair(law.constants(), (form, kind), derivatives, pair);
+                let found = derivatives(law, form, state, pair);
+                let (shift, asked) = (shifts[point], (form, kind));
+                let moduli = smoothing.moduli(shift, law.constants(), asked, found, pair);
                 let volume = cell.volumes[point];
                 let share = kind.share(&gradient, &moduli, volume);
                 add_point(&gradient, &moduli, share * volume, &mut blocks);

@@ -21,6 +21,7 @@
 //! | `deformed` | gradients and what has flowed, at the quadrature points |
 //! | `flow` | bodies whose law flows: the same kernels after what has flowed, and its commitment |
 //! | `hourglass` | the modes that the one point of a four-node cell does not see |
+//! | `dilatation` | areas of eight-node cells, smoothed so that they do not lock |
 //! | `description` | what a body is assembled from |
 //! | `pressure` | a constant pressure, a gas that is shut in |
 //! | `lanes` | the kernels of laws that do not flow, four cells side by side |
@@ -29,13 +30,15 @@
 //! | `model` | the assembled body |
 //! | `solid` | law and density of a region |
 //! | `stress` | Cauchy's stress and stretches |
+//! | `treatment` | what is done so that cells do not lock |
 //!
 //! Tri3 and Tri6 take their usual fields, so does an element of the user's own. [`Quad4`](crate::fe::element::Quad4) takes its mean gradient, and its hourglass
-//! modes resist as its inner modes let them at small strain.
+//! modes resist as its inner modes let them at small strain. [`Quad8`](crate::fe::element::Quad8) takes what resists a change of volume from a linear fit.
 
 mod cells;
 mod deformed;
 mod description;
+mod dilatation;
 mod flow;
 mod guard;
 mod hole;
@@ -48,6 +51,7 @@ mod point;
 mod pressure;
 mod solid;
 mod stress;
+mod treatment;
 
 pub use deformed::Deformation;
 pub use description::{FiniteStrainDescription, FiniteStrainError};

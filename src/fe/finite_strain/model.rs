@@ -10,13 +10,12 @@ use super::lanes::Packs;
 use super::linearization::Linearization;
 use super::point::Form;
 use super::pressure::{InnerPressure, PressureError};
-use crate::fe::element::quadrature::SQUARE_1;
+use super::treatment::Treatment;
 use crate::fe::element::{ElementError, MAX_NODES, kinematics::physical_gradient};
 use crate::fe::material::Rayleigh;
 use crate::fe::material::hyperelastic::Hyperelastic;
 use crate::fe::mesh::{Cell, Mesh};
 use crate::fe::model::{ModelError, element_of, placed_nodes};
-use crate::fe::record::ElementRecord;
 use crate::linalg::block_matrix::BlockMatrix;
 use std::sync::Arc;
 
@@ -112,14 +111,10 @@ impl FiniteStrainModel {
         for (&node, mass) in cell.nodes.iter().zip(lumped) {
             self.masses[node] += mass;
         }
-        // The element whose inner modes are left out has stiffened hourglass modes in their place.
-        let is_stiffened = element.record() == ElementRecord::Quad4;
-        let quadrature = match is_stiffened {
-            true => &SQUARE_1,
-            false => element.quadrature(),
-        };
+        let treatment = Treatment::of(element, solid.law.as_ref());
+        let quadrature = treatment.quadrature(element);
         let sizes = [n, quadrature.len()];
-        let group = CellGroup::find(&mut self.groups, sizes, is_stiffened, &solid);
+        let group = CellGroup::find(&mut self.groups, sizes, treatment, &solid);
         group.cells.push(index);
         for point in quadrature {
             let mut gradient = [[0.0; 2]; MAX_NODES];
@@ -128,11 +123,16 @@ impl FiniteStrainModel {
                 physical_gradient(element, corners, point.at, gradient).map_err(wrap)?;
             group.gradients.extend_from_slice(gradient);
             group.volumes.push(determinant * point.weight * thickness);
-            if is_stiffened {
+            if treatment == Treatment::Stiffened {
                 let at_rest = solid.law.constants().linear(solid.density);
                 let hourglass = Hourglass::new(element, corners, gradient, &at_rest, thickness);
                 group.hourglass.push(hourglass.map_err(wrap)?);
             }
+        }
+        if let Some(dilatation) = &mut group.dilatation {
+            dilatation
+                .add_cell(element, corners, thickness)
+                .map_err(wrap)?;
         }
         let guards = &mut group.guards;
         guards.add(element, corners, solid.law.as_ref(), thickness);

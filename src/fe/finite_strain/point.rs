@@ -147,6 +147,7 @@ pub(super) fn derivatives(
 /// From `P = 2 a F½ + b cof F½`: `s (2 a I + b ∂cof/∂F + 4 W_tt F½⊗F½ + 2 W_tJ (F½⊗cof + cof⊗F½) + W_JJ cof⊗cof)` with the derivatives of
 /// the pair for those of `W`, `s = 1/2`, and `F½` for `F'` in the second factors, which keeps the products definite; for equilibrium all at the
 /// end and `s = 1`.
+#[cfg(test)]
 pub(super) fn moduli(
     law: &dyn Hyperelastic,
     form: Form,

@@ -34,9 +34,11 @@ impl FiniteStrainModel {
                     true => group.gradients_of(place, positions),
                     false => self.bent(cell, solid, &group.shape(place, positions)),
                 };
+                let pressures = group.smoothed_pressures(place, &gradients);
                 return gradients
                     .into_iter()
-                    .map(|at| state_of(solid, at))
+                    .zip(pressures)
+                    .map(|(at, pressure)| state_of(solid, at, pressure))
                     .collect();
             }
         }
@@ -88,7 +90,8 @@ impl FiniteStrainModel {
     }
 }
 
-fn state_of(solid: &Solid, gradient: [f64; 4]) -> PointState {
+/// A point of a gradient, with this much more of a pressure (Pa), tension positive.
+fn state_of(solid: &Solid, gradient: [f64; 4], pressure: f64) -> PointState {
     let law = solid.law.as_ref();
     let [xx, xy, yx, yy] = gradient;
     let at = Invariants::of(gradient);
@@ -102,13 +105,14 @@ fn state_of(solid: &Solid, gradient: [f64; 4]) -> PointState {
         yy: (2.0 * by_t * (yx * yx + yy * yy) + spherical) / volume,
         xy: 2.0 * by_t * (xx * yx + xy * yy) / volume,
         zz: match solid.plane {
-            Plane::Stress => 0.0,
+            // With the pressure, none.
+            Plane::Stress => -pressure,
             Plane::Strain => law.out_of_plane_stress(at),
         },
     };
     PointState {
         gradient,
         stretch: Stretch::of_gradient(gradient, thickness),
-        stress,
+        stress: stress.under(pressure),
     }
 }

@@ -1,7 +1,7 @@
 //! Gent's law for rubber whose chains have a length: `W = -μ m/2 ln(1 - (I1 - 3)/m) - μ ln J + λ/2 ln² J`.
 
 use super::quotient::{rise_of_slope_of_ln, slope_of_ln};
-use super::{ElasticConstants, Hyperelastic, Invariants};
+use super::{ElasticConstants, Hyperelastic, Invariants, Volumetric};
 use crate::fe::material::MaterialError;
 use crate::fe::record::LawRecord;
 use crate::math::ln;
@@ -32,7 +32,7 @@ impl Gent {
     }
 
     /// `λ` of the volumetric part, less than Lamé's at rest by what the stiffening adds there: `2 μ/m` (Pa).
-    fn volumetric(&self) -> f64 {
+    fn volume_modulus(&self) -> f64 {
         self.constants.lambda() - 2.0 * self.constants.mu() / self.limit
     }
 
@@ -55,15 +55,19 @@ impl Hyperelastic for Gent {
         LawRecord::Gent(*self)
     }
 
+    fn volumetric(&self) -> Option<Volumetric> {
+        Volumetric::logarithmic(self.volume_modulus())
+    }
+
     fn energy_density(&self, at: Invariants) -> f64 {
-        let (lambda, mu) = (self.volumetric(), self.constants.mu());
+        let (lambda, mu) = (self.volume_modulus(), self.constants.mu());
         let log = ln(at.j);
         -0.5 * mu * self.limit * ln(self.left(at) / self.limit) - mu * log
             + 0.5 * lambda * log * log
     }
 
     fn gradient(&self, at: Invariants) -> [f64; 2] {
-        let (lambda, mu) = (self.volumetric(), self.constants.mu());
+        let (lambda, mu) = (self.volume_modulus(), self.constants.mu());
         [
             0.5 * mu * self.limit / self.left(at),
             (lambda * ln(at.j) - mu) / at.j,
@@ -71,7 +75,7 @@ impl Hyperelastic for Gent {
     }
 
     fn hessian(&self, at: Invariants) -> [f64; 3] {
-        let (lambda, mu) = (self.volumetric(), self.constants.mu());
+        let (lambda, mu) = (self.volume_modulus(), self.constants.mu());
         let left = self.left(at);
         [
             0.5 * mu * self.limit / (left * left),
@@ -82,7 +86,7 @@ impl Hyperelastic for Gent {
 
     /// `a = μ m/2 Δ ln l/Δl` with what is left, `l = m + 2 - t`; `b` as of [`NeoHookean`](super::NeoHookean).
     fn conserving_pair(&self, from: Invariants, to: Invariants) -> [f64; 2] {
-        let (lambda, mu) = (self.volumetric(), self.constants.mu());
+        let (lambda, mu) = (self.volume_modulus(), self.constants.mu());
         let stiffening = slope_of_ln(self.left(from), self.left(to));
         let slope = slope_of_ln(from.j, to.j);
         [
@@ -92,7 +96,7 @@ impl Hyperelastic for Gent {
     }
 
     fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3] {
-        let (lambda, mu) = (self.volumetric(), self.constants.mu());
+        let (lambda, mu) = (self.volume_modulus(), self.constants.mu());
         let stiffening = rise_of_slope_of_ln(self.left(from), self.left(to));
         let [slope, rise] = [slope_of_ln, rise_of_slope_of_ln].map(|of| of(from.j, to.j));
         let along_j = rise * (0.5 * lambda * ln(from.j * to.j) - mu) + 0.5 * slope * lambda / to.j;
@@ -105,7 +109,7 @@ impl Hyperelastic for Gent {
 
     /// `∂W/∂I1` times two, less `μ` and with `λ ln J`, over `J`.
     fn out_of_plane_stress(&self, at: Invariants) -> f64 {
-        let (lambda, mu) = (self.volumetric(), self.constants.mu());
+        let (lambda, mu) = (self.volume_modulus(), self.constants.mu());
         (mu * (at.t - 2.0) / self.left(at) + lambda * ln(at.j)) / at.j
     }
 
@@ -118,7 +122,7 @@ impl Hyperelastic for Gent {
                 cure: "give a positive finite value of I1 - 3, such as 50 for rubber",
             });
         }
-        if self.volumetric() < 0.0 {
+        if self.volume_modulus() < 0.0 {
             return Err(MaterialError::Parameter {
                 name: "Poisson's ratio of Gent's law",
                 value: self.constants.poisson(),

@@ -1,7 +1,7 @@
 //! Hencky's law: Hooke's law for logarithmic strains.
 
 use super::logarithmic::{self, LogStrain, Slope};
-use super::{ElasticConstants, Hyperelastic, Invariants};
+use super::{ElasticConstants, Hyperelastic, Invariants, Volumetric};
 use crate::fe::record::LawRecord;
 
 /// `W = μ |ε|² + λ/2 (tr ε)²` with `ε = ½ ln FᵀF`, for `J > 0` only.
@@ -61,6 +61,10 @@ impl Hyperelastic for Hencky {
 
     fn record(&self) -> LawRecord {
         LawRecord::Hencky(*self)
+    }
+
+    fn volumetric(&self) -> Option<Volumetric> {
+        Volumetric::logarithmic(self.bulk())
     }
 
     fn energy_density(&self, at: Invariants) -> f64 {

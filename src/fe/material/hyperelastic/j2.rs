@@ -26,7 +26,7 @@
 
 use super::hardening::Hardening;
 use super::logarithmic::{self, LogStrain, Pair, Slope, cosh, over_sinh};
-use super::{ElasticConstants, Hencky, Hyperelastic, Invariants};
+use super::{ElasticConstants, Hencky, Hyperelastic, Invariants, Volumetric};
 use crate::fe::material::MaterialError;
 use crate::fe::record::LawRecord;
 
@@ -344,6 +344,10 @@ impl Hyperelastic for J2Plasticity {
 
     fn plasticity(&self) -> Option<&J2Plasticity> {
         Some(self)
+    }
+
+    fn volumetric(&self) -> Option<Volumetric> {
+        self.elastic.volumetric()
     }
 
     fn energy_density(&self, at: Invariants) -> f64 {

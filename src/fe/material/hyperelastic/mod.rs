@@ -60,6 +60,7 @@ mod quotient;
 mod solid;
 mod st_venant_kirchhoff;
 mod stable_neo_hookean;
+mod volumetric;
 
 pub use beside_rest::BesideRest;
 pub use constants::ElasticConstants;
@@ -74,6 +75,7 @@ pub use neo_hookean_sheet::NeoHookeanSheet;
 pub use solid::HyperelasticSolid;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use stable_neo_hookean::StableNeoHookean;
+pub use volumetric::Volumetric;
 
 use super::{MaterialError, Plane};
 use crate::fe::record::LawRecord;
@@ -213,6 +215,13 @@ pub trait Hyperelastic: Send + Sync + Debug {
         let [a, b] = self.gradient(at);
         let area = at.j.abs().max(f64::MIN_POSITIVE);
         self.constants().poisson() * 2.0 * (a * at.t + b * at.j) / area
+    }
+
+    /// A part of the energy that depends on `J` alone and holds what grows beyond bounds as `ν` tends to one half; what is left of the energy must be
+    /// bounded below beside it. Cells that would lock take this part from a smoothed `J`, see [`Quad8`](crate::fe::element::Quad8); none unless
+    /// overridden, and of laws that resist a change of volume by other terms.
+    fn volumetric(&self) -> Option<Volumetric> {
+        None
     }
 
     /// The plastic flow of a law that has one: its bodies keep what has flowed, and the functions here are those of material that never has.

@@ -1,7 +1,7 @@
 //! Mooney and Rivlin's law for rubber: `W = C1 (I1 - 3) + C2 (I2 - 3)` and a volumetric part, as a slice and as a sheet.
 
 use super::quotient::{rise_of_slope_of_ln, slope_of_ln};
-use super::{ElasticConstants, Hyperelastic, Invariants};
+use super::{ElasticConstants, Hyperelastic, Invariants, Volumetric};
 use crate::fe::material::{MaterialError, Plane};
 use crate::fe::record::LawRecord;
 use crate::math::ln;
@@ -32,7 +32,7 @@ impl MooneyRivlin {
     }
 
     /// `λ` of the volumetric part (Pa).
-    fn volumetric(&self) -> f64 {
+    fn volume_modulus(&self) -> f64 {
         self.constants.lambda() - 4.0 * self.second
     }
 
@@ -78,26 +78,30 @@ impl Hyperelastic for MooneyRivlin {
         LawRecord::MooneyRivlin(*self)
     }
 
+    fn volumetric(&self) -> Option<Volumetric> {
+        Volumetric::logarithmic(self.volume_modulus())
+    }
+
     fn energy_density(&self, Invariants { t, j }: Invariants) -> f64 {
         let log = ln(j);
         (self.first + self.second) * (t - 2.0) + self.second * (j - 1.0) * (j + 1.0)
             - self.tension() * log
-            + 0.5 * self.volumetric() * log * log
+            + 0.5 * self.volume_modulus() * log * log
     }
 
     fn gradient(&self, Invariants { j, .. }: Invariants) -> [f64; 2] {
-        let log = (self.volumetric() * ln(j) - self.tension()) / j;
+        let log = (self.volume_modulus() * ln(j) - self.tension()) / j;
         [self.first + self.second, 2.0 * self.second * j + log]
     }
 
     fn hessian(&self, Invariants { j, .. }: Invariants) -> [f64; 3] {
-        let log = self.tension() + self.volumetric() * (1.0 - ln(j));
+        let log = self.tension() + self.volume_modulus() * (1.0 - ln(j));
         [0.0, 0.0, 2.0 * self.second + log / (j * j)]
     }
 
     /// `b = C2 (J + J') + (Δ ln J/ΔJ) (λ/2 ln JJ' - 2 C1 - 4 C2)`.
     fn conserving_pair(&self, from: Invariants, to: Invariants) -> [f64; 2] {
-        let log = 0.5 * self.volumetric() * ln(from.j * to.j) - self.tension();
+        let log = 0.5 * self.volume_modulus() * ln(from.j * to.j) - self.tension();
         let slope = slope_of_ln(from.j, to.j);
         [
             self.first + self.second,
@@ -107,8 +111,8 @@ impl Hyperelastic for MooneyRivlin {
 
     fn conserving_hessian(&self, from: Invariants, to: Invariants) -> [f64; 3] {
         let [slope, rise] = [slope_of_ln, rise_of_slope_of_ln].map(|of| of(from.j, to.j));
-        let log = 0.5 * self.volumetric() * ln(from.j * to.j) - self.tension();
-        let along_j = self.second + rise * log + 0.5 * slope * self.volumetric() / to.j;
+        let log = 0.5 * self.volume_modulus() * ln(from.j * to.j) - self.tension();
+        let along_j = self.second + rise * log + 0.5 * slope * self.volume_modulus() / to.j;
         [0.0, 0.0, 2.0 * along_j]
     }
 
@@ -118,14 +122,14 @@ impl Hyperelastic for MooneyRivlin {
 
     /// `[2 C1 + 2 C2 t - (2 C1 + 4 C2) + λ ln J]/J`, the derivative by the third stretch where it is one.
     fn out_of_plane_stress(&self, Invariants { t, j }: Invariants) -> f64 {
-        (2.0 * self.second * (t - 2.0) + self.volumetric() * ln(j)) / j
+        (2.0 * self.second * (t - 2.0) + self.volume_modulus() * ln(j)) / j
     }
 
     fn validate(&self) -> Result<(), MaterialError> {
         check_constants(self.first, self.second)?;
         self.constants.validate()?;
         let value = self.constants.poisson();
-        if self.volumetric() < 0.0 {
+        if self.volume_modulus() < 0.0 {
             return Err(MaterialError::Parameter {
                 name: "Poisson's ratio of the Mooney-Rivlin law",
                 value,
@@ -292,7 +296,7 @@ mod tests {
             let (i1, i2) = (a + b + c, a * b + b * c + c * a);
             let log = 0.5 * ln(a * b * c);
             first * (i1 - 3.0) + second * (i2 - 3.0) - law.tension() * log
-                + 0.5 * law.volumetric() * log * log
+                + 0.5 * law.volume_modulus() * log * log
         };
         let stretches = [1.4, 0.8, 1.0];
         let slope = |axis: usize| {

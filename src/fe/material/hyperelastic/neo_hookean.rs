@@ -1,7 +1,7 @@
 //! The logarithmic neo-Hookean law: `W = μ/2 (t - 2) - μ ln J + λ/2 ln² J`.
 
 use super::quotient::{quotient_less_one, rise_of_slope_of_ln, slope_of_ln};
-use super::{BesideRest, ElasticConstants, Hyperelastic, Invariants};
+use super::{BesideRest, ElasticConstants, Hyperelastic, Invariants, Volumetric};
 use crate::fe::material::LinearElastic;
 use crate::fe::record::LawRecord;
 use crate::math::{ln, ln_1p};
@@ -49,6 +49,10 @@ impl Hyperelastic for NeoHookean {
 
     fn record(&self) -> LawRecord {
         LawRecord::NeoHookean(*self)
+    }
+
+    fn volumetric(&self) -> Option<Volumetric> {
+        Volumetric::logarithmic(self.constants.lambda())
     }
 
     fn energy_density(&self, Invariants { t, j }: Invariants) -> f64 {

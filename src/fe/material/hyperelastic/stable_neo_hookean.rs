@@ -1,7 +1,7 @@
 //! The stable neo-Hookean law of Smith, de Goes and Kim (2018), with constants of its own for the plane.
 
 use super::quotient::{quotient_less_one, rise_of_slope_of_ln, slope_of_ln};
-use super::{BesideRest, ElasticConstants, Hyperelastic, Invariants};
+use super::{BesideRest, ElasticConstants, Hyperelastic, Invariants, Volumetric};
 use crate::fe::record::LawRecord;
 use crate::math::{ln, ln_1p};
 
@@ -56,6 +56,10 @@ impl Hyperelastic for StableNeoHookean {
 
     fn record(&self) -> LawRecord {
         LawRecord::StableNeoHookean(*self)
+    }
+
+    fn volumetric(&self) -> Option<Volumetric> {
+        Volumetric::quadratic(self.constants.lambda())
     }
 
     fn energy_density(&self, Invariants { t, j }: Invariants) -> f64 {
