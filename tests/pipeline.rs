@@ -21,3 +21,5 @@ mod steering;
 mod support;
 #[path = "pipeline/time.rs"]
 mod time;
+#[path = "pipeline/wedged.rs"]
+mod wedged;

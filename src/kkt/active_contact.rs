@@ -60,6 +60,10 @@ pub struct ActiveContact {
     /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and
     /// by. The solver's gap counts from here.
     pub allowance: f64,
+    /// The same before it was asked whether rigid bodies can part by that much (m).
+    pub(super) asked: f64,
+    /// Tangential motion by which they part, which is no slip (m).
+    pub(super) aside: f64,
     /// What the contact was in the last step.
     pub remembered: Remembered,
     /// Where the contact was at the base of the path; `None` for signed rows, which know no path.
@@ -111,6 +115,25 @@ impl ActiveContact {
     /// The gap (m).
     pub fn gap(&self) -> f64 {
         self.kinematics.gap + self.allowance
+    }
+
+    /// Whether it is one of rigid bodies that the step began with in each other.
+    pub(super) fn is_parting(&self) -> bool {
+        self.is_hard && self.asked < 0.0
+    }
+
+    /// Leaves this of the overlap, zero or less (m).
+    pub(super) fn leave(&mut self, left: f64) {
+        let deeper = left - self.allowance;
+        self.allowance = left;
+        self.kinematics.gap -= deeper;
+        self.known = self.known.map(|(gap, at)| (gap - deeper, at));
+    }
+
+    /// Takes this tangential motion out of the slip (m).
+    pub(super) fn part_aside(&mut self, aside: f64) {
+        self.slip -= aside - self.aside;
+        self.aside = aside;
     }
 
     /// Whether the contact carries or would carry a force.

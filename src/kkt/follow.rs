@@ -9,18 +9,20 @@ mod arrival;
 mod consistent;
 mod listing;
 mod parted;
+mod parting;
 mod trend;
 
 pub(super) use self::arrival::Stage;
+pub(super) use self::parting::Parting;
 
 use self::listing::Listing;
 use self::trend::Trend;
 use super::delassus::compliance;
-use super::island::{Island, SolveSettings};
+use super::island::{ActiveContact, Island, SolveSettings};
 use super::position::{PARTING_RATE, Turned};
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
-use crate::linalg::cone::SETTLING;
+use crate::linalg::cone::{ConeError, SETTLING};
 use crate::math::{Mat2, REAL_EPSILON, exp, is_held};
 use crate::system::{Block, Response};
 
@@ -215,6 +217,9 @@ impl Island {
             if !self.ties.is_empty() && pass > 0 && pass % 5 == 0 {
                 self.restiffen_turns(settings);
             }
+            if self.share_out_overlaps(listing.slop, is_idle).is_err() {
+                return Passed::Stopped;
+            }
             has_left = self.note_left();
             self.turn_signed_rows(!misleads && !listing.keeps_rows);
             if !self.solve_consistently(settings, tolerance, summary) {
@@ -365,6 +370,27 @@ impl Island {
             .any(|way| self.path.leads_around(*way, &self.blocks));
         self.left = left;
         is_led
+    }
+
+    /// Asks overlaps and open joints that the step began with for no more than the bodies can move by.
+    fn share_out_overlaps(&mut self, slop: f64, contradicts: bool) -> Result<(), ConeError> {
+        let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
+        let candidates = &self.candidates;
+        let began = |contact: &ActiveContact| match contact.base {
+            Some(base) => base.gap - contact.kinematics.normal.dot(&base.moved),
+            None => {
+                let start = candidates[contact.candidate].start_gap(&scene);
+                start.unwrap_or(contact.gap()).min(0.0)
+            }
+        };
+        let joints = (&mut self.ties[..], &self.joint_grips[..]);
+        self.parting.share_out(
+            &self.blocks,
+            &mut self.contacts,
+            joints,
+            (slop, contradicts),
+            began,
+        )
     }
 
     /// Leaves overlaps that the step began with where nothing can part them: between surfaces that are pinned, or driven, both.

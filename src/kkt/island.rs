@@ -5,7 +5,7 @@ pub(super) use super::active_contact::AtBase;
 use super::constraint_function::Newton;
 use super::delassus::RowDirection;
 use super::feasible::FeasiblePath;
-use super::follow::Stage;
+use super::follow::{Parting, Stage};
 use super::joined::Joined;
 use super::joint_rows::ActiveJoint;
 use super::joint_twist::Twists;
@@ -104,6 +104,7 @@ pub struct Island {
     /// Pivots and factorizations of contact problems since the solve began.
     pub(super) n_pivots: usize,
     pub(super) newton: Newton,
+    pub(super) parting: Parting,
 }
 
 impl Island {
@@ -179,7 +180,8 @@ impl Island {
         let stretched = self.stretched_by_closing(&summary);
         let allowance = loads + joint_work + stretched;
         summary.work = self.actual_work(settings) + joint_work + stretched;
-        let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(&summary);
+        let part = settings.dt / settings.whole;
+        let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(part, &summary);
         if is_thrown && settings.may_be_cut {
             summary.is_stopped = true;
             return Ok(summary);

@@ -51,6 +51,8 @@ pub struct ActiveJoint {
     /// How far the step brings ends that were put apart nearer to each other (m or rad), and the part of the multiplier that does so.
     pub(super) closing: f64,
     pub(super) closer: f64,
+    /// Goal and closing before it was asked whether the bodies can come that near (m or rad).
+    pub(super) asked: [f64; 2],
     /// Impulses along the rows of the beginning and of the end (N s or N m s).
     pub(super) kick: f64,
     pub(super) impulse: f64,
@@ -85,6 +87,50 @@ impl ActiveJoint {
             self.multiplier - self.closer
         };
         self.row.sign * (steady + impulse)
+    }
+
+    /// Whether a row of rigid bodies that is not driven is farther than this from where it is to hold (m or rad): when the step began, or now if rows
+    /// may contradict each other.
+    pub(super) fn is_open(&self, slop: f64, contradicts: bool) -> bool {
+        let is_driven = matches!(self.finish, Finish::Hold { rate } if rate != 0.0);
+        if !self.is_hard || self.give > 0.0 || is_driven {
+            return false;
+        }
+        let off = |off: f64| match self.kind {
+            RowKind::Unilateral => (-off).max(0.0),
+            RowKind::Bilateral => off.abs(),
+            _ => 0.0,
+        };
+        let began = off(self.start - self.asked[0]);
+        self.asked[1] != 0.0 || began > slop || contradicts && self.error() > slop
+    }
+
+    /// Whether a row of rigid bodies ends the step elsewhere than where it is to hold.
+    pub(super) fn is_apart(&self) -> bool {
+        self.is_hard && self.goal != self.target
+    }
+
+    /// Leaves the row open by this beyond what was asked of it (m or rad).
+    pub(super) fn leave(&mut self, open: f64) {
+        let [goal, closing] = self.asked;
+        self.gap += self.goal - (goal + open);
+        self.goal = goal + open;
+        self.closing = (closing + open).clamp(closing.min(0.0), closing.max(0.0));
+    }
+
+    /// How far the row has moved since the step began, linear in the dofs of the blocks (m or rad).
+    pub(super) fn moved(&self, blocks: &[Block], grips: &[JointGrip]) -> f64 {
+        let is_turn = self.row.measure.is_turn();
+        let grips = grips[self.row.grips.0..self.row.grips.1].iter();
+        let moved = grips.map(|grip| match &blocks[grip.block] {
+            Block::Rigid(block) => {
+                let wrench = unit_wrench(grip, self.direction, is_turn);
+                let moved = block.moved();
+                wrench.iter().zip(moved).map(|(w, x)| w * x).sum::<f64>()
+            }
+            block => grip.weight * self.direction.dot(&block.displacement(grip.grip())),
+        });
+        moved.sum()
     }
 
     /// How far the law is from holding (m or rad).
@@ -161,6 +207,7 @@ impl Island {
                 status,
                 closing: resolved.closing,
                 closer: 0.0,
+                asked: [resolved.goal, resolved.closing],
                 kick: 0.0,
                 impulse: 0.0,
                 driven: 0.0,
@@ -282,17 +329,7 @@ impl Island {
     pub(super) fn extrapolate_joints(&mut self) -> f64 {
         let mut error = 0.0f64;
         for tie in &mut self.ties {
-            let is_turn = tie.row.measure.is_turn();
-            let grips = &self.joint_grips[tie.row.grips.0..tie.row.grips.1];
-            let moved = grips.iter().map(|grip| match &self.blocks[grip.block] {
-                Block::Rigid(block) => {
-                    let wrench = unit_wrench(grip, tie.direction, is_turn);
-                    let moved = block.moved();
-                    wrench.iter().zip(moved).map(|(w, x)| w * x).sum::<f64>()
-                }
-                block => grip.weight * tie.direction.dot(&block.displacement(grip.grip())),
-            });
-            tie.gap = tie.start + moved.sum::<f64>() - tie.goal;
+            tie.gap = tie.start + tie.moved(&self.blocks, &self.joint_grips) - tie.goal;
             error = error.max(tie.error());
         }
         error

@@ -124,7 +124,7 @@ impl Island {
                 });
                 let slip = match contact.base {
                     Some(_) => contact.slip,
-                    None => slip(kinematics, &self.blocks),
+                    None => slip(kinematics, &self.blocks) - contact.aside,
                 };
                 self.free.push(slip / b0);
                 self.multipliers.push(contact.multiplier[1]);

@@ -24,7 +24,7 @@ use crate::system::Response;
 const FARTHEST: f64 = 1e3;
 
 /// Shares of its own mobility that a contact gives way by, one after the other (-): the first costs a pass three digits.
-const SOFTNESS: [f64; 3] = [1e-3, 1e-2, 1e-1];
+pub(super) const SOFTNESS: [f64; 3] = [1e-3, 1e-2, 1e-1];
 
 impl Island {
     /// Finds new forces, with as little compliance of the contacts as does; returns whether there are any.
@@ -80,6 +80,7 @@ impl Island {
                 tie.is_left = true;
                 tie.goal += tie.gap;
                 tie.closing = 0.0;
+                tie.asked = [tie.goal, 0.0];
             }
         }
     }

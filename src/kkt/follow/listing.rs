@@ -265,6 +265,7 @@ impl Island {
                 } else if listing.memory.is_none() && contact.is_hard {
                     contact.allowance = self.late_allowance(&kinematics, &base, listing);
                 }
+                contact.asked = contact.allowance;
                 self.fresh.push(self.contacts.len());
                 contact
             }

@@ -26,7 +26,7 @@ impl ActiveContact {
         // What mostly came within the step is an impact, where a turn blurs its beginning.
         let is_overlap = began < -slop && (is_clear || began < 0.5 * self.kinematics.gap);
         if is_overlap {
-            self.allowance = kept * began;
+            (self.allowance, self.asked) = (kept * began, kept * began);
             self.kinematics.gap -= self.allowance;
             self.measured.gap = self.kinematics.gap;
             self.known = self.known.map(|(gap, at)| (gap - self.allowance, at));
@@ -94,6 +94,8 @@ impl ActiveContact {
             parting: [0.0; 2],
             status: [normal, tangential],
             allowance: 0.0,
+            asked: 0.0,
+            aside: 0.0,
             known: Some((kinematics.gap, moved(&kinematics, blocks))),
             apart: 0.0,
             losses: 0,
@@ -115,7 +117,8 @@ impl ActiveContact {
         let Kinematics { normal, .. } = self.kinematics;
         let gap = base.gap + normal.dot(&onward) - self.allowance;
         self.kinematics.gap = gap;
-        self.slip = self.kinematics.tangent().dot(&(base.moved + onward)) + self.slip_before;
+        let moved = self.kinematics.tangent().dot(&(base.moved + onward));
+        self.slip = moved + self.slip_before - self.aside;
         self.violation(friction)
     }
 
@@ -197,7 +200,7 @@ impl ActiveContact {
         if is_asked {
             error = error.max(self.apart);
         }
-        self.slip = slip(&self.kinematics, scene.blocks);
+        self.slip = slip(&self.kinematics, scene.blocks) - self.aside;
         let [gap, slip] = self.rest();
         error.max(self.law_error(gap, slip, candidate.law.friction))
     }

@@ -1,0 +1,171 @@
+//! Rigid bodies that are put into others which leave them no room.
+
+use crate::common::{Dice, Scene, elastic, real, vec2};
+use foil2d::pipeline::Quality;
+use foil2d::prelude::*;
+use foil2d::rapier::prelude::*;
+
+/// A bin with its inner walls this far from the middle, and a soft block over what is in it.
+fn bin(half_width: f64, block: [f64; 2], height: f64) -> (Scene, FlexBodyHandle) {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let ground = ColliderBuilder::cuboid(10.0, 0.5).translation(vec2(0.0, -0.5));
+    scene.fixed(ground.friction(0.5));
+    for side in [-1.0, 1.0] {
+        let wall = ColliderBuilder::cuboid(0.5, 0.6);
+        let place = vec2(side * (half_width + 0.5), 0.6);
+        scene.fixed(wall.translation(place).friction(0.5));
+    }
+    let cells = block.map(|side| (side / 0.1).round() as usize);
+    let body = FlexBodyBuilder::rectangle(block, cells).material(elastic(1e6, 1000.0, 1e-2));
+    let handle = scene.flexible(body.translation([-0.5 * block[0], height]));
+    (scene, handle)
+}
+
+/// Neither the overlap nor a tilt leaves a way out: the box stays where it is, and carries what lies on it.
+#[test]
+fn a_box_that_is_wedged_between_two_walls_rests_there() {
+    for (overlap, tilt) in [
+        (0.001, 0.0),
+        (0.02, 0.0),
+        (0.005, 0.02),
+        (0.002, 0.05),
+        (0.01, 0.1),
+        (0.005, 0.3),
+    ] {
+        let (mut scene, block) = bin(0.2 - overlap, [0.3, 0.2], 0.47);
+        let wedged = RigidBodyBuilder::dynamic()
+            .translation(vec2(0.0, 0.2))
+            .rotation(real(tilt));
+        let shape = ColliderBuilder::cuboid(0.2, 0.2).density(500.0);
+        let (wedged, _) = scene.world.insert(wedged, shape.friction(0.5));
+        let name = format!("{overlap} m, {tilt} rad");
+        let mut n_passes = 0;
+        for step in 0..120 {
+            scene.step();
+            assert_eq!(scene.report().quality(), Quality::Solved, "{name}, {step}");
+            n_passes += scene.report().n_newton();
+            let body = &scene.world.bodies[wedged];
+            let (place, speed) = (body.translation(), body.linvel().length());
+            assert!(
+                place.x.abs() < 0.02 && (0.19..0.23).contains(&place.y),
+                "{name}, {step}: {place:?}"
+            );
+            assert!(step < 60 || speed < 0.05, "{name}, {step}: {speed} m/s");
+        }
+        assert!(n_passes < 120 * 8, "{name}: {n_passes} passes");
+        let top = f64::from(scene.world.bodies[wedged].translation().y) + 0.2;
+        let height = scene.body(block).centre_of_mass()[1] - top;
+        assert!((0.09..0.15).contains(&height), "{name}: {height} m over it");
+    }
+}
+
+/// Boxes of .34 m, turned at random, 6 cm nearer to each other than they are wide.
+#[test]
+fn a_crowd_that_is_put_into_itself_comes_apart() {
+    for seed in 0..6 {
+        let (mut scene, _) = bin(0.5, [0.8, 0.2], 1.3);
+        let mut random = Dice(seed);
+        let boxes: Vec<_> = (0..9)
+            .map(|k| {
+                let [column, row] = [k % 3, k / 3].map(f64::from);
+                let x = 0.33 * (column - 1.0) + random.between(0.0, 0.02);
+                let place = vec2(x, 0.17 + 0.33 * row);
+                let body = RigidBodyBuilder::dynamic().translation(place);
+                let shape = ColliderBuilder::cuboid(0.17, 0.17).density(500.0);
+                let body = body.rotation(real(random.between(-0.3, 0.3)));
+                scene.world.insert(body, shape.friction(0.5)).0
+            })
+            .collect();
+        for step in 0..90 {
+            scene.step();
+            let quality = scene.report().quality();
+            assert_eq!(quality, Quality::Solved, "crowd {seed}, step {step}");
+            for &body in &boxes {
+                let body = &scene.world.bodies[body];
+                let (place, speed) = (body.translation(), body.linvel().length());
+                assert!(
+                    place.x.abs() < 0.5 && (0.1..2.0).contains(&place.y) && speed < 5.0,
+                    "crowd {seed}, step {step}: {place:?} at {speed} m/s"
+                );
+            }
+        }
+    }
+}
+
+/// Two bodies welded to each other, longer together than the bin is wide.
+#[test]
+fn a_weld_holds_what_is_wedged() {
+    let (mut scene, _) = bin(0.39, [0.3, 0.2], 0.6);
+    let pair = [-0.2, 0.2].map(|x| {
+        let body = RigidBodyBuilder::dynamic().translation(vec2(x, 0.2));
+        let shape = ColliderBuilder::cuboid(0.2, 0.15).density(500.0);
+        scene.world.insert(body, shape.friction(0.5)).0
+    });
+    let weld = FixedJointBuilder::new()
+        .local_anchor1(vec2(0.2, 0.0))
+        .local_anchor2(vec2(-0.2, 0.0));
+    scene.world.insert_impulse_joint(pair[0], pair[1], weld);
+    // Alone rapier leaves the weld open a little, and it opens no farther.
+    let (mut n_passes, mut n_claimed, mut worst) = (0, 0, f64::INFINITY);
+    for step in 0..120 {
+        scene.step();
+        assert_eq!(scene.report().quality(), Quality::Solved, "step {step}");
+        let [one, other] = pair.map(|body| scene.world.bodies[body].translation());
+        let apart = f64::from((other - one).length()) - 0.4;
+        if scene.report().n_claimed() > 0 {
+            n_passes += scene.report().n_newton();
+            n_claimed += 1;
+            assert!(apart.abs() <= worst + 1e-5, "step {step}: {apart} m apart");
+            worst = apart.abs();
+        }
+    }
+    assert!(
+        n_claimed > 10 && worst < 1e-3,
+        "{n_claimed}: {worst} m apart"
+    );
+    assert!(n_passes < 8 * n_claimed, "{n_passes} passes");
+}
+
+/// Planks joined end to end between two posts that fit exactly, or are too far apart: no motion closes every joint, and those that hang a little
+/// are pulled straight by forces without bound. The bridge carries what falls on it.
+#[test]
+fn a_taut_bridge_of_planks_carries_a_block() {
+    for wide in [0.0, 1e-3, 1e-2, 5e-2] {
+        let mut scene = Scene::new(1.0 / 60.0);
+        let half = 1.2 + 0.5 * wide;
+        let post = |x| RigidBodyBuilder::fixed().translation(vec2(x, 1.0));
+        let mut before = scene.world.insert_body(post(-half));
+        let last = scene.world.insert_body(post(half));
+        let mut end = 0.0;
+        for k in 0..8 {
+            let place = vec2(-1.05 + 0.3 * f64::from(k), 1.0);
+            let plank = RigidBodyBuilder::dynamic().translation(place);
+            let shape = ColliderBuilder::cuboid(real(0.14), real(0.03)).density(700.0);
+            let (plank, _) = scene.world.insert(plank, shape.friction(0.6));
+            let hinge = RevoluteJointBuilder::new().contacts_enabled(false);
+            let hinge = hinge.local_anchor1(vec2(end, 0.0));
+            let hinge = hinge.local_anchor2(vec2(-0.15, 0.0));
+            scene.world.insert_impulse_joint(before, plank, hinge);
+            (before, end) = (plank, 0.15);
+        }
+        let hinge = RevoluteJointBuilder::new().contacts_enabled(false);
+        let hinge = hinge.local_anchor1(vec2(end, 0.0));
+        scene.world.insert_impulse_joint(before, last, hinge);
+        let block = FlexBodyBuilder::rectangle([0.4, 0.4], [4, 4]);
+        let block = block.material(elastic(3e5, 1000.0, 2e-3)).friction(0.6);
+        let block = scene.flexible(block.translation([-0.3, 1.3]));
+        let mut n_unsolved = 0;
+        for step in 0..240 {
+            let report = scene.try_step().expect("the step ends");
+            n_unsolved += usize::from(report.quality() != Quality::Solved);
+            let body = scene.body(block);
+            let ([_, y], [_, v]) = (body.centre_of_mass(), body.linvel());
+            assert!(
+                (1.05..1.6).contains(&y) && v < 3.0,
+                "{wide}, {step}: {y} m, {v} m/s"
+            );
+        }
+        // Where next to nothing hangs at first, no force along the planks carries anything.
+        assert!(n_unsolved <= 60, "{wide}: {n_unsolved} steps not solved");
+    }
+}
