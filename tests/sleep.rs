@@ -370,3 +370,35 @@ fn what_rests_far_from_the_origin_sleeps() {
         assert!(sleeps, "{away} m, large {is_large}");
     }
 }
+
+/// Three blocks a tenth of a metre apart, boxes on the outer ones: the first two fall asleep before what is on the third has come to rest, and the block
+/// between, which is awake, makes the box that sleeps ours for a while.
+#[test]
+fn what_is_awake_beside_a_sleeping_box_does_not_let_it_fall_into_the_block_under_it() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    for k in 0..3 {
+        let block = FlexBodyBuilder::rectangle([0.4, 0.4], [4, 4]);
+        let block = block.material(elastic(3e5, 1000.0, 1e-2));
+        scene.flexible(block.translation([-1.25 + 0.5 * f64::from(k), 0.001]));
+    }
+    let boxes = [(-1.0, 0.0), (0.0, 5.0)].map(|(x, damping)| {
+        let body = RigidBodyBuilder::dynamic().translation(vec2(x, 0.8));
+        let body = body.linear_damping(real(damping)).lock_rotations();
+        let shape = ColliderBuilder::cuboid(real(0.2), real(0.1)).density(1000.0);
+        scene.world.insert(body, shape).0
+    });
+    let height = |scene: &Scene| f64::from(scene.world.bodies[boxes[0]].translation().y);
+    let (mut n_alone, mut before) = (0, f64::NAN);
+    for step in 0..420 {
+        scene.step();
+        let [sleeps, other] = boxes.map(|body| scene.world.bodies[body].is_sleeping());
+        n_alone += usize::from(sleeps && !other);
+        let moved = height(&scene) - std::mem::replace(&mut before, height(&scene));
+        assert!(
+            step < 180 || moved.abs() < 1e-4,
+            "step {step}: {moved} m, asleep: {sleeps}"
+        );
+    }
+    assert!(n_alone > 0, "they fell asleep together");
+}

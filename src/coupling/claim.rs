@@ -12,7 +12,7 @@ use super::roster::Roster;
 use super::sets::RapierSets;
 use super::strikes::Strikes;
 use super::sweep::Sweep;
-use super::waking::wake_met;
+use super::waking::{wake_met, wake_surfaces};
 use super::walk::{ClaimedPair, Map, Walk};
 use crate::body::{FlexBody, FlexBodySet};
 use crate::rapier::math::Real;
@@ -125,6 +125,12 @@ impl Claims {
             excess: self.excess,
         };
         self.walk.begin(&map, sets);
+    }
+
+    /// Wakes the flexible bodies that sleep under, or beside, rigid bodies that were claimed; returns whether one woke, so that the look-ahead has
+    /// to begin anew. A rigid body that sleeps is claimed by what is awake beside it, and would fall into what carries it.
+    pub fn wake_touched(&mut self, sets: &mut RapierSets<'_>) -> bool {
+        wake_surfaces(sets, &self.walk.touched)
     }
 }
 

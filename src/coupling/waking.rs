@@ -44,8 +44,22 @@ pub(super) fn wake_met(
             woken.push(carrier);
         }
     });
+    wake_carriers(sets, &woken)
+}
+
+/// Wakes the bodies of surfaces; returns whether one woke.
+pub(super) fn wake_surfaces(sets: &mut RapierSets<'_>, surfaces: &[ColliderHandle]) -> bool {
+    let carriers = surfaces.iter().filter_map(|&surface| {
+        let collider = sets.colliders.get(surface);
+        collider.and_then(Collider::parent)
+    });
+    let carriers: Vec<_> = carriers.collect();
+    wake_carriers(sets, &carriers)
+}
+
+fn wake_carriers(sets: &mut RapierSets<'_>, carriers: &[RigidBodyHandle]) -> bool {
     let mut has_woken = false;
-    for &carrier in &woken {
+    for &carrier in carriers {
         sets.islands.wake_up(sets.bodies, carrier, true);
         // Rapier wakes no body that the user has made a fixed one.
         has_woken |= sets

@@ -9,6 +9,7 @@ use super::members::Members;
 use super::places::{loosened, order_of_colliders, reach_of, swept_box};
 use super::roster::Roster;
 use super::sets::RapierSets;
+use super::sleep::reaches;
 use super::sweep::Sweep;
 use crate::math::HashSet;
 use crate::rapier::math::Real;
@@ -44,6 +45,8 @@ pub(super) struct Walk {
     pub pairs: Vec<ClaimedPair>,
     pub joints: ClaimedJoints,
     pub answers: Answers,
+    /// Surfaces of flexible bodies that sleep, which claimed rigid bodies may touch.
+    pub touched: Vec<ColliderHandle>,
     /// Pairs that have been asked about.
     seen: HashSet<(ColliderHandle, ColliderHandle)>,
     /// Colliders near the one that is looked at: scratch.
@@ -57,6 +60,7 @@ impl Walk {
         self.pairs.clear();
         self.joints.clear();
         self.answers.clear();
+        self.touched.clear();
         self.seen.clear();
         map.attached.claim(sets, &mut self.members);
         self.claim_bound(map, sets);
@@ -74,6 +78,7 @@ impl Walk {
                 continue;
             };
             for &own in body.colliders() {
+                list_sleepers(map, sets, own, &mut self.touched);
                 list_near_rigid(map, sets, (body, own), &mut near);
                 for &other in &near {
                     self.add_rigid_pair(sets, (handle, own), other);
@@ -223,6 +228,25 @@ fn list_near_rigid(
     look_around(map, sets, (body, own), near);
     near.sort_unstable_by(|&one, &other| order_of_colliders(sets, one, other));
     near.dedup();
+}
+
+/// Lists the surfaces that sleep and that a collider of a claimed body may touch: nothing else carries it in this step.
+fn list_sleepers(
+    map: &Map<'_>,
+    sets: &RapierSets<'_>,
+    own: ColliderHandle,
+    touched: &mut Vec<ColliderHandle>,
+) {
+    let Some(collider) = sets.colliders.get(own) else {
+        return;
+    };
+    let parameters = sets.integration_parameters;
+    let around = map.excess + parameters.prediction_distance();
+    let swept = loosened(swept_box(sets.bodies, collider, parameters.dt), around);
+    let listed = listed_with(sets, own).map(|(other, _)| other);
+    touched.extend(
+        listed.filter(|&other| map.flex.is_sleeping_surface(other) && reaches(sets, other, &swept)),
+    );
 }
 
 /// Pairs that rapier lists of a collider, with the other one.

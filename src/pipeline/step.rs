@@ -171,6 +171,17 @@ impl FlexPipeline {
             self.claims.sweep(sets);
         }
         self.claims.walk(sets);
+        while self.claims.wake_touched(sets) {
+            self.claims.look_ahead(sets, flex_bodies);
+            while self.claims.wake_met(sets) {
+                self.claims.look_ahead(sets, flex_bodies);
+            }
+            self.report.n_asleep = self.claims.flex.asleep().len();
+            if is_detected {
+                self.claims.sweep(sets);
+            }
+            self.claims.walk(sets);
+        }
         self.solver.retain(sets, flex_bodies);
         let notes = notes_of_newcomers(&self.claims, sets, flex_bodies, &mut self.put_together);
         self.report.insertion_notes.extend(notes);
