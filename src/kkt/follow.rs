@@ -217,7 +217,8 @@ impl Island {
             if !self.ties.is_empty() && pass > 0 && pass % 5 == 0 {
                 self.restiffen_turns(settings);
             }
-            if self.share_out_overlaps(listing.slop, is_idle).is_err() {
+            let contradicts = is_idle && pass >= FEW_PASSES;
+            if self.share_out_overlaps(listing.slop, contradicts).is_err() {
                 return Passed::Stopped;
             }
             has_left = self.note_left();

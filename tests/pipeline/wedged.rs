@@ -126,11 +126,11 @@ fn a_weld_holds_what_is_wedged() {
     assert!(n_passes < 8 * n_claimed, "{n_passes} passes");
 }
 
-/// Planks joined end to end between two posts that fit exactly, or are too far apart: no motion closes every joint, and those that hang a little
+/// Planks joined end to end between two posts that are too far apart: no motion closes every joint, and those that hang a little
 /// are pulled straight by forces without bound. The bridge carries what falls on it.
 #[test]
 fn a_taut_bridge_of_planks_carries_a_block() {
-    for wide in [0.0, 1e-3, 1e-2, 5e-2] {
+    for wide in [1e-3, 1e-2, 5e-2] {
         let mut scene = Scene::new(1.0 / 60.0);
         let half = 1.2 + 0.5 * wide;
         let post = |x| RigidBodyBuilder::fixed().translation(vec2(x, 1.0));

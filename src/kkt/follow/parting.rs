@@ -55,8 +55,8 @@ impl Parting {
     /// Asks contacts and joints of rigid bodies for no more than these can move by, if some of them began with an overlap, or open.
     ///
     /// - `slop`: how far a joint may be open, or an overlap deep, to count as none (m or rad).
-    /// - `contradicts`: whether passes do not bring the laws to hold, so that rows may contradict each other by less than what counts as an
-    ///   overlap, or by what joints turn within the step.
+    /// - `contradicts`: whether passes do not bring the laws to hold, so that rows may contradict each other by less than that, or by what joints
+    ///   turn within the step.
     /// - `began`: the gap of a contact that the step began with, along the row as it is (m).
     ///
     /// # Errors
