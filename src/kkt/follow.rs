@@ -217,7 +217,7 @@ impl Island {
             if !self.ties.is_empty() && pass > 0 && pass % 5 == 0 {
                 self.restiffen_turns(settings);
             }
-            let contradicts = is_idle && pass >= FEW_PASSES;
+            let contradicts = false;
             if self.share_out_overlaps(listing.slop, contradicts).is_err() {
                 return Passed::Stopped;
             }

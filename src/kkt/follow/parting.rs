@@ -77,7 +77,7 @@ impl Parting {
         let overlaps = |contact: &ActiveContact| contact.is_hard && began(contact) < 0.0;
         let is_concerned = parts || contradicts && contacts.iter().any(overlaps);
         let is_open = |tie: &ActiveJoint| tie.is_open(slop, contradicts);
-        if !is_concerned && !ties.iter().any(is_open) {
+        if !is_concerned {
             return Ok(());
         }
         let matrix = self.lay_out(blocks);
@@ -107,6 +107,8 @@ impl Parting {
             rows,
             entries,
         };
+        // Nothing is kept from step to step: what is restored goes on as what was never stored.
+        *solver = ConeSolver::default();
         solver.solve(&problem, multipliers, slip, motion)?;
         for &(index, first, began) in &*asked {
             let (contact, row) = (&mut contacts[index], &rows[first]);
