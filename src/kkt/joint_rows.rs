@@ -105,11 +105,6 @@ impl ActiveJoint {
         self.asked[1] != 0.0 || began > slop || contradicts && self.error() > slop
     }
 
-    /// Whether a row of rigid bodies ends the step elsewhere than where it is to hold.
-    pub(super) fn is_apart(&self) -> bool {
-        self.is_hard && self.goal != self.target
-    }
-
     /// Leaves the row open by this beyond what was asked of it (m or rad).
     pub(super) fn leave(&mut self, open: f64) {
         let [goal, closing] = self.asked;
