@@ -112,6 +112,16 @@ impl ActiveContact {
         }
     }
 
+    /// Multipliers that the next step begins with (N). What parts bodies is no force, and may be of any size where something else holds them: of those
+    /// the next step knows the impulse alone.
+    pub fn handed_on(&self, dt: f64) -> [f64; 2] {
+        if self.is_parting() {
+            self.force(dt)
+        } else {
+            self.multiplier
+        }
+    }
+
     /// The gap (m).
     pub fn gap(&self) -> f64 {
         self.kinematics.gap + self.allowance

@@ -17,14 +17,13 @@ pub(super) use self::parting::Parting;
 
 use self::listing::Listing;
 use self::trend::Trend;
-use super::delassus::compliance;
-use super::island::{ActiveContact, Island, SolveSettings};
+use super::island::{Island, SolveSettings};
 use super::position::{PARTING_RATE, Turned};
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
-use crate::linalg::cone::{ConeError, SETTLING};
-use crate::math::{Mat2, REAL_EPSILON, exp, is_held};
-use crate::system::{Block, Response};
+use crate::linalg::cone::SETTLING;
+use crate::math::{REAL_EPSILON, exp, is_held};
+use crate::system::Block;
 
 /// Turning below this angle (rad) changes no position by more than round-off.
 pub(super) const ANGLE_TOLERANCE: f64 = 1e-11;
@@ -217,8 +216,7 @@ impl Island {
             if !self.ties.is_empty() && pass > 0 && pass % 5 == 0 {
                 self.restiffen_turns(settings);
             }
-            let contradicts = false;
-            if self.share_out_overlaps(listing.slop, contradicts).is_err() {
+            if self.share_out_overlaps(listing.slop).is_err() {
                 return Passed::Stopped;
             }
             has_left = self.note_left();
@@ -371,42 +369,6 @@ impl Island {
             .any(|way| self.path.leads_around(*way, &self.blocks));
         self.left = left;
         is_led
-    }
-
-    /// Asks overlaps and open joints that the step began with for no more than the bodies can move by.
-    fn share_out_overlaps(&mut self, slop: f64, contradicts: bool) -> Result<(), ConeError> {
-        let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
-        let candidates = &self.candidates;
-        let began = |contact: &ActiveContact| match contact.base {
-            Some(base) => base.gap - contact.kinematics.normal.dot(&base.moved),
-            None => {
-                let start = candidates[contact.candidate].start_gap(&scene);
-                start.unwrap_or(contact.gap()).min(0.0)
-            }
-        };
-        let joints = (&mut self.ties[..], &self.joint_grips[..]);
-        self.parting.share_out(
-            &self.blocks,
-            &mut self.contacts,
-            joints,
-            (slop, contradicts),
-            began,
-        )
-    }
-
-    /// Leaves overlaps that the step began with where nothing can part them: between surfaces that are pinned, or driven, both.
-    fn leave_immovable(&mut self) {
-        for contact in &mut self.contacts {
-            let row = &contact.kinematics;
-            let along = |own: Mat2| row.normal.dot(&(own * row.normal));
-            if contact.base.is_none() && contact.allowance < 0.0 && row.gap < 0.0 {
-                let own = compliance(&self.blocks, row, row, Response::Position);
-                if own.is_none_or(|own| along(own) <= 0.0) {
-                    contact.allowance += row.gap;
-                    contact.kinematics.gap = 0.0;
-                }
-            }
-        }
     }
 
     /// Goes back to the rows that the forces of the iterate acted along, with the gaps of the base.

@@ -89,9 +89,8 @@ impl ActiveJoint {
         self.row.sign * (steady + impulse)
     }
 
-    /// Whether a row of rigid bodies that is not driven is farther than this from where it is to hold (m or rad): when the step began, or now if rows
-    /// may contradict each other.
-    pub(super) fn is_open(&self, slop: f64, contradicts: bool) -> bool {
+    /// Whether a row of rigid bodies that is not driven was farther than this from where it is to hold when the step began (m or rad).
+    pub(super) fn is_open(&self, slop: f64) -> bool {
         let is_driven = matches!(self.finish, Finish::Hold { rate } if rate != 0.0);
         if !self.is_hard || self.give > 0.0 || is_driven {
             return false;
@@ -102,7 +101,7 @@ impl ActiveJoint {
             _ => 0.0,
         };
         let began = off(self.start - self.asked[0]);
-        self.asked[1] != 0.0 || began > slop || contradicts && self.error() > slop
+        self.asked[1] != 0.0 || began > slop
     }
 
     /// Leaves the row open by this beyond what was asked of it (m or rad).

@@ -24,9 +24,10 @@ impl SolvedPart<'_> {
     /// Notes the multipliers that whatever is solved next begins with.
     pub fn remember(&self, contacts: &mut ContactMemory, joints: &mut JointMemory) {
         for contact in &self.island.contacts {
+            let [normal, tangent] = contact.handed_on(self.step.dt);
             let state = Remembered {
-                normal: contact.multiplier[0],
-                tangent: contact.multiplier[1],
+                normal,
+                tangent,
                 lasting: contact.lasting(),
                 feature: contact.kinematics.feature,
             };

@@ -1,6 +1,6 @@
 //! Rigid bodies that are put into others which leave them no room.
 
-use crate::common::{Dice, Scene, elastic, real, vec2};
+use crate::common::{Dice, G, Scene, elastic, real, vec2};
 use foil2d::pipeline::Quality;
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
@@ -24,7 +24,15 @@ fn bin(half_width: f64, block: [f64; 2], height: f64) -> (Scene, FlexBodyHandle)
 /// Neither the overlap nor a tilt leaves a way out: the box stays where it is, and carries what lies on it.
 #[test]
 fn a_box_that_is_wedged_between_two_walls_rests_there() {
-    for (overlap, tilt) in [(0.001, 0.0), (0.02, 0.0), (0.005, 0.02), (0.002, 0.05)] {
+    let cases = [
+        (0.001, 0.0),
+        (0.02, 0.0),
+        (0.005, 0.02),
+        (0.002, 0.05),
+        (0.01, 0.1),
+        (0.005, 0.3),
+    ];
+    for (overlap, tilt) in cases {
         let (mut scene, block) = bin(0.2 - overlap, [0.3, 0.2], 0.47);
         let wedged = RigidBodyBuilder::dynamic()
             .translation(vec2(0.0, 0.2))
@@ -47,6 +55,12 @@ fn a_box_that_is_wedged_between_two_walls_rests_there() {
         }
         assert!(n_passes < 120 * 8, "{name}: {n_passes} passes");
         let top = f64::from(scene.world.bodies[wedged].translation().y) + 0.2;
+        let carried = scene.body(block).total_contact_force()[1];
+        let weight = 0.3 * 0.2 * 1000.0 * G;
+        assert!(
+            (carried / weight - 1.0).abs() < 1e-3,
+            "{name}: carries {carried} N of {weight} N"
+        );
         let height = scene.body(block).centre_of_mass()[1] - top;
         assert!((0.09..0.15).contains(&height), "{name}: {height} m over it");
     }

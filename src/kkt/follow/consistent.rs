@@ -12,10 +12,12 @@
 //! holds a corner in a notch against itself slips by a thousandth of what the force alone would move it, and there is one answer.
 
 use super::{CLOSE_ENOUGH, FEW_PASSES, Island, LARGE_TOLERANCE};
+use crate::kkt::active_contact::ActiveContact;
 use crate::kkt::delassus::compliance;
 use crate::kkt::island::SolveSettings;
 use crate::kkt::joint_system::Rows;
 use crate::kkt::summary::IslandSummary;
+use crate::linalg::cone::ConeError;
 use crate::math::Mat2;
 use crate::system::Response;
 
@@ -81,6 +83,37 @@ impl Island {
                 tie.goal += tie.gap;
                 tie.closing = 0.0;
                 tie.asked = [tie.goal, 0.0];
+            }
+        }
+    }
+
+    /// Asks overlaps and open joints that the step began with for no more than the bodies can move by.
+    pub(super) fn share_out_overlaps(&mut self, slop: f64) -> Result<(), ConeError> {
+        let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
+        let candidates = &self.candidates;
+        let began = |contact: &ActiveContact| match contact.base {
+            Some(base) => base.gap - contact.kinematics.normal.dot(&base.moved),
+            None => {
+                let start = candidates[contact.candidate].start_gap(&scene);
+                start.unwrap_or(contact.gap()).min(0.0)
+            }
+        };
+        let joints = (&mut self.ties[..], &self.joint_grips[..]);
+        self.parting
+            .share_out(&self.blocks, &mut self.contacts, joints, slop, began)
+    }
+
+    /// Leaves overlaps that the step began with where nothing can part them: between surfaces that are pinned, or driven, both.
+    pub(super) fn leave_immovable(&mut self) {
+        for contact in &mut self.contacts {
+            let row = &contact.kinematics;
+            let along = |own: Mat2| row.normal.dot(&(own * row.normal));
+            if contact.base.is_none() && contact.allowance < 0.0 && row.gap < 0.0 {
+                let own = compliance(&self.blocks, row, row, Response::Position);
+                if own.is_none_or(|own| along(own) <= 0.0) {
+                    contact.allowance += row.gap;
+                    contact.kinematics.gap = 0.0;
+                }
             }
         }
     }

@@ -14,9 +14,7 @@
 //! only slide out of each other, along walls that lean by `θ`, the motion `t` is where `t² + (m - t θ)²` is least: no longer than half of what is
 //! missing.
 //!
-//! Joints hold in that motion. Those that the step began with apart, or that Newton's method cannot close, close as far as that costs no more
-//! than what is missing, and open no farther: planks between posts that are too far from each other hang as they are, instead of being pulled straight by
-//! forces without bound.
+//! Joints hold in that motion. Those that the step began with apart close as far as that costs no more than what is missing, and open no farther.
 
 use super::consistent::SOFTNESS;
 use crate::constraint::contact::Kinematics;
@@ -30,13 +28,9 @@ use crate::linalg::cone::{ConeEntry, ConeError, ConeLaw, ConeProblem, ConeRow, C
 use crate::math::{Vec2, cross};
 use crate::system::{Block, Response};
 
-/// How much easier sliding may be than parting before it is as good as free (-).
-const SLIDES: f64 = 1e6;
-
 /// The question, with its buffers.
 #[derive(Debug, Default)]
 pub(in crate::kkt) struct Parting {
-    solver: ConeSolver,
     /// First node of every block that moves.
     first: Vec<Option<u32>>,
     rows: Vec<ConeRow>,
@@ -52,11 +46,9 @@ pub(in crate::kkt) struct Parting {
 }
 
 impl Parting {
-    /// Asks contacts and joints of rigid bodies for no more than these can move by, if some of them began with an overlap, or open.
+    /// Asks contacts and joints of rigid bodies for no more than these can move by, if some of them began with an overlap.
     ///
-    /// - `slop`: how far a joint may be open, or an overlap deep, to count as none (m or rad).
-    /// - `contradicts`: whether passes do not bring the laws to hold, so that rows may contradict each other by less than that, or by what joints
-    ///   turn within the step.
+    /// - `slop`: how far a joint may be open to count as closed (m or rad).
     /// - `began`: the gap of a contact that the step began with, along the row as it is (m).
     ///
     /// # Errors
@@ -66,20 +58,14 @@ impl Parting {
         blocks: &[Block],
         contacts: &mut [ActiveContact],
         joints: (&mut [ActiveJoint], &[JointGrip]),
-        (slop, contradicts): (f64, bool),
+        slop: f64,
         began: impl Fn(&ActiveContact) -> f64,
     ) -> Result<(), ConeError> {
         let (ties, grips) = joints;
-        let parts = contacts.iter().any(ActiveContact::is_parting);
-        // What did not count as an overlap when the step began was none, however far along the row the bodies have turned since.
-        let deepest = if parts { f64::INFINITY } else { slop };
-        let began = |contact: &ActiveContact| began(contact).max(-deepest);
-        let overlaps = |contact: &ActiveContact| contact.is_hard && began(contact) < 0.0;
-        let is_concerned = parts || contradicts && contacts.iter().any(overlaps);
-        let is_open = |tie: &ActiveJoint| tie.is_open(slop, contradicts);
-        if !is_concerned {
+        if !contacts.iter().any(ActiveContact::is_parting) {
             return Ok(());
         }
+        let is_open = |tie: &ActiveJoint| tie.is_open(slop);
         let matrix = self.lay_out(blocks);
         self.rows.clear();
         self.entries.clear();
@@ -90,7 +76,6 @@ impl Parting {
         self.slip.clear();
         self.slip.resize(self.rows.len(), 0.0);
         let Self {
-            solver,
             rows,
             entries,
             load,
@@ -108,7 +93,7 @@ impl Parting {
             entries,
         };
         // Nothing is kept from step to step: what is restored goes on as what was never stored.
-        *solver = ConeSolver::default();
+        let mut solver = ConeSolver::default();
         solver.solve(&problem, multipliers, slip, motion)?;
         for &(index, first, began) in &*asked {
             let (contact, row) = (&mut contacts[index], &rows[first]);
@@ -176,14 +161,7 @@ impl Parting {
             let [normal, tangent] = [kinematics.normal, kinematics.tangent()];
             let mobility = own.map_or(0.0, |own| normal.dot(&(own * normal)).max(0.0));
             let along = self.grip(blocks, kinematics, [normal, tangent]);
-            let row = |entries, law, free, share| ConeRow {
-                entries,
-                law,
-                free: [free, 0.0],
-                give: [share * mobility, 0.0],
-                acted: [0.0; 2],
-                scale: [mobility, 0.0],
-            };
+            let row = |entries, law, free, share| row(entries, law, free, (share, mobility));
             let missing = contact.asked - began;
             if began < 0.0 {
                 let yielding = SOFTNESS[0];
@@ -191,7 +169,7 @@ impl Parting {
                     .push(row(along, ConeLaw::Unilateral, -missing, yielding));
             }
             let ease = (most / missing).powi(2);
-            if began < 0.0 && ease < SLIDES {
+            if began < 0.0 && ease.is_finite() {
                 let aside = self.grip(blocks, kinematics, [tangent, Vec2::zeros()]);
                 let yielding = SOFTNESS[0] * ease;
                 self.rows
@@ -222,14 +200,7 @@ impl Parting {
             let is_closing = is_open(tie);
             let missing = tie.gap + tie.goal - tie.asked[0] - tie.moved(blocks, grips);
             let (entries, mobility) = self.tie_grips(blocks, tie, grips, 1.0);
-            let row = |entries, law, free, share| ConeRow {
-                entries,
-                law,
-                free: [free, 0.0],
-                give: [share * mobility, 0.0],
-                acted: [0.0; 2],
-                scale: [mobility, 0.0],
-            };
+            let row = |entries, law, free, share| row(entries, law, free, (share, mobility));
             if !is_closing {
                 self.rows.push(row(entries, law, missing, 0.0));
                 continue;
@@ -298,6 +269,18 @@ impl Parting {
             normal: [turn_n, 0.0],
             tangent: [turn_t, 0.0],
         });
+    }
+}
+
+/// A row that gives way by a share of its own mobility (1/kg), `free` where nothing moves (m or rad).
+fn row(entries: (u32, u32), law: ConeLaw, free: f64, (share, mobility): (f64, f64)) -> ConeRow {
+    ConeRow {
+        entries,
+        law,
+        free: [free, 0.0],
+        give: [share * mobility, 0.0],
+        acted: [0.0; 2],
+        scale: [mobility, 0.0],
     }
 }
 
