@@ -51,8 +51,9 @@ const KEPT_SHARE: f64 = 0.1;
 /// approach from afar reaches the distance at which contact closes and is not cut before.
 const KEPT_MOST: f64 = 0.3;
 /// Share of the distance before all motions that is kept where that was below the guard: what slides along at that distance needs some
-/// room, and parts by more in every step that is solved.
-const KEPT_OF_LEAST: f64 = 0.99;
+/// room, and so does what turns there, whose rows are those of the sharp corner, while its rounded one comes nearer by the radius times the change
+/// of a sine.
+const KEPT_OF_LEAST: f64 = 0.9;
 /// Relative approach that counts as none where a pair is at its guard: above the rounding of a distance of 1e-6 of the
 /// coordinates (2e-10), and so small that a thousand steps spend a thousandth.
 const NO_APPROACH: f64 = 1e-6;
@@ -81,13 +82,19 @@ impl MemberPair {
     /// The distance that every placement keeps (m): nearly the one they began with, where that was less than the path would ask for.
     #[inline]
     pub fn guard(&self) -> f64 {
-        (self.closing - GUARD_DEPTH * self.margin).min(KEPT_OF_LEAST * self.least)
+        self.usual_guard().min(KEPT_OF_LEAST * self.least)
     }
 
     /// Whether they have begun with all the room that the path may use up.
     #[inline]
     pub fn has_room(&self) -> bool {
-        KEPT_OF_LEAST * self.least >= self.closing - GUARD_DEPTH * self.margin
+        self.least >= self.usual_guard()
+    }
+
+    /// The distance that is kept by what begins with more (m).
+    #[inline]
+    fn usual_guard(&self) -> f64 {
+        self.closing - GUARD_DEPTH * self.margin
     }
 
     /// Where a motion stops that starts at some distance (m), below that distance. At the guard nothing may approach: a

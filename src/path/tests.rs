@@ -107,7 +107,7 @@ fn a_pair_has_room_if_it_may_be_led_as_near_as_others() {
     for (least, has_room) in [
         (f64::INFINITY, true),
         (0.01, true),
-        (0.0021, true),
+        (0.0023, true),
         (0.0019, false),
         (1e-12, false),
     ] {

@@ -24,9 +24,15 @@ use crate::kkt::delassus::compliance;
 use crate::kkt::joint_rows::ActiveJoint;
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::complementarity::RowKind;
-use crate::linalg::cone::{ConeEntry, ConeError, ConeLaw, ConeProblem, ConeRow, ConeSolver};
+use crate::linalg::cone::{
+    ConeEntry, ConeError, ConeLaw, ConeProblem, ConeRow, ConeSettings, ConeSolver,
+};
 use crate::math::{Vec2, cross};
 use crate::system::{Block, Response};
+
+/// Share of what is missing to which the motion is found (-). Rows that ask for what it reaches agree whatever it is; only what is no deeper may be so
+/// by that much.
+const FINENESS: f64 = 1e-4;
 
 /// The question, with its buffers.
 #[derive(Debug, Default)]
@@ -93,7 +99,10 @@ impl Parting {
             entries,
         };
         // Nothing is kept from step to step: what is restored goes on as what was never stored.
-        let mut solver = ConeSolver::default();
+        let mut solver = ConeSolver::new(ConeSettings {
+            tolerance: FINENESS * SOFTNESS[0],
+            ..ConeSettings::default()
+        });
         solver.solve(&problem, multipliers, slip, motion)?;
         for &(index, first, began) in &*asked {
             let (contact, row) = (&mut contacts[index], &rows[first]);
