@@ -50,3 +50,9 @@ mod welded_twice;
 
 #[path = "joints/touching.rs"]
 mod touching;
+
+#[path = "joints/taut.rs"]
+mod taut;
+
+#[path = "joints/inside.rs"]
+mod inside;

@@ -2,6 +2,7 @@
 
 use super::pair_name::{PairName, pair_name};
 use super::sets::RapierSets;
+use crate::constraint::geometry::RESTING;
 use crate::math::HashMap;
 use crate::rapier::prelude::*;
 
@@ -117,11 +118,36 @@ impl Answers {
     }
 }
 
-/// Whether a joint between the bodies of two colliders keeps them from touching.
+/// Whether a joint between the bodies of two colliders keeps them from touching: as the user has said, or as it pins them inside each other.
 fn joint_forbids(sets: &RapierSets<'_>, one: &Collider, other: &Collider) -> bool {
-    let (Some(one), Some(other)) = (one.parent(), other.parent()) else {
+    let (Some(parent), Some(other_parent)) = (one.parent(), other.parent()) else {
         return false;
     };
-    let mut joints = sets.impulse_joints.joints_between(one, other);
-    joints.any(|(_, joint)| !joint.data.contacts_enabled())
+    let slop = RESTING * f64::from(sets.integration_parameters.length_unit).abs();
+    let mut joints = sets.impulse_joints.joints_between(parent, other_parent);
+    joints.any(|(_, joint)| {
+        let surfaces = match joint.body1() == parent {
+            true => [one, other],
+            false => [other, one],
+        };
+        !joint.data.contacts_enabled() || pins_inside(&joint.data, surfaces, slop)
+    })
+}
+
+/// Whether a joint holds a point inside one collider at a point inside the other, so that the two overlap wherever they are, by more than `slop` (m):
+/// contact that keeps them apart contradicts such a joint.
+fn pins_inside(joint: &GenericJoint, surfaces: [&Collider; 2], slop: f64) -> bool {
+    let anchors = [joint.local_anchor1(), joint.local_anchor2()];
+    let depth_of = |(surface, anchor): (&Collider, Vector)| {
+        let place = surface.position_wrt_parent().copied().unwrap_or_default();
+        let nearest = surface.shape().project_point(&place, anchor, false);
+        let depth = f64::from((nearest.point - anchor).length());
+        nearest.is_inside.then_some(depth)
+    };
+    let is_pinned = joint.is_enabled() && joint.locked_axes.contains(JointAxesMask::LIN_AXES);
+    let depths = || surfaces.into_iter().zip(anchors).map(depth_of);
+    is_pinned
+        && depths()
+            .sum::<Option<f64>>()
+            .is_some_and(|deep| deep > slop)
 }

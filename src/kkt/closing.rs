@@ -2,8 +2,10 @@
 //!
 //! A position stage that moves a row by `c` because its ends do not meet yet does so with a multiplier `W⁻¹ c / b0` beyond what
 //! the law of motion asks for. That part acts on positions only, as the pseudo-velocities do with which rigid-body engines correct theirs: ends that are
-//! `d` apart would fly at each other with `d/dt` otherwise, and a chain of such joints at its far end with the sum of all.
+//! `d` apart would fly at each other with `d/dt` otherwise, and a chain of such joints at its far end with the sum of all. What joints answer to contacts that part bodies is
+//! taken out in the same way: these are not felt by velocities either.
 
+use super::active_contact::ActiveContact;
 use super::island::{Island, KktError, SolveSettings};
 use super::joint_law::Finish;
 use super::joint_rows::{ActiveJoint, add_wrench};
@@ -20,9 +22,10 @@ impl Island {
     /// # Errors
     /// If a number is not finite.
     pub(super) fn take_out_closings(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
-        if settings.is_explicit || !self.closes() {
+        if settings.is_explicit || !(self.closes() || self.parts_joined()) {
             return Ok(());
         }
+        self.gather_partings();
         self.rows.clear();
         self.kinds.clear();
         self.free.clear();
@@ -38,7 +41,8 @@ impl Island {
                 } else {
                     tie.closing + tie.gap
                 };
-                self.free.push(-achieved / settings.b0);
+                let parted = self.parted(tie);
+                self.free.push(parted - achieved / settings.b0);
                 self.kinds.push(RowKind::Bilateral);
             }
         }
@@ -64,6 +68,37 @@ impl Island {
         }
         self.clear_impulses();
         Ok(())
+    }
+
+    /// Whether bodies that joints hold too are parted by contacts: these multipliers are no forces, nor is what joints answer to them.
+    fn parts_joined(&self) -> bool {
+        let parts = |contact: &ActiveContact| contact.is_parting() && contact.is_closed();
+        !self.ties.is_empty() && self.contacts.iter().any(parts)
+    }
+
+    /// Gathers the wrenches of the contacts that part rigid bodies.
+    fn gather_partings(&mut self) {
+        self.wrenches.clear();
+        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
+        for contact in self.contacts.iter().filter(|contact| contact.is_parting()) {
+            let wrenches = Some(&mut self.wrenches[..]);
+            let (rows, forces) = (&contact.kinematics, contact.multiplier);
+            Self::spread(&mut self.blocks, rows, forces, wrenches, |_, _, _, _| {});
+        }
+    }
+
+    /// How contacts that part move a joint row, over `b0` (1/kg N).
+    fn parted(&self, tie: &ActiveJoint) -> f64 {
+        let is_turn = tie.row.measure.is_turn();
+        let grips = self.joint_grips[tie.row.grips.0..tie.row.grips.1].iter();
+        let moved = grips.map(|grip| match &self.blocks[grip.block] {
+            Block::Rigid(block) => {
+                let wrench = unit_wrench(grip, tie.direction, is_turn);
+                block.mobility_between(wrench, self.wrenches[grip.block], Response::Velocity)
+            }
+            Block::Flex(_) => 0.0,
+        });
+        moved.sum()
     }
 
     /// Whether ends that were put apart come nearer in this step.

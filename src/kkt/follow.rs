@@ -18,7 +18,7 @@ pub(super) use self::parting::Parting;
 use self::listing::Listing;
 use self::trend::Trend;
 use super::island::{Island, SolveSettings};
-use super::position::{PARTING_RATE, Turned};
+use super::position::{OVERLAPPED, PARTING_RATE, Turned};
 use super::summary::IslandSummary;
 use crate::constraint::contact::ContactMemory;
 use crate::linalg::cone::SETTLING;
@@ -77,6 +77,7 @@ impl Island {
         self.find_margin(tolerance);
         if !self.path.is_empty() {
             self.path.rest(&self.blocks);
+            self.leave_ways_to_joints();
         }
         self.path.list_pressed(memory, &mut self.pressed_before);
         self.impact.is_known = false;
@@ -120,7 +121,7 @@ impl Island {
             pass: 0,
             is_again: false,
             keeps_rows: false,
-            slop: 1e7 * tolerance,
+            slop: OVERLAPPED * tolerance,
             kept,
         };
         self.list_near(&listing);
@@ -216,7 +217,11 @@ impl Island {
             if !self.ties.is_empty() && pass > 0 && pass % 5 == 0 {
                 self.restiffen_turns(settings);
             }
-            if self.share_out_overlaps(listing.slop).is_err() {
+            let contradicts = is_idle && pass >= FEW_PASSES && !settings.may_be_cut;
+            if self
+                .share_out_overlaps(listing.slop, contradicts, settings.b0)
+                .is_err()
+            {
                 return Passed::Stopped;
             }
             has_left = self.note_left();

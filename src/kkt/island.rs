@@ -180,7 +180,8 @@ impl Island {
         let stretched = self.stretched_by_closing(&summary);
         let allowance = loads + joint_work + stretched;
         summary.work = self.actual_work(settings) + joint_work + stretched;
-        let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(&summary);
+        let part = settings.dt / settings.whole;
+        let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(part, &summary);
         if is_thrown && settings.may_be_cut {
             summary.is_stopped = true;
             return Ok(summary);

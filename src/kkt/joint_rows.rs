@@ -38,6 +38,8 @@ pub struct ActiveJoint {
     pub(super) goal: f64,
     /// How far a unit multiplier lets the row give way (m/N or rad/(N m)).
     pub(super) give: f64,
+    /// The same where rows contradict each other (m/N or rad/(N m)).
+    pub(super) yielding: f64,
     pub(super) kind: RowKind,
     /// Distance from the goal at the last iterate (m or rad).
     pub(super) gap: f64,
@@ -66,13 +68,15 @@ pub struct ActiveJoint {
     pub(super) seen: f64,
     pub(super) n_same: usize,
     pub(super) is_left: bool,
+    /// Whether it is left open by more than what counts, as the bodies cannot come that near.
+    pub(super) is_out_of_reach: bool,
 }
 
 impl ActiveJoint {
     /// What the row leaves for the next step.
     pub fn left_behind(&self) -> RememberedJoint {
         RememberedJoint {
-            multiplier: self.multiplier,
+            multiplier: self.multiplier - self.closer,
             driven: self.driven,
             closes: self.closing != 0.0 && self.goal != self.target,
         }
@@ -89,8 +93,9 @@ impl ActiveJoint {
         self.row.sign * (steady + impulse)
     }
 
-    /// Whether a row of rigid bodies that is not driven was farther than this from where it is to hold when the step began (m or rad).
-    pub(super) fn is_open(&self, slop: f64) -> bool {
+    /// Whether a row of rigid bodies that is not driven is farther than this from where it is to hold (m or rad): when the step began, or now if rows
+    /// may contradict each other.
+    pub(super) fn is_open(&self, slop: f64, contradicts: bool) -> bool {
         let is_driven = matches!(self.finish, Finish::Hold { rate } if rate != 0.0);
         if !self.is_hard || self.give > 0.0 || is_driven {
             return false;
@@ -101,12 +106,18 @@ impl ActiveJoint {
             _ => 0.0,
         };
         let began = off(self.start - self.asked[0]);
-        self.asked[1] != 0.0 || began > slop
+        self.asked[1] != 0.0 || began > slop || contradicts && self.error() > slop
     }
 
-    /// Leaves the row open by this beyond what was asked of it (m or rad).
-    pub(super) fn leave(&mut self, open: f64) {
+    /// Whether a row of rigid bodies ends the step elsewhere than where it is to hold.
+    pub(super) fn is_apart(&self) -> bool {
+        self.is_hard && self.goal != self.target
+    }
+
+    /// Leaves the row open by this beyond what was asked of it, which is told if it is more than `slop` (m or rad).
+    pub(super) fn leave(&mut self, open: f64, slop: f64) {
         let [goal, closing] = self.asked;
+        self.is_out_of_reach = open.abs() > slop;
         self.gap += self.goal - (goal + open);
         self.goal = goal + open;
         self.closing = (closing + open).clamp(closing.min(0.0), closing.max(0.0));
@@ -132,7 +143,7 @@ impl ActiveJoint {
         if !self.is_movable {
             return 0.0;
         }
-        let off = self.gap + self.give * self.multiplier;
+        let off = self.gap + (self.give + self.yielding) * self.multiplier;
         match (self.kind, self.status) {
             (RowKind::Unilateral, Status::Open) | (_, Status::SlipNegative) => (-off).max(0.0),
             (_, Status::SlipPositive) => off.max(0.0),
@@ -192,6 +203,7 @@ impl Island {
                 goal: resolved.goal,
                 target: resolved.target,
                 give: resolved.give,
+                yielding: 0.0,
                 kind: resolved.kind,
                 gap: start - resolved.goal,
                 direction,
@@ -209,6 +221,7 @@ impl Island {
                 seen: f64::INFINITY,
                 n_same: 0,
                 is_left: false,
+                is_out_of_reach: false,
             });
         }
         self.applied_grips.clear();
@@ -229,14 +242,28 @@ impl Island {
         self.twists.stiffen(&mut self.blocks, joints, settings, now);
     }
 
-    /// Whether joints leave the two rigid bodies of a contact no motion against each other.
-    pub(super) fn is_held_by_joints(&self, row: &Kinematics) -> bool {
-        let hold = JointHold {
+    fn joint_hold(&self) -> JointHold<'_> {
+        JointHold {
             blocks: &self.blocks,
             ties: &self.ties,
             grips: &self.joint_grips,
-        };
-        hold.holds(row)
+        }
+    }
+
+    /// Whether joints leave the two rigid bodies of a contact no motion against each other.
+    pub(super) fn is_held_by_joints(&self, row: &Kinematics) -> bool {
+        self.joint_hold().holds(row)
+    }
+
+    /// Leaves rigid bodies to the joints between them where these leave them no motion against each other.
+    pub(super) fn leave_ways_to_joints(&mut self) {
+        if self.ties.is_empty() {
+            return;
+        }
+        let mut path = std::mem::take(&mut self.path);
+        let hold = self.joint_hold();
+        path.pass_over(|pair| self.joined.has_pair(pair) && hold.welds(pair));
+        self.path = path;
     }
 
     /// Whether a contact is between blocks that a joint holds.

@@ -46,7 +46,7 @@ impl Island {
             self.free.push(tie.gap / b0);
             self.multipliers.push(tie.multiplier);
             self.statuses.push(tie.status);
-            self.joint_gives.push(tie.give / b0);
+            self.joint_gives.push((tie.give + tie.yielding) / b0);
         }
     }
 

@@ -21,7 +21,7 @@ pub(super) const PARTING_RATE: Judged = Judged::new("kkt::PARTING_RATE", 24.0);
 pub(super) const ROUND_OFF: f64 = 2.0 * rounding::SUM;
 
 /// Multiple of the tolerance from which an overlap counts as put there.
-const OVERLAPPED: Judged = Judged::new("kkt::OVERLAPPED", 1e7);
+pub(super) const OVERLAPPED: Judged = Judged::new("kkt::OVERLAPPED", 1e7);
 
 /// Times that a contact without a gap is let go within a step.
 const LET_GO: u8 = 2;

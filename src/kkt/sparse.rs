@@ -34,7 +34,7 @@ const WORTH: f64 = 4.0;
 /// Where a body fits between two that nothing moves, forces of any size press it and change nothing; an interior point goes to the middle of all
 /// of them. With this what rows disagree about, `d`, ends in a force of `d / (s D)`, and what carries `p` rests nearer by a
 /// millionth of the way that `p` would move it in the step. Friction gives way to the change of its force only, as it would creep.
-const YIELDING: f64 = 1e-6;
+pub(super) const YIELDING: f64 = 1e-6;
 
 /// Share of a joint's force that it gives way to as contacts do (-); to the rest only as it changes, or a chain would open.
 const JOINT_SHARE: f64 = 0.05;

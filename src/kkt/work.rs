@@ -97,8 +97,8 @@ pub(super) fn joint_work(
 ) -> f64 {
     let mut work = 0.0;
     for tie in ties {
-        if tie.closing != 0.0 {
-            // Ends that are drawn together move against each other: work is what the driven ones do.
+        if tie.closing != 0.0 || tie.is_apart() {
+            // Ends that are drawn together, or left apart, move against each other: work is what the driven ones do.
             work -= driven_work(blocks, tie, grips.start, dt);
             continue;
         }

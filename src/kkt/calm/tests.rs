@@ -45,6 +45,7 @@ fn join(island: &mut Island, blocks: [usize; 2]) {
         start: 0.0,
         goal: 0.0,
         give: 0.0,
+        yielding: 0.0,
         kind: RowKind::Bilateral,
         gap: 0.0,
         direction: Vec2::x(),
@@ -63,6 +64,7 @@ fn join(island: &mut Island, blocks: [usize; 2]) {
         seen: 0.0,
         n_same: 0,
         is_left: false,
+        is_out_of_reach: false,
     });
 }
 

@@ -88,7 +88,12 @@ impl Island {
     }
 
     /// Asks overlaps and open joints that the step began with for no more than the bodies can move by.
-    pub(super) fn share_out_overlaps(&mut self, slop: f64) -> Result<(), ConeError> {
+    pub(super) fn share_out_overlaps(
+        &mut self,
+        slop: f64,
+        contradicts: bool,
+        b0: f64,
+    ) -> Result<(), ConeError> {
         let scene = Self::scene(&self.blocks, &self.parts, &self.segments);
         let candidates = &self.candidates;
         let began = |contact: &ActiveContact| match contact.base {
@@ -99,8 +104,13 @@ impl Island {
             }
         };
         let joints = (&mut self.ties[..], &self.joint_grips[..]);
-        self.parting
-            .share_out(&self.blocks, &mut self.contacts, joints, slop, began)
+        self.parting.share_out(
+            &self.blocks,
+            &mut self.contacts,
+            joints,
+            (slop, contradicts, b0),
+            began,
+        )
     }
 
     /// Leaves overlaps that the step began with where nothing can part them: between surfaces that are pinned, or driven, both.
@@ -120,7 +130,10 @@ impl Island {
 
     /// How far from where they are to be in the end joints and attachments were left open at most (m or rad).
     pub(in crate::kkt) fn joint_violation(&self) -> f64 {
-        let left = self.ties.iter().filter(|tie| tie.is_left);
+        let left = self
+            .ties
+            .iter()
+            .filter(|tie| tie.is_left || tie.is_out_of_reach);
         let off = left.map(|tie| (tie.goal + tie.gap - tie.target).abs());
         off.fold(0.0, f64::max)
     }

@@ -14,7 +14,8 @@
 //! only slide out of each other, along walls that lean by `θ`, the motion `t` is where `t² + (m - t θ)²` is least: no longer than half of what is
 //! missing.
 //!
-//! Joints hold in that motion. Those that the step began with apart close as far as that costs no more than what is missing, and open no farther.
+//! Joints hold in that motion. Those that the step began with apart, or that passes do not close, close as far as that costs no more than what is
+//! missing, and open no farther. What hangs straight then is held by forces without bound all the same: such rows yield to theirs.
 
 use super::consistent::SOFTNESS;
 use crate::constraint::contact::Kinematics;
@@ -22,6 +23,7 @@ use crate::constraint::joint::{JointGrip, unit_wrench};
 use crate::kkt::active_contact::ActiveContact;
 use crate::kkt::delassus::compliance;
 use crate::kkt::joint_rows::ActiveJoint;
+use crate::kkt::sparse::YIELDING;
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::complementarity::RowKind;
 use crate::linalg::cone::{
@@ -64,14 +66,21 @@ impl Parting {
         blocks: &[Block],
         contacts: &mut [ActiveContact],
         joints: (&mut [ActiveJoint], &[JointGrip]),
-        slop: f64,
+        (slop, contradicts, b0): (f64, bool, f64),
         began: impl Fn(&ActiveContact) -> f64,
     ) -> Result<(), ConeError> {
         let (ties, grips) = joints;
-        if !contacts.iter().any(ActiveContact::is_parting) {
+        let parts = contacts.iter().any(ActiveContact::is_parting);
+        // What did not count as an overlap when the step began was none, however far along the row the bodies have turned since.
+        let deepest = if parts { f64::INFINITY } else { slop };
+        let began = |contact: &ActiveContact| began(contact).max(-deepest);
+        let overlaps = |contact: &ActiveContact| contact.is_hard && began(contact) < 0.0;
+        let is_open = |tie: &ActiveJoint| tie.is_open(slop, contradicts);
+        let is_concerned =
+            parts || contradicts && contacts.iter().any(overlaps) || ties.iter().any(is_open);
+        if !is_concerned {
             return Ok(());
         }
-        let is_open = |tie: &ActiveJoint| tie.is_open(slop);
         let matrix = self.lay_out(blocks);
         self.rows.clear();
         self.entries.clear();
@@ -116,10 +125,12 @@ impl Parting {
             let row = &rows[row];
             let open = row.free[0] + problem.motion(row, motion)[0];
             let tie = &mut ties[index];
-            tie.leave(match row.law {
+            tie.yielding = b0 * YIELDING * row.scale[0];
+            let open = match row.law {
                 ConeLaw::Unilateral => open.min(0.0),
                 _ => open,
-            });
+            };
+            tie.leave(open, slop);
         }
         Ok(())
     }
