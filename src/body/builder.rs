@@ -166,8 +166,8 @@ impl FlexBodyBuilder {
     /// [`LinearElastic`](crate::fe::material::LinearElastic) that is the neo-Hookean law which is Hooke's at rest.
     ///
     /// That is the default unless a consistent mass or [`ContactInertia::RedistributedAt`] is asked for, which only bodies of small strain have; said,
-    /// these are errors. A material without such a law is refused unless one of these or [`small_strain`](Self::small_strain) is said. Such a body costs a factorization or some in every step; its surface always carries its mass, and
-    /// explicit steps refuse it.
+    /// these are errors. A material without such a law is refused unless one of these or [`small_strain`](Self::small_strain) is said. Such a body costs
+    /// a factorization or some in every step; its surface always carries its mass, and explicit steps refuse it.
     pub fn large_strain(mut self) -> Self {
         self.is_large = Some(true);
         self

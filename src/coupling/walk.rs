@@ -237,6 +237,9 @@ fn list_sleepers(
     own: ColliderHandle,
     touched: &mut Vec<ColliderHandle>,
 ) {
+    if map.flex.asleep().is_empty() {
+        return;
+    }
     let Some(collider) = sets.colliders.get(own) else {
         return;
     };

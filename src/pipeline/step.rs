@@ -137,6 +137,15 @@ impl FlexPipeline {
         }
     }
 
+    /// Looks ahead until nothing that sleeps is met.
+    fn look_ahead(&mut self, sets: &mut RapierSets<'_>, flex_bodies: &FlexBodySet) {
+        self.claims.look_ahead(sets, flex_bodies);
+        while self.claims.wake_met(sets) {
+            self.claims.look_ahead(sets, flex_bodies);
+        }
+        self.report.n_asleep = self.claims.flex.asleep().len();
+    }
+
     /// Looks ahead, detects where that is needed, and claims; in a step without length it ends with the detection.
     fn claim(
         &mut self,
@@ -147,11 +156,7 @@ impl FlexPipeline {
         clock: &mut Clock,
     ) -> Result<(), StepError> {
         self.claims.bind(self.memory.masters.bonds(), sets.bodies);
-        self.claims.look_ahead(sets, flex_bodies);
-        while self.claims.wake_met(sets) {
-            self.claims.look_ahead(sets, flex_bodies);
-        }
-        self.report.n_asleep = self.claims.flex.asleep().len();
+        self.look_ahead(sets, flex_bodies);
         if let Some(joint) = self.claims.flex.joint_to_carrier(sets) {
             return Err(StepError::CarrierJoint(joint));
         }
@@ -172,11 +177,7 @@ impl FlexPipeline {
         }
         self.claims.walk(sets);
         while self.claims.wake_touched(sets) {
-            self.claims.look_ahead(sets, flex_bodies);
-            while self.claims.wake_met(sets) {
-                self.claims.look_ahead(sets, flex_bodies);
-            }
-            self.report.n_asleep = self.claims.flex.asleep().len();
+            self.look_ahead(sets, flex_bodies);
             if is_detected {
                 self.claims.sweep(sets);
             }
