@@ -111,4 +111,4 @@ fn blocks_of(tie: &ActiveJoint, grips: &[JointGrip]) -> impl Iterator<Item = usi
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -160,3 +160,59 @@ impl ActiveJoint {
         is_law && self.is_movable && !self.is_left && self.is_closed()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constraint::contact::{Kinematics, Remembered};
+    use crate::kkt::calm::tests::join;
+    use crate::kkt::together::tests::rigid;
+    use crate::linalg::complementarity::Method;
+    use crate::math::Vec2;
+    use crate::path::samples::Random;
+    use crate::system::Point;
+
+    const SETTINGS: SolveSettings = SolveSettings {
+        dt: 1e-2,
+        whole: 1e-2,
+        b0: 5e-5,
+        b1: 1e-2,
+        is_within: false,
+        is_explicit: false,
+        insists: false,
+        impact: crate::kkt::ImpactTreatment::Stabilized,
+        contact: crate::kkt::ContactMethod::Lagrange,
+        solver: Method::ActiveSet,
+        restitution_threshold: 0.0,
+        max_newton: 10,
+        may_be_cut: false,
+        length_unit: 1.0,
+    };
+
+    /// A joint holds two bodies along `x`, and a contact pushes them apart along a line by `force`: all the joint's force answers to that.
+    #[test]
+    fn what_answers_to_contacts_that_part_is_no_force() {
+        for (slant, asked) in [(0.0, -0.01), (0.5, -0.01), (0.5, 0.0)] {
+            let mut random = Random::new(3);
+            let mut island = Island::default();
+            for x in [0.0, 1.0] {
+                island.blocks.push(rigid(&mut random, Vec2::new(x, 0.0)).0);
+            }
+            join(&mut island, [0, 1]);
+            island.ties[0].is_hard = true;
+            island.list_holders();
+            let (force, normal) = (7.0, Vec2::new(1.0, slant).normalize());
+            let grips = [(0, 1.0), (1, -1.0)]
+                .map(|(block, weight)| (block, Point::Arm(Vec2::zeros()), weight, Vec2::zeros()));
+            let row = Kinematics::with_levers(0.0, normal, Vec2::zeros(), &grips);
+            let mut contact =
+                ActiveContact::new(0, row, Remembered::default(), 0.0, &island.blocks);
+            (contact.asked, contact.multiplier) = (asked, [force, 0.0]);
+            island.contacts.push(contact);
+            assert!(island.take_out_closings(&SETTINGS).is_ok());
+            let expected = if asked < 0.0 { -force * normal.x } else { 0.0 };
+            let found = island.ties[0].closer;
+            assert!((found - expected).abs() < 1e-12, "{slant}: {found}");
+        }
+    }
+}

@@ -295,7 +295,7 @@ impl Island {
     }
 
     /// Lists which rows hold which block, so that only rows that couple are ever combined.
-    fn list_holders(&mut self) {
+    pub(super) fn list_holders(&mut self) {
         self.holders.clear();
         for (index, tie) in self.ties.iter().enumerate() {
             for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {

@@ -11,7 +11,7 @@ use crate::path::samples::Random;
 use crate::system::{Block, Point, RigidBlock};
 
 /// A joint between two blocks, wherever that is.
-fn join(island: &mut Island, blocks: [usize; 2]) {
+pub(in crate::kkt) fn join(island: &mut Island, blocks: [usize; 2]) {
     let first = island.joint_grips.len();
     for (block, weight) in blocks.into_iter().zip([1.0, -1.0]) {
         let point = match &island.blocks[block] {
