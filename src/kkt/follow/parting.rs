@@ -54,9 +54,11 @@ pub(in crate::kkt) struct Parting {
 }
 
 impl Parting {
-    /// Asks contacts and joints of rigid bodies for no more than these can move by, if some of them began with an overlap.
+    /// Asks contacts and joints of rigid bodies for no more than these can move by, if some of them began with an overlap, or open.
     ///
-    /// - `slop`: how far a joint may be open to count as closed (m or rad).
+    /// - `slop`: how far a joint may be open, or an overlap deep, to count as none (m or rad).
+    /// - `contradicts`: whether passes do not bring the laws to hold, so that joints may be asked that the step began with closed.
+    /// - `b0`: what a multiplier moves, over the mobility (s²).
     /// - `began`: the gap of a contact that the step began with, along the row as it is (m).
     ///
     /// # Errors
