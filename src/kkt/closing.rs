@@ -2,8 +2,8 @@
 //!
 //! A position stage that moves a row by `c` because its ends do not meet yet does so with a multiplier `W⁻¹ c / b0` beyond what
 //! the law of motion asks for. That part acts on positions only, as the pseudo-velocities do with which rigid-body engines correct theirs: ends that are
-//! `d` apart would fly at each other with `d/dt` otherwise, and a chain of such joints at its far end with the sum of all. What joints answer to contacts that part bodies is
-//! taken out in the same way: these are not felt by velocities either.
+//! `d` apart would fly at each other with `d/dt` otherwise, and a chain of such joints at its far end with the sum of all. What joints answer to
+//! contacts that part bodies is taken out in the same way: these are not felt by velocities either. The next step begins without both.
 
 use super::active_contact::ActiveContact;
 use super::island::{Island, KktError, SolveSettings};
@@ -87,7 +87,7 @@ impl Island {
         }
     }
 
-    /// How contacts that part move a joint row, over `b0` (1/kg N).
+    /// How contacts that part move a joint row, over `b0` (N/kg, or N m/(kg m²) of what keeps an angle).
     fn parted(&self, tie: &ActiveJoint) -> f64 {
         let is_turn = tie.row.measure.is_turn();
         let grips = self.joint_grips[tie.row.grips.0..tie.row.grips.1].iter();
