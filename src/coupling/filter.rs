@@ -1,5 +1,6 @@
 //! Filters: which bodies the flexible stage can solve for, and which colliders may push each other.
 
+use super::joints::is_rigid;
 use super::pair_name::{PairName, pair_name};
 use super::sets::RapierSets;
 use crate::constraint::geometry::RESTING;
@@ -118,19 +119,26 @@ impl Answers {
     }
 }
 
-/// Whether a joint between the bodies of two colliders keeps them from touching: as the user has said, or as it pins them inside each other.
+/// Whether a joint between the bodies of two colliders keeps them from touching: as the user has said, as it welds them, or as it pins them inside each
+/// other.
 fn joint_forbids(sets: &RapierSets<'_>, one: &Collider, other: &Collider) -> bool {
     let (Some(parent), Some(other_parent)) = (one.parent(), other.parent()) else {
         return false;
     };
-    let slop = RESTING * f64::from(sets.integration_parameters.length_unit).abs();
+    let parameters = sets.integration_parameters;
+    let slop = RESTING * f64::from(parameters.length_unit).abs();
+    let dt = f64::from(parameters.dt);
     let mut joints = sets.impulse_joints.joints_between(parent, other_parent);
     joints.any(|(_, joint)| {
         let surfaces = match joint.body1() == parent {
             true => [one, other],
             false => [other, one],
         };
-        !joint.data.contacts_enabled() || pins_inside(&joint.data, surfaces, slop)
+        let joint = &joint.data;
+        let welds = joint.locked_axes.contains(JointAxesMask::LOCKED_FIXED_AXES);
+        let contradicts = welds || pins_inside(joint, surfaces, slop);
+        let holds = joint.is_enabled() && is_rigid(joint, dt);
+        !joint.contacts_enabled() || holds && contradicts
     })
 }
 
@@ -144,7 +152,7 @@ fn pins_inside(joint: &GenericJoint, surfaces: [&Collider; 2], slop: f64) -> boo
         let depth = f64::from((nearest.point - anchor).length());
         nearest.is_inside.then_some(depth)
     };
-    let is_pinned = joint.is_enabled() && joint.locked_axes.contains(JointAxesMask::LIN_AXES);
+    let is_pinned = joint.locked_axes.contains(JointAxesMask::LIN_AXES);
     let depths = || surfaces.into_iter().zip(anchors).map(depth_of);
     is_pinned
         && depths()

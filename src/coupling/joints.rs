@@ -46,6 +46,11 @@ pub(super) fn owner_of(handle: ImpulseJointHandle) -> JointOwner {
     JointOwner::Impulse(index, generation)
 }
 
+/// Whether rapier holds a joint's locked axes by springs so stiff that they are rows (C.5) at this step length (s).
+pub(super) fn is_rigid(joint: &GenericJoint, dt: f64) -> bool {
+    f64::from(joint.softness.natural_frequency) * dt >= RIGID_FROM
+}
+
 /// One side of a joint: its block, and its frame about the block's centre in body axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
@@ -139,14 +144,14 @@ impl RowWriter<'_> {
     }
 
     fn lock(&mut self, axis: usize, measured: Axis, data: &GenericJoint) {
-        let frequency = f64::from(data.softness.natural_frequency);
-        let ratio = f64::from(data.softness.damping_ratio);
-        let law = if frequency * self.dt >= RIGID_FROM {
+        let law = if is_rigid(data, self.dt) {
             JointLaw::Rigid {
                 goal: 0.0,
                 rate: 0.0,
             }
         } else {
+            let frequency = f64::from(data.softness.natural_frequency);
+            let ratio = f64::from(data.softness.damping_ratio);
             let angular = std::f64::consts::TAU * frequency;
             JointLaw::Spring(Spring {
                 stiffness: angular * angular,

@@ -76,7 +76,7 @@
 //!
 //! - **Too far apart.** Pins and welds do not pull flexible bodies together over more than half the size of the smaller one. See: [`AttachmentError::TooFar`](crate::body::AttachmentError::TooFar). Do: put them nearer, or take a spring.
 //! - **In contradiction**, joints and attachments are left open, and pins and welds hold their island as long as that lasts. See: [`StepReport::joint_violation`], `Quality::Cut`. Do: leave one of them out.
-//! - **Inside each other.** Rigid bodies that an impulse joint pins at a point inside both, by a millimetre or more, do not press each other where they are solved with flexible ones: contact would pull the joint open, as it does in rapier alone. Do: let links end at their joints, or say `contacts_enabled(false)`.
+//! - **Inside each other.** Rigid bodies that an impulse joint welds to each other, or pins at a point inside both by a millimetre or more, do not press each other where they are solved with flexible ones: contact would pull the joint open, as it does in rapier alone. Do: let links end at their joints, or say `contacts_enabled(false)`.
 //! - **Taut chains** sag by a hundredth of their length where they would have to be straight. See: [`StepReport::joint_violation`].
 //! - **Sleep.** Attached bodies do not sleep.
 //! - **Carriers.** A joint to the rigid body that carries a flexible one is refused ([`StepError::CarrierJoint`](crate::pipeline::StepError::CarrierJoint)). Do: attach nodes, [`FlexBodySet::attach`](crate::body::FlexBodySet::attach).

@@ -184,16 +184,6 @@ impl FeasiblePath {
         self.add_apart(way, true)
     }
 
-    /// Passes over the ways between rigid blocks that are to be left to what else holds these.
-    pub(super) fn pass_over(&mut self, is_left: impl Fn([usize; 2]) -> bool) {
-        for (pair, way) in self.pairs.iter_mut().zip(&self.ways) {
-            let carriers = way.members.map(|member| self.carriers[member]);
-            if carriers.iter().all(|carrier| !carrier.is_flex) {
-                pair.is_asleep = is_left(carriers.map(|carrier| carrier.block));
-            }
-        }
-    }
-
     fn add_apart(&mut self, way: Way, needs_room: bool) -> bool {
         let [one, other] = way.members;
         let Some(least) = self.search.apart(&self.surfaces, way.members, way.closing) else {

@@ -77,7 +77,6 @@ impl Island {
         self.find_margin(tolerance);
         if !self.path.is_empty() {
             self.path.rest(&self.blocks);
-            self.leave_ways_to_joints();
         }
         self.path.list_pressed(memory, &mut self.pressed_before);
         self.impact.is_known = false;

@@ -4,7 +4,6 @@
 //! approaches: a projection in the metric of the masses takes energy and never gives any, and its impulses come in pairs.
 
 use super::island::{Island, KktError, SolveSettings};
-use super::joint_rows::ActiveJoint;
 use super::position::PARTING_RATE;
 use super::summary::IslandSummary;
 use super::work::{applied_work, end_energy};
@@ -37,11 +36,7 @@ impl Island {
 
     /// Whether bodies that touch have come to more kinetic energy than twice what was brought and what they part with, by the margin at least: no
     /// forces that mean anything do that.
-    ///
-    /// Where rigid joints are apart every part of a step has its share of that only: each could double what the one before has.
-    ///
-    /// - `part`: the share of the step that has been gone (-).
-    pub(super) fn is_thrown(&self, part: f64, summary: &IslandSummary) -> bool {
+    pub(super) fn is_thrown(&self, summary: &IslandSummary) -> bool {
         let overlaps = self.contacts.iter().map(|contact| -contact.allowance);
         let deepest = overlaps.fold(self.margin, f64::max);
         let masses = self.blocks.iter().map(|block| match block {
@@ -49,9 +44,7 @@ impl Island {
             Block::Rigid(block) => block.mass()[0].max(block.mass()[1]),
         });
         let parting = 2.0 * masses.sum::<f64>() * (PARTING_RATE * deepest).powi(2);
-        let is_apart = self.ties.iter().any(ActiveJoint::is_apart);
-        let share = if is_apart { part } else { 1.0 };
-        let most = (1.0 + share * DOUBLED.get()) * summary.brought() + parting;
+        let most = (1.0 + DOUBLED.get()) * summary.brought() + parting;
         let may_touch = !self.path.is_empty() || !self.contacts.is_empty();
         may_touch && summary.end_energy[0] > most
     }
@@ -187,8 +180,8 @@ mod tests {
         let at_margin = parting(MARGIN);
         for (more, is_thrown) in [(-40.0, false), (-0.1, false), (0.1, true), (1e20, true)] {
             summary.end_energy = [40.0 + at_margin + more, 1e3];
-            assert_eq!(island.is_thrown(1.0, &summary), is_thrown, "{more} J");
-            assert!(!balls(false).is_thrown(1.0, &summary));
+            assert_eq!(island.is_thrown(&summary), is_thrown, "{more} J");
+            assert!(!balls(false).is_thrown(&summary));
         }
         let grips = [0, 1].map(|block| {
             (
@@ -204,7 +197,7 @@ mod tests {
         island.contacts.push(contact);
         for (more, is_thrown) in [(-0.1, false), (0.1, true)] {
             summary.end_energy = [40.0 + parting(0.1) + more, 0.0];
-            assert_eq!(island.is_thrown(1.0, &summary), is_thrown, "{more} J");
+            assert_eq!(island.is_thrown(&summary), is_thrown, "{more} J");
         }
     }
 }

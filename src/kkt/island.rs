@@ -180,8 +180,7 @@ impl Island {
         let stretched = self.stretched_by_closing(&summary);
         let allowance = loads + joint_work + stretched;
         summary.work = self.actual_work(settings) + joint_work + stretched;
-        let part = settings.dt / settings.whole;
-        let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(part, &summary);
+        let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(&summary);
         if is_thrown && settings.may_be_cut {
             summary.is_stopped = true;
             return Ok(summary);

@@ -22,14 +22,8 @@ impl Joined {
         let [one, .., other] = contact.kinematics.attachments() else {
             return false;
         };
-        self.has_pair([one.block, other.block])
-    }
-
-    /// Whether a joint holds two blocks.
-    pub fn has_pair(&self, [one, other]: [usize; 2]) -> bool {
-        self.0
-            .binary_search(&[one.min(other), one.max(other)])
-            .is_ok()
+        let pair = [one.block.min(other.block), one.block.max(other.block)];
+        self.0.binary_search(&pair).is_ok()
     }
 
     /// Lists the pairs anew.

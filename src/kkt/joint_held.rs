@@ -30,43 +30,40 @@ pub(super) struct JointHold<'a> {
 impl JointHold<'_> {
     /// Whether joints leave the two rigid bodies of a contact no motion against each other.
     pub fn holds(&self, row: &Kinematics) -> bool {
-        let blocks = || row.attachments().iter().map(|a| a.block);
-        let one = blocks().next();
-        let other = blocks().find(|block| one != Some(*block));
-        match (one, other) {
-            (Some(one), Some(other)) => {
-                blocks().all(|block| block == one || block == other) && self.welds([one, other])
-            }
-            _ => false,
-        }
-    }
-
-    /// Whether joints leave two blocks, both rigid, no motion against each other.
-    pub fn welds(&self, pair: [usize; 2]) -> bool {
         if self.ties.is_empty() {
             return false;
         }
         let mut bodies = [None; 2];
-        // A force along either axis and a couple: all that can be between two bodies.
+        // A force along the normal, one across it, and a couple: all that can be between two bodies.
         let mut between = [Pair::default(); 3];
-        let point = self.middle(pair.map(|block| (block, Vec2::zeros())).into_iter());
-        for (slot, (block, sign)) in pair.into_iter().zip([1.0, -1.0]).enumerate() {
-            let Block::Rigid(body) = &self.blocks[block] else {
+        let point = self.middle(row.attachments().iter().map(|a| (a.block, a.grip.lever)));
+        for a in row.attachments() {
+            let Block::Rigid(block) = &self.blocks[a.block] else {
                 return false;
             };
-            if body.link_response().is_some() {
+            if block.link_response().is_some() {
                 return false;
             }
-            if body.is_prescribed() {
+            if block.is_prescribed() {
                 continue;
             }
-            bodies[slot] = Some(block);
-            let lever = point - self.blocks[block].centre();
-            for (axis, along) in [Vec2::x(), Vec2::y()].into_iter().enumerate() {
-                let along = sign * along;
-                between[axis][slot] = [along.x, along.y, cross(lever, along)];
+            let is_its = |body: &Option<usize>| body.is_none_or(|body| body == a.block);
+            let Some(slot) = bodies.iter().position(is_its) else {
+                return false;
+            };
+            bodies[slot] = Some(a.block);
+            let forces = [row.normal, row.tangent()].map(|along| a.weight * along);
+            let lever = point - self.blocks[a.block].centre();
+            let wrenches = [
+                [forces[0].x, forces[0].y, cross(lever, forces[0])],
+                [forces[1].x, forces[1].y, cross(lever, forces[1])],
+                [0.0, 0.0, a.weight],
+            ];
+            for (pair, wrench) in between.iter_mut().zip(wrenches) {
+                for (sum, value) in pair[slot].iter_mut().zip(wrench) {
+                    *sum += value;
+                }
             }
-            between[2][slot] = [0.0, 0.0, sign];
         }
         // Two bodies move in six ways.
         let mut held: [Pair; 6] = Default::default();

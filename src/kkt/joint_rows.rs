@@ -255,17 +255,6 @@ impl Island {
         self.joint_hold().holds(row)
     }
 
-    /// Leaves rigid bodies to the joints between them where these leave them no motion against each other.
-    pub(super) fn leave_ways_to_joints(&mut self) {
-        if self.ties.is_empty() {
-            return;
-        }
-        let mut path = std::mem::take(&mut self.path);
-        let hold = self.joint_hold();
-        path.pass_over(|pair| self.joined.has_pair(pair) && hold.welds(pair));
-        self.path = path;
-    }
-
     /// Whether a contact is between blocks that a joint holds.
     pub(super) fn is_joined(&self, contact: &ActiveContact) -> bool {
         self.joined.has(contact)

@@ -65,3 +65,37 @@ fn links_that_are_joined_inside_each_other_stay_so() {
         }
     }
 }
+
+/// Boxes that overlap by 2 cm are welded to each other at the middle of one, which is outside the other, and are handed over 9 mm open. Contact that
+/// keeps them apart would leave no way to close.
+#[test]
+fn bodies_that_are_welded_inside_each_other_come_together() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.fixed(ColliderBuilder::cuboid(real(10.0), real(0.5)).translation(vec2(0.0, -0.5)));
+    let [half, pitch, open] = [0.2, 0.38, 0.009];
+    let boxes: Vec<_> = (0..4)
+        .map(|k| {
+            let place = vec2((f64::from(k) - 1.5) * (pitch + open), half);
+            let body = RigidBodyBuilder::dynamic().translation(place);
+            let shape = ColliderBuilder::cuboid(real(half), real(0.15));
+            scene.rigid(body, shape.density(500.0)).0
+        })
+        .collect();
+    for pair in boxes.windows(2) {
+        let weld = FixedJointBuilder::new().local_anchor2(vec2(-pitch, 0.0));
+        scene.world.insert_impulse_joint(pair[0], pair[1], weld);
+    }
+    let block = FlexBodyBuilder::rectangle([0.3, 0.2], [3, 2]).material(elastic(1e6, 1000.0, 1e-2));
+    scene.flexible(block.translation([-0.15, 0.45]));
+    for step in 0..120 {
+        scene.try_step().expect("the input is right");
+        let quality = scene.report().quality();
+        assert_ne!(quality, Quality::Unfinished, "step {step}");
+    }
+    assert_eq!(scene.report().n_claimed(), 4);
+    for pair in boxes.windows(2) {
+        let [one, other] = [0, 1].map(|k| scene.world.bodies[pair[k]].translation());
+        let apart = f64::from((other - one).length()) - pitch;
+        assert!(apart.abs() < 1e-4, "{apart} m from where they are to be");
+    }
+}
