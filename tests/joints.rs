@@ -56,3 +56,6 @@ mod taut;
 
 #[path = "joints/inside.rs"]
 mod inside;
+
+#[path = "joints/sandwich.rs"]
+mod sandwich;

@@ -13,7 +13,7 @@ use super::delassus::RowDirection;
 use super::island::{Island, SolveSettings};
 use super::summary::IslandSummary;
 use super::work::{
-    WorkGrips, actual_work, flow_energy, joint_work, kinetic_energy, momentum_at_most,
+    WorkGrips, actual_work, flow_energy, idle_work, joint_work, kinetic_energy, momentum_at_most,
 };
 use crate::math::{judged::Judged, rounding};
 use crate::system::{Block, Response};
@@ -31,11 +31,19 @@ impl Island {
 
     /// Work of the joints on what is not driven from outside (J).
     pub(super) fn joint_work(&self, settings: &SolveSettings) -> f64 {
-        let grips = WorkGrips {
+        joint_work(&self.blocks, &self.ties, self.work_grips(), settings.dt)
+    }
+
+    /// Work of joints that do none (J).
+    pub(super) fn idle_work(&self, settings: &SolveSettings) -> f64 {
+        idle_work(&self.blocks, &self.ties, self.work_grips(), settings.dt)
+    }
+
+    fn work_grips(&self) -> WorkGrips<'_> {
+        WorkGrips {
             start: &self.joint_grips,
             end: &self.end_grips,
-        };
-        joint_work(&self.blocks, &self.ties, grips, settings.dt)
+        }
     }
 
     /// Keeps contact, and turning frames, from adding energy.

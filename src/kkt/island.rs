@@ -6,6 +6,7 @@ use super::constraint_function::Newton;
 use super::delassus::RowDirection;
 use super::feasible::FeasiblePath;
 use super::follow::{Parting, Stage};
+use super::gentle::GAINED;
 use super::joined::Joined;
 use super::joint_rows::ActiveJoint;
 use super::joint_twist::Twists;
@@ -178,10 +179,12 @@ impl Island {
         let joint_work = self.joint_work(settings);
         summary.end_energy = end_energy(&self.blocks);
         let stretched = self.stretched_by_closing(&summary);
-        let allowance = loads + joint_work + stretched;
         summary.work = self.actual_work(settings) + joint_work + stretched;
+        let idle_work = self.idle_work(settings);
+        let most = GAINED * summary.brought();
+        let allowance = loads + joint_work + stretched - (idle_work - most).max(0.0);
         let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(&summary);
-        if is_thrown && settings.may_be_cut {
+        if (is_thrown || idle_work > most) && settings.may_be_cut {
             summary.is_stopped = true;
             return Ok(summary);
         }

@@ -100,24 +100,31 @@ impl ActiveJoint {
         if !self.is_hard || self.give > 0.0 || is_driven {
             return false;
         }
-        let off = |off: f64| match self.kind {
-            RowKind::Unilateral => (-off).max(0.0),
-            RowKind::Bilateral => off.abs(),
-            _ => 0.0,
-        };
-        let began = off(self.start - self.asked[0]);
+        let began = self.off(self.start - self.asked[0]);
         self.asked[1] != 0.0 || began > slop || contradicts && self.error() > slop
     }
 
-    /// Whether a row of rigid bodies ends the step elsewhere than where it is to hold.
-    pub(super) fn is_apart(&self) -> bool {
-        self.is_hard && self.goal != self.target
+    /// How far the row is from holding where it is this far from where it is to be (m or rad).
+    fn off(&self, from: f64) -> f64 {
+        match self.kind {
+            RowKind::Unilateral => (-from).max(0.0),
+            RowKind::Bilateral => from.abs(),
+            _ => 0.0,
+        }
     }
 
-    /// Leaves the row open by this beyond what was asked of it, which is told if it is more than `slop` (m or rad).
+    /// Whether its ends move against each other in the step, drawn together or left elsewhere than where they are to be.
+    pub(super) fn moves_apart(&self) -> bool {
+        self.closing != 0.0 || self.is_hard && self.goal != self.target
+    }
+
+    /// Leaves the row open by this beyond what was asked of it. It is told if that is more than `slop` (m or rad) and the row does not come half as near
+    /// as asked: what closes in its time is no more than late.
     pub(super) fn leave(&mut self, open: f64, slop: f64) {
         let [goal, closing] = self.asked;
-        self.is_out_of_reach = open.abs() > slop;
+        let [began, asked, ends] =
+            [self.start, goal, goal + open].map(|place| self.off(place - self.target));
+        self.is_out_of_reach = ends > asked + slop && ends > 0.5 * (began + asked);
         self.gap += self.goal - (goal + open);
         self.goal = goal + open;
         self.closing = (closing + open).clamp(closing.min(0.0), closing.max(0.0));

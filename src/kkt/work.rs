@@ -2,7 +2,7 @@
 
 use super::active_contact::ActiveContact;
 use super::joint_rows::{ActiveJoint, add_wrench};
-use crate::constraint::joint::{JointGrip, unit_wrench};
+use crate::constraint::joint::{JointGrip, JointLaw, unit_wrench};
 use crate::math::Vec2;
 use crate::system::{Balance, Block, FlexBlock, RigidBlock, RigidMotion};
 
@@ -88,43 +88,67 @@ pub(super) fn actual_work(blocks: &[Block], contacts: &[ActiveContact], dt: f64)
     work
 }
 
-/// Work of the joints on what is not driven from outside (J): nothing but for motors, springs and driven bodies.
+/// Work of the joints on what is not driven from outside (J): nothing but for motors, springs and driven bodies, and for what turning rows leave.
 pub(super) fn joint_work(
     blocks: &[Block],
     ties: &[ActiveJoint],
     grips: WorkGrips<'_>,
     dt: f64,
 ) -> f64 {
-    let mut work = 0.0;
-    for tie in ties {
-        if tie.closing != 0.0 || tie.is_apart() {
-            // Ends that are drawn together, or left apart, move against each other: work is what the driven ones do.
-            work -= driven_work(blocks, tie, grips.start, dt);
-            continue;
-        }
-        let is_turn = tie.row.measure.is_turn();
-        let (first, last) = tie.row.grips;
-        for at in first..last {
-            let grip = &grips.start[at];
-            match &blocks[grip.block] {
-                Block::Rigid(block) if block.is_driven() => {}
-                Block::Rigid(block) if tie.is_hard => {
-                    let mut impulse = [0.0; 3];
-                    let kept = unit_wrench(grip, tie.direction, is_turn);
-                    let end = unit_wrench(&grips.end[at], tie.end, is_turn);
-                    add_wrench(&mut impulse, tie.kick, kept);
-                    add_wrench(&mut impulse, tie.impulse, end);
-                    work += block.work_of(impulse);
-                }
-                block => {
-                    let moved = block.position(grip.point) - block.start_position(grip.point);
-                    let force = tie.force(dt) * tie.row.sign;
-                    work += force * grip.weight * tie.direction.dot(&moved);
-                }
+    let works = ties.iter().map(|tie| work_of(blocks, tie, grips, dt));
+    works.sum()
+}
+
+/// Work of joints that do none (J): bilateral rows between rigid bodies that are held at rest, and what limits give. The force of the step's beginning works on
+/// the velocities of the end, that of the end on those of the beginning.
+pub(super) fn idle_work(
+    blocks: &[Block],
+    ties: &[ActiveJoint],
+    grips: WorkGrips<'_>,
+    dt: f64,
+) -> f64 {
+    let is_driven =
+        |grip: &JointGrip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_driven());
+    let is_idle = |tie: &&ActiveJoint| {
+        let own = &grips.start[tie.row.grips.0..tie.row.grips.1];
+        tie.is_hard && !tie.moves_apart() && !own.iter().any(is_driven)
+    };
+    let works = ties.iter().filter(is_idle).map(|tie| match tie.row.law {
+        JointLaw::Rigid { rate, .. } if rate == 0.0 => work_of(blocks, tie, grips, dt),
+        JointLaw::Limit { .. } => work_of(blocks, tie, grips, dt).max(0.0),
+        _ => 0.0,
+    });
+    works.sum()
+}
+
+/// Work of a joint row on what is not driven from outside (J).
+fn work_of(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, dt: f64) -> f64 {
+    if tie.moves_apart() {
+        // Ends that are drawn together, or left apart, move against each other: work is what the driven ones do.
+        return -driven_work(blocks, tie, grips.start, dt);
+    }
+    let is_turn = tie.row.measure.is_turn();
+    let (first, last) = tie.row.grips;
+    let works = (first..last).map(|at| {
+        let grip = &grips.start[at];
+        match &blocks[grip.block] {
+            Block::Rigid(block) if block.is_driven() => 0.0,
+            Block::Rigid(block) if tie.is_hard => {
+                let mut impulse = [0.0; 3];
+                let kept = unit_wrench(grip, tie.direction, is_turn);
+                let end = unit_wrench(&grips.end[at], tie.end, is_turn);
+                add_wrench(&mut impulse, tie.kick, kept);
+                add_wrench(&mut impulse, tie.impulse, end);
+                block.work_of(impulse)
+            }
+            block => {
+                let moved = block.position(grip.point) - block.start_position(grip.point);
+                let force = tie.force(dt) * tie.row.sign;
+                force * grip.weight * tie.direction.dot(&moved)
             }
         }
-    }
-    work
+    });
+    works.sum()
 }
 
 /// What a joint's mean force does on driven bodies that it holds (J).

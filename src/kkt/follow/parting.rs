@@ -8,7 +8,7 @@
 //! min ½ aᵀ M a + Σ (eᵢ² + (uᵢ mᵢ / m)²) / 2 s Dᵢ,    Nᵢ a + eᵢ >= mᵢ,    uᵢ = Tᵢ a,    gᵢ + Nᵢ a >= min(gᵢ, 0)
 //! ```
 //!
-//! with `M` what they resist by, `g` the gaps that the step began with, `mᵢ` what is missing on row `i`, `m` the most of them, `N` and `T` the
+//! with `M` what they resist by, `g` the gaps that the step began with, `mᵢ` what is missing on row `i`, `m` the most of them and of what joints miss, `N` and `T` the
 //! rows along normals and tangents, and `D` their own mobilities; the first two for rows with `g < 0` only. Then every row is asked for what this
 //! motion reaches, and slips from there. The rows agree by construction, those of friction too: that motion obeys all of them. Where bodies
 //! only slide out of each other, along walls that lean by `θ`, the motion `t` is where `t² + (m - t θ)²` is least: no longer than half of what is
@@ -86,7 +86,10 @@ impl Parting {
         let matrix = self.lay_out(blocks);
         self.rows.clear();
         self.entries.clear();
-        self.state_contacts(blocks, contacts, began);
+        let open = ties.iter().filter(|tie| is_open(tie));
+        let most = open.map(|tie| missing_way(blocks, tie, grips));
+        let most = most.fold(0.0, f64::max);
+        self.state_contacts(blocks, contacts, most, began);
         self.state_joints(blocks, (ties, grips), is_open);
         self.multipliers.clear();
         self.multipliers.resize(self.rows.len(), [0.0; 2]);
@@ -159,14 +162,15 @@ impl Parting {
         matrix
     }
 
+    /// Overlaps part, by sliding no farther along each other than half of `most` (m) or of what is missing there; the rest comes no deeper.
     fn state_contacts(
         &mut self,
         blocks: &[Block],
         contacts: &[ActiveContact],
+        mut most: f64,
         began: impl Fn(&ActiveContact) -> f64,
     ) {
         self.asked.clear();
-        let mut most = 0.0f64;
         for (index, contact) in contacts.iter().enumerate() {
             if contact.is_hard && !contact.is_lost {
                 let began = began(contact);
@@ -220,7 +224,7 @@ impl Parting {
                 continue;
             }
             let is_closing = is_open(tie);
-            let missing = tie.gap + tie.goal - tie.asked[0] - tie.moved(blocks, grips);
+            let missing = missing(blocks, tie, grips);
             let (entries, mobility) = self.tie_grips(blocks, tie, grips, 1.0);
             let row = |entries, law, free, share| row(entries, law, free, (share, mobility));
             if !is_closing {
@@ -291,6 +295,30 @@ impl Parting {
             normal: [turn_n, 0.0],
             tangent: [turn_t, 0.0],
         });
+    }
+}
+
+/// How far a joint row is from where it is asked to be where nothing moves (m or rad).
+fn missing(blocks: &[Block], tie: &ActiveJoint, grips: &[JointGrip]) -> f64 {
+    tie.gap + tie.goal - tie.asked[0] - tie.moved(blocks, grips)
+}
+
+/// The same as a way (m): of a turn, at the radius of gyration that its bodies have together.
+fn missing_way(blocks: &[Block], tie: &ActiveJoint, grips: &[JointGrip]) -> f64 {
+    let missing = missing(blocks, tie, grips).abs();
+    if !tie.row.measure.is_turn() {
+        return missing;
+    }
+    let sum = |wrench: [f64; 3]| {
+        let grips = grips[tie.row.grips.0..tie.row.grips.1].iter();
+        let own = grips.map(|grip| own_mobility(blocks, (grip, wrench)));
+        own.sum::<f64>()
+    };
+    let gyration = (sum([1.0, 0.0, 0.0]) / sum([0.0, 0.0, 1.0])).sqrt();
+    if gyration.is_finite() {
+        missing * gyration
+    } else {
+        0.0
     }
 }
 
