@@ -192,3 +192,42 @@ fn a_finger_that_is_dragged_along_a_wall_tells_the_forces_that_act() {
         assert!(worst < 200.0, "E {young:e}: {worst} N");
     }
 }
+
+/// A soft block and a box that a plate presses against another until there is no room: steps end where surfaces were stopped, and the report tells the overlap
+/// that is there, not the one where forces would have led.
+#[test]
+fn what_is_crushed_flat_is_told_as_deep_as_it_is() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let plate = RigidBodyBuilder::kinematic_position_based().translation(vec2(0.0, -0.1));
+    let shape = ColliderBuilder::cuboid(real(4.0), real(0.1));
+    let (plate, _) = scene.rigid(plate, shape.clone());
+    scene.fixed(shape.translation(vec2(0.0, 1.1)));
+    let material = LinearElastic::plane_strain(1e6, 0.45).density(1000.0);
+    let block = FlexBodyBuilder::rectangle([0.5, 0.5], [5, 5]).material(material.rayleigh(1e-2));
+    scene.flexible(block.translation([0.0, 0.01]));
+    let part = RigidBodyBuilder::dynamic().translation(vec2(0.72, 0.2));
+    scene.rigid(part, ColliderBuilder::cuboid(real(0.2), real(0.2)));
+    let mut onlooker = Onlooker::default();
+    for step in 0..120 {
+        let height = (0.5 * f64::from(step + 1) / 60.0).min(0.75);
+        let place = vec2(0.0, height - 0.1);
+        scene.world.bodies[plate].set_next_kinematic_translation(place);
+        onlooker.step(&mut scene);
+        let told = scene.report().gap_violation();
+        assert!(told < 0.5, "step {step}: {told} m told");
+    }
+    let seen = onlooker.overlap();
+    println!(
+        "{} of 120 steps not solved; {} m deep, told {} m",
+        onlooker.n_unsolved(),
+        seen.depth,
+        onlooker.told
+    );
+    assert!(onlooker.n_unsolved() > 0, "there is no room");
+    assert!(
+        seen.depth < 3.0 * onlooker.told,
+        "{} m deep, told {} m",
+        seen.depth,
+        onlooker.told
+    );
+}

@@ -101,6 +101,7 @@ impl Island {
         }
         self.correct();
         self.path.stop(&mut self.blocks);
+        self.measure_signed();
         for block in &mut self.blocks {
             match block {
                 Block::Flex(block) => {
@@ -110,7 +111,7 @@ impl Island {
                 Block::Rigid(block) => block.forget_contact(),
             }
         }
-        summary.gap_violation = self.gap_violation();
+        summary.gap_violation = self.gap_violation(true);
         settings.treatment().finish(self, settings, summary)?;
         summary.work = self.actual_work(settings) + self.joint_work(settings);
         summary.end_energy = end_energy(&self.blocks);

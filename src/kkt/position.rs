@@ -74,6 +74,7 @@ impl Island {
         if !self.path.is_empty() {
             if summary.is_unsolved() {
                 self.path.stop(&mut self.blocks);
+                self.measure_signed();
             }
             self.list_parted();
         } else if summary.is_stopped && !settings.may_be_cut {
@@ -92,7 +93,7 @@ impl Island {
         }
         // Blocks may answer by another factor from here on.
         self.prepare_joints();
-        summary.gap_violation = self.gap_violation();
+        summary.gap_violation = self.gap_violation(summary.is_unsolved());
         summary.slip_violation = self.slip_violation();
         summary.joint_violation = self.joint_violation();
     }
@@ -302,11 +303,17 @@ impl Island {
         slips.fold(0.0, f64::max)
     }
 
-    pub(super) fn gap_violation(&self) -> f64 {
+    /// Largest overlap that is left at a contact (m): where the blocks are, which is the base of the path where the step `is_stopped` there, and else
+    /// what was found last.
+    pub(super) fn gap_violation(&self, is_stopped: bool) -> f64 {
         self.contacts
             .iter()
             .filter(|contact| !contact.is_lost || contact.multiplier[0] > 0.0)
-            .fold(0.0, |worst, contact| worst.max(-contact.gap()))
+            .map(|contact| match contact.base {
+                Some(base) if is_stopped => base.gap,
+                _ => contact.gap(),
+            })
+            .fold(0.0, |worst, gap| worst.max(-gap))
     }
 }
 
