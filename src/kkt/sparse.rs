@@ -2,13 +2,11 @@
 //!
 //! Flexible blocks enter with their whole effective matrix, in their frames, free rigid ones as two nodes: the centre of mass, and the
 //! angle beside a dof that nothing moves. The dense problem of [`delassus`](super::delassus) costs the cube of the number of rows, this
-//! one little more than factorizing the bodies.
+//! one little more than factorizing the bodies: operations decide.
 
-mod choice;
 mod layout;
 mod turning;
 
-use self::choice::Choice;
 use self::layout::Shape;
 use super::delassus::compliance;
 use super::follow::LARGE_TOLERANCE;
@@ -23,6 +21,13 @@ use crate::linalg::cone::{
 };
 use crate::math::Vec2;
 use crate::system::{Block, Point, Response};
+
+/// Scalar rows up to which the dense problem is always the quicker one.
+const ALWAYS_DENSE: usize = 24;
+
+/// Operations that the dense problem may take more often than the sparse one takes for a factor (-): its laws hold to rounding, and not to a
+/// thousandth of the margin.
+const WORTH: f64 = 4.0;
 
 /// Share of its own mobility that every row gives way by to its force (-): `w = (W + s D) p + b`, `D` the diagonal of `W`.
 ///
@@ -82,14 +87,25 @@ impl Island {
         self.sparse.forget_unused();
     }
 
-    /// Whether so many scalar rows at hand are better solved as a sparse problem.
+    /// Whether the scalar rows at hand are better solved as a sparse problem: where they are many, and where contacts and joints may hold the same
+    /// motion, which the dense one takes for forces of any size.
     pub(super) fn is_sparse(&self, n_rows: usize) -> bool {
-        let choice = Choice {
-            blocks: &self.blocks,
-            contacts: &self.contacts,
-            joined: &self.joined,
-        };
-        !self.path.is_empty() && choice.is_sparse(n_rows)
+        let presses_joined = self.contacts.iter().any(|contact| self.is_joined(contact));
+        if self.path.is_empty() || n_rows <= ALWAYS_DENSE && !presses_joined {
+            return false;
+        }
+        let mut operations = 0.0;
+        for block in &self.blocks {
+            match block {
+                Block::Flex(block) if block.is_explicit() => return false,
+                Block::Flex(block) => operations += block.factor_operations(),
+                // Links answer together, by no matrix of their own.
+                Block::Rigid(block) if block.link_response().is_some() => return false,
+                Block::Rigid(_) => operations += 64.0,
+            }
+        }
+        let n = n_rows as f64;
+        presses_joined || n * n * n / 3.0 > WORTH * operations
     }
 
     /// Solves the rows, kinds and free motions at hand from the multipliers given; writes multipliers, statuses, responses and diagonals.
