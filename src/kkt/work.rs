@@ -114,7 +114,7 @@ pub(super) fn idle_work(
         tie.is_hard && !tie.moves_apart() && !own.iter().any(is_driven)
     };
     let works = ties.iter().filter(is_idle).map(|tie| match tie.row.law {
-        JointLaw::Rigid { rate, .. } if rate == 0.0 => work_of(blocks, tie, grips, dt),
+        JointLaw::Rigid { rate: 0.0, .. } => work_of(blocks, tie, grips, dt),
         JointLaw::Limit { .. } => work_of(blocks, tie, grips, dt).max(0.0),
         _ => 0.0,
     });
