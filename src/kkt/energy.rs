@@ -13,7 +13,7 @@ use super::delassus::RowDirection;
 use super::island::{Island, SolveSettings};
 use super::summary::IslandSummary;
 use super::work::{
-    WorkGrips, actual_work, flow_energy, idle_work, joint_work, kinetic_energy, momentum_at_most,
+    JointWork, WorkGrips, actual_work, flow_energy, joint_work, kinetic_energy, momentum_at_most,
 };
 use crate::math::{judged::Judged, rounding};
 use crate::system::{Block, Response};
@@ -29,14 +29,9 @@ impl Island {
         actual_work(&self.blocks, &self.contacts, settings.dt)
     }
 
-    /// Work of the joints on what is not driven from outside (J).
-    pub(super) fn joint_work(&self, settings: &SolveSettings) -> f64 {
+    /// Work of the joints on what is not driven from outside.
+    pub(super) fn joint_work(&self, settings: &SolveSettings) -> JointWork {
         joint_work(&self.blocks, &self.ties, self.work_grips(), settings.dt)
-    }
-
-    /// Work of joints that do none (J).
-    pub(super) fn idle_work(&self, settings: &SolveSettings) -> f64 {
-        idle_work(&self.blocks, &self.ties, self.work_grips(), settings.dt)
     }
 
     fn work_grips(&self) -> WorkGrips<'_> {

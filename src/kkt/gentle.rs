@@ -113,7 +113,7 @@ impl Island {
         }
         summary.gap_violation = self.gap_violation(true);
         settings.treatment().finish(self, settings, summary)?;
-        summary.work = self.actual_work(settings) + self.joint_work(settings);
+        summary.work = self.actual_work(settings) + self.joint_work(settings).all;
         summary.end_energy = end_energy(&self.blocks);
         Ok(())
     }

@@ -179,12 +179,11 @@ impl Island {
         let joint_work = self.joint_work(settings);
         summary.end_energy = end_energy(&self.blocks);
         let stretched = self.stretched_by_closing(&summary);
-        summary.work = self.actual_work(settings) + joint_work + stretched;
-        let idle_work = self.idle_work(settings);
-        let most = GAINED * summary.brought();
-        let allowance = loads + joint_work + stretched - (idle_work - most).max(0.0);
+        summary.work = self.actual_work(settings) + joint_work.all + stretched;
+        let allowance = loads + joint_work.all + stretched;
+        let is_worked = joint_work.idle > GAINED * summary.brought();
         let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(&summary);
-        if (is_thrown || idle_work > most) && settings.may_be_cut {
+        if (is_thrown || is_worked) && settings.may_be_cut {
             summary.is_stopped = true;
             return Ok(summary);
         }

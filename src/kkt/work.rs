@@ -88,37 +88,38 @@ pub(super) fn actual_work(blocks: &[Block], contacts: &[ActiveContact], dt: f64)
     work
 }
 
-/// Work of the joints on what is not driven from outside (J): nothing but for motors, springs and driven bodies, and for what turning rows leave.
+/// Work of joints on what is not driven from outside (J).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct JointWork {
+    /// All of it: nothing but for motors, springs and driven bodies, and for what turning rows leave.
+    pub all: f64,
+    /// What is done by joints that do none: bilateral rows between rigid bodies that are held at rest, and what limits give. The force of the
+    /// step's beginning works on the velocities of the end, that of the end on those of the beginning.
+    pub idle: f64,
+}
+
 pub(super) fn joint_work(
     blocks: &[Block],
     ties: &[ActiveJoint],
     grips: WorkGrips<'_>,
     dt: f64,
-) -> f64 {
-    let works = ties.iter().map(|tie| work_of(blocks, tie, grips, dt));
-    works.sum()
-}
-
-/// Work of joints that do none (J): bilateral rows between rigid bodies that are held at rest, and what limits give. The force of the step's beginning works on
-/// the velocities of the end, that of the end on those of the beginning.
-pub(super) fn idle_work(
-    blocks: &[Block],
-    ties: &[ActiveJoint],
-    grips: WorkGrips<'_>,
-    dt: f64,
-) -> f64 {
+) -> JointWork {
     let is_driven =
         |grip: &JointGrip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_driven());
-    let is_idle = |tie: &&ActiveJoint| {
+    let mut sum = JointWork::default();
+    for tie in ties {
+        let work = work_of(blocks, tie, grips, dt);
+        sum.all += work;
         let own = &grips.start[tie.row.grips.0..tie.row.grips.1];
-        tie.is_hard && !tie.moves_apart() && !own.iter().any(is_driven)
-    };
-    let works = ties.iter().filter(is_idle).map(|tie| match tie.row.law {
-        JointLaw::Rigid { rate: 0.0, .. } => work_of(blocks, tie, grips, dt),
-        JointLaw::Limit { .. } => work_of(blocks, tie, grips, dt).max(0.0),
-        _ => 0.0,
-    });
-    works.sum()
+        if tie.is_hard && !tie.moves_apart() && !own.iter().any(is_driven) {
+            sum.idle += match tie.row.law {
+                JointLaw::Rigid { rate: 0.0, .. } => work,
+                JointLaw::Limit { .. } => work.max(0.0),
+                _ => 0.0,
+            };
+        }
+    }
+    sum
 }
 
 /// Work of a joint row on what is not driven from outside (J).
@@ -213,3 +214,6 @@ pub(super) fn kinetic_energy(blocks: &[Block]) -> f64 {
         })
         .sum()
 }
+
+#[cfg(test)]
+mod tests;

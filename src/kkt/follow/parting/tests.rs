@@ -1,6 +1,9 @@
 use super::*;
 use crate::constraint::contact::Remembered;
+use crate::constraint::joint::Measure;
 use crate::integrator::Beta2;
+use crate::kkt::Island;
+use crate::kkt::calm::tests::join;
 use crate::math::{cos, sin};
 use crate::system::{Point, RigidBlock, RigidLoad, RigidMotion, Step};
 
@@ -151,4 +154,43 @@ fn what_is_near_keeps_its_room() {
     assert!((parted - 0.004).abs() < 1e-4, "{parted}");
     assert_eq!(contacts[1].allowance, 0.0);
     assert_eq!(contacts[2].allowance, 0.0);
+}
+
+/// What misses a turn by `t` has points that miss their places by `t r`, `r` the radius of gyration: `√(I/m)` for any number of equal bodies.
+#[test]
+fn a_turn_counts_at_the_radius_of_gyration() {
+    let gyration = (2.0_f64 / 3.0).sqrt();
+    for others in [[1, 0], [1, 2]] {
+        let mut island = Island {
+            blocks: squares(2),
+            ..Island::default()
+        };
+        join(&mut island, others);
+        let tie = &mut island.ties[0];
+        (tie.is_hard, tie.gap) = (true, 0.3);
+        let way = missing_way(&island.blocks, tie, &island.joint_grips);
+        assert_eq!(way, 0.3);
+        tie.row.measure = Measure::Turn(0.0);
+        let way = missing_way(&island.blocks, tie, &island.joint_grips);
+        assert!((way - 0.3 * gyration).abs() < 1e-12, "{way}");
+    }
+}
+
+/// A row that comes half as near as it was asked to is late, one that comes less near is told to be out of reach.
+#[test]
+fn what_comes_less_than_half_as_near_is_out_of_reach() {
+    let slop = 1e-6;
+    for (missed, is_told) in [(0.0, false), (0.045, false), (0.055, true), (0.2, true)] {
+        let mut island = Island {
+            blocks: squares(1),
+            ..Island::default()
+        };
+        join(&mut island, [1, 0]);
+        let tie = &mut island.ties[0];
+        (tie.start, tie.asked, tie.target) = (0.4, [0.3, -0.1], 0.0);
+        (tie.goal, tie.closing) = (0.3, -0.1);
+        tie.leave(missed, slop);
+        assert_eq!(tie.is_out_of_reach, is_told, "{missed}");
+        assert!((tie.goal - 0.3 - missed).abs() < 1e-15);
+    }
 }
