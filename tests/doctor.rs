@@ -303,9 +303,60 @@ fn a_run_is_told_as_it_was() {
     assert_eq!(turned, roller);
     assert!(angle > 1.0, "{angle} rad");
     assert_eq!((told.n_cut, told.n_unfinished), (0, 0));
+    assert!(!told.has_gained(), "{} J", told.gained);
     let words = told.to_string();
     assert!(
         words.contains("60 steps") && words.contains("small_strain"),
         "{words}"
     );
+}
+
+/// Nothing is gained by what a spring gives back; by a method that adds energy it is, and told: in free space all that there is above what
+/// there has been.
+#[test]
+fn energy_that_no_load_brought_is_told() {
+    let mut hung = Scene::new(1.0 / 240.0);
+    let block = FlexBodyBuilder::rectangle([0.5, 0.5], [2, 2]).material(elastic(1e7, 1000.0, 0.0));
+    let block = hung.flexible(block);
+    let spring = AttachmentBuilder::spring_damper(block, 1e4, 0.0)
+        .where_(|[_, y]| y > 0.49)
+        .rest_length(0.5)
+        .to_world()
+        .at_point([0.25, 1.0]);
+    let attached = hung.bodies.attach(spring, &hung.world.bodies);
+    attached.expect("it hangs");
+    let mut course = Course::default();
+    for _ in 0..240 {
+        hung.step();
+        course.watch(hung.flex.report(), &hung.bodies);
+    }
+    assert!(!course.report().has_gained(), "{}", course.report());
+
+    let (cells, length) = (40, 4.0);
+    let dt = 0.9 * length / f64::from(cells) / 30.0;
+    let mut scene = Scene::in_free_space(dt).with_integrator(Beta2::trapezoidal());
+    scene.flex = scene.flex.with_impact(ImpactTreatment::Plain);
+    scene.ground(0.0);
+    scene.flexible(
+        FlexBodyBuilder::rectangle([0.1, length], [1, cells as usize])
+            .small_strain()
+            .material(LinearElastic::plane_stress(900.0, 0.0).density(1.0))
+            .contact_inertia(ContactInertia::Kept)
+            .pin_where(|_| true, Pin::x())
+            .friction(0.0)
+            .linvel([0.0, -0.1])
+            .translation([0.0, 0.05]),
+    );
+    let (mut course, mut least, mut gained) = (Course::default(), f64::INFINITY, 0.0_f64);
+    for _ in 0..300 {
+        scene.step();
+        let report = scene.flex.report();
+        course.watch(report, &scene.bodies);
+        least = least.min(report.energy().total());
+        gained = gained.max(report.energy().total() - least);
+    }
+    let told = course.report();
+    assert!(told.has_gained(), "{told}");
+    assert!((told.gained / gained - 1.0).abs() < 1e-6, "{told}");
+    assert!(told.to_string().contains("no load brought"), "{told}");
 }

@@ -205,14 +205,11 @@ fn check_strain(
 /// The nodes of a choice, checked.
 fn chosen(body: &FlexBody, choice: &Choice) -> Result<Vec<usize>, AttachmentError> {
     let boundary = body.mesh().boundary();
-    let nodes = match choice {
-        Choice::Nodes(nodes) => nodes.clone(),
-        Choice::Where(choose) => {
-            let all = boundary.nodes().iter().copied();
-            all.filter(|&node| choose(body.mesh().nodes()[node]))
-                .collect()
-        }
-    };
+    let places = body.mesh().nodes();
+    let lies_in = |node: usize| choice.regions.iter().any(|region| region(places[node]));
+    let surface = boundary.nodes().iter().copied();
+    let in_regions = surface.filter(|&node| !choice.nodes.contains(&node) && lies_in(node));
+    let nodes: Vec<usize> = choice.nodes.iter().copied().chain(in_regions).collect();
     if nodes.is_empty() {
         return Err(AttachmentError::NoNodes);
     }
@@ -243,6 +240,9 @@ fn check_numbers(plan: &Plan) -> Result<(), AttachmentError> {
         if !point.iter().all(|value| is_held(*value)) {
             return Err(AttachmentError::NotFinite("the point"));
         }
+    }
+    if plan.has_rest_length && !matches!(plan.kind, AttachmentKind::Spring { .. }) {
+        return Err(AttachmentError::NoSpring);
     }
     if let AttachmentKind::Spring {
         stiffness,

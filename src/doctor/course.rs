@@ -1,6 +1,7 @@
 //! What a run was like: watched step by step, told at its end.
 
 use crate::body::{FlexBodyHandle, FlexBodySet};
+use crate::kkt::GAINED;
 use crate::pipeline::{Quality, StepReport, Unsolved};
 use std::fmt;
 
@@ -30,6 +31,8 @@ use std::fmt;
 #[derive(Clone, Debug, Default)]
 pub struct Course {
     told: CourseReport,
+    /// The most that had been dissipated (J).
+    most_dissipated: f64,
 }
 
 /// What a run was like.
@@ -55,8 +58,19 @@ pub struct CourseReport {
     pub energy: [f64; 2],
     /// What has been dissipated (J).
     pub dissipated: f64,
+    /// The most that was gained, and not brought by loads, since some step before (J): what had been dissipated by then less what has been since.
+    pub gained: f64,
+    /// The largest kinetic and elastic energy there was (J).
+    pub most_energy: f64,
     /// Bodies that left the world since their motion would not have been finite.
     pub quarantined: Vec<FlexBodyHandle>,
+}
+
+impl CourseReport {
+    /// Whether more energy was gained than the hundredth of the largest that contact may add (J).
+    pub fn has_gained(&self) -> bool {
+        self.gained > GAINED.get() * self.most_energy
+    }
 }
 
 impl Course {
@@ -69,6 +83,9 @@ impl Course {
         }
         told.energy[1] = energy.total();
         told.dissipated = energy.dissipated;
+        told.most_energy = told.most_energy.max(energy.kinetic + energy.elastic);
+        self.most_dissipated = self.most_dissipated.max(energy.dissipated);
+        told.gained = told.gained.max(self.most_dissipated - energy.dissipated);
         told.n_steps += 1;
         match report.quality() {
             Quality::Solved => {}
@@ -122,6 +139,13 @@ impl fmt::Display for CourseReport {
             "energy {first:.4e} J at the beginning, {last:.4e} J at the end, {:.4e} J dissipated",
             self.dissipated
         )?;
+        if self.has_gained() {
+            writeln!(
+                f,
+                "{:.4e} J were gained that no load brought, where there were {:.4e} J at most: shorten the step",
+                self.gained, self.most_energy
+            )?;
+        }
         if let Some((body, turn)) = self.turn.filter(|(_, turn)| *turn > 1e-3) {
             writeln!(f, "{body:?} turned farthest, by {turn:.3} rad")?;
         }

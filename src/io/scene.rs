@@ -66,6 +66,7 @@ impl<'a> Scene<'a> {
                     translation: from_rapier(pose.translation).into(),
                     rotation,
                     moves: parent.is_some_and(|body| body.is_dynamic()),
+                    is_sensor: collider.is_sensor(),
                     centre,
                     linvel,
                     angvel,
@@ -87,6 +88,8 @@ pub(super) struct RigidShape {
     pub(super) rotation: [f64; 2],
     /// Whether forces move it.
     pub(super) moves: bool,
+    /// Whether it touches nothing.
+    pub(super) is_sensor: bool,
     centre: Vec2,
     linvel: Vec2,
     angvel: f64,

@@ -174,7 +174,9 @@ impl Island {
                 self.enough(is_eased, tolerance)
             };
             let lack = if is_eased && arrives {
-                self.shortfall(true).max(CLOSE_ENOUGH * turned.way / enough)
+                let of_ways = CLOSE_ENOUGH * turned.way / enough;
+                // What is lost misses more than there are numbers for.
+                self.shortfall(true).max(of_ways).min(f64::MAX)
             } else {
                 f64::INFINITY
             };

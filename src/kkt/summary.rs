@@ -44,6 +44,14 @@ pub struct IslandSummary {
 }
 
 impl IslandSummary {
+    /// Of a part that has to be cut.
+    pub fn stopped() -> Self {
+        Self {
+            is_stopped: true,
+            ..Self::default()
+        }
+    }
+
     /// Whether the step ended short of its laws.
     pub fn is_unsolved(&self) -> bool {
         self.is_cut || self.is_stopped

@@ -3,6 +3,7 @@
 use super::accounts::Books;
 use super::checks::{check_finite, name_bodies};
 use super::error::StepError;
+use super::known_cuts::KnownCuts;
 use super::names::Names;
 use super::settings::FlexParameters;
 use super::solved::{Entry, SolvedPart};
@@ -49,6 +50,8 @@ pub(super) struct Solver {
     pub(super) island: Island,
     /// Where the members of the island are between two parts of its step.
     pub(super) under_way: UnderWay,
+    /// What had to be cut since the step began.
+    pub(super) known_cuts: KnownCuts,
     /// Components with flexible bodies, and whether some of these are of large strain.
     components: Vec<(usize, bool)>,
 }
@@ -82,6 +85,7 @@ impl Solver {
     /// Begins a step, however often it is solved.
     pub fn begin_step(&mut self) {
         self.island.begin_step();
+        self.known_cuts.begin_step();
     }
 
     /// Solves every component.
@@ -170,6 +174,9 @@ impl Solver {
         let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters, flex_bodies);
         let settings = settings_of(task, may_be_cut);
         let before = self.reserve(flex_bodies);
+        if may_be_cut && self.known_cuts.has(self.first_body(), part.span) {
+            return Ok((IslandSummary::stopped(), [before; 2]));
+        }
         let mut reserve = before;
         let memory = if part.span.is_first() {
             &books.memory.contacts
@@ -216,6 +223,12 @@ impl Solver {
             solved.remember(&mut self.under_way.contacts, &mut self.under_way.joints);
         }
         books.enter(&solved, names, entry);
+    }
+
+    /// Index of the first flexible body of the island.
+    pub(super) fn first_body(&self) -> u32 {
+        let indices = self.island.flex_index.iter().flatten();
+        indices.copied().min().unwrap_or(u32::MAX)
     }
 
     /// Energy that contact has taken from the island's bodies and may return (J).

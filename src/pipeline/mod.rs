@@ -38,6 +38,7 @@ mod error;
 mod flex_pipeline;
 mod islands;
 mod joint_accounts;
+mod known_cuts;
 mod names;
 mod notes;
 mod outcome;

@@ -353,7 +353,7 @@ fn wrong_descriptions_are_refused() {
             .where_(move |[x, y]| x > beyond && y > 0.199)
             .to_flexible(above)
     };
-    let cases: [(AttachmentBuilder, &str); 15] = [
+    let cases: [(AttachmentBuilder, &str); 18] = [
         (pin(), "no target"),
         (AttachmentBuilder::pin(one).to_world(), "holds no node"),
         (
@@ -371,6 +371,15 @@ fn wrong_descriptions_are_refused() {
         (
             AttachmentBuilder::weld(one).node(0).to_world(),
             "cannot keep a direction",
+        ),
+        (pin().node(0).to_world(), "named twice"),
+        (pin().to_world().rest_length(0.5), "no length at rest"),
+        (
+            AttachmentBuilder::weld(one)
+                .nodes([0, 1])
+                .rest_length(0.5)
+                .to_world(),
+            "no length at rest",
         ),
         (pin().to_rigid_body(carrier), "carries a flexible body"),
         (
@@ -413,6 +422,28 @@ fn wrong_descriptions_are_refused() {
         .insisting();
     let error = scene.try_step().expect_err("beta0 = 0").to_string();
     assert!(error.contains("beta0"), "{error}");
+}
+
+/// Nodes and regions that are named one after the other are all held, each once: the same as all of them named together.
+#[test]
+fn all_that_is_chosen_is_held() {
+    let held = |choose: fn(AttachmentBuilder) -> AttachmentBuilder| {
+        let mut scene = Scene::new(DT);
+        let beam = scene.flexible(beam());
+        attach(&mut scene, choose(AttachmentBuilder::weld(beam)).to_world());
+        scene.steps(30);
+        scene.body(beam).positions().to_vec()
+    };
+    let together = held(|weld| weld.nodes([0, 20, 41]));
+    assert_eq!(held(|weld| weld.node(0).node(20).node(41)), together);
+    assert_ne!(held(|weld| weld.nodes([0, 20])), together);
+    let edge = held(|weld| weld.where_(is_left_end));
+    let in_pieces = held(|weld| {
+        weld.node(0)
+            .where_(|[x, y]| x < 1e-9 && y < 0.15)
+            .where_(|[x, y]| x < 1e-9 && y > 0.05)
+    });
+    assert_eq!(in_pieces, edge);
 }
 
 /// A box on a spring from a beam's end is driven between the beam and the ground. Newton's iterations once ended along gaps

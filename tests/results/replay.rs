@@ -321,6 +321,46 @@ fn a_page_holds_what_the_bodies_had() -> Outcome {
 
 /// Ten strips of 50 nodes, all on their surfaces, fall between walls and are stirred: a minute of what happens in the first two seconds is to stay
 /// below 3 MB. `FOIL2D_STEPS` takes the number of steps.
+/// A sensor touches nothing: it is drawn in dashes and left empty, a box beside it is filled.
+#[test]
+fn sensors_are_drawn_as_what_touches_nothing() -> Outcome {
+    let mut world = PhysicsWorld::new();
+    for (x, is_sensor) in [(-1.0, false), (1.0, true)] {
+        let square = ColliderBuilder::cuboid(0.3, 0.3).sensor(is_sensor);
+        let body = RigidBodyBuilder::dynamic().translation(Vector::new(x, 2.0));
+        world.insert(body, square);
+    }
+    let mut bodies = FlexBodySet::new();
+    bodies.insert(block([0.0, 2.0], CellKind::Quad4)?, &mut world)?;
+    let (mut pipeline, mut replay) = (FlexPipeline::new(), Replay::new("Sensor"));
+    for step in 1..=5 {
+        pipeline.step(&mut world, &mut bodies)?;
+        let scene = Scene::of(&world, &bodies, pipeline.report());
+        replay.record(f64::from(step) / 60.0, &scene)?;
+    }
+    let scene = Scene::of(&world, &bodies, pipeline.report());
+    let picture = foil2d::io::still(&scene)?;
+    let outlines: Vec<&str> = picture
+        .lines()
+        .filter(|line| line.contains("#6b7686"))
+        .collect();
+    assert_eq!(outlines.len(), 2, "{outlines:?}");
+    let dashed = outlines
+        .iter()
+        .filter(|line| line.contains("stroke-dasharray") && line.contains("fill=\"none\""));
+    assert_eq!(dashed.count(), 1);
+    let data = data_of(&replay.to_html())?;
+    let rigid = data["rigid"].as_array().ok_or("there are two")?;
+    let sensors: Vec<Option<bool>> = rigid.iter().map(|one| one["sensor"].as_bool()).collect();
+    assert_eq!(sensors, [Some(false), Some(true)]);
+    if let Some(folder) = std::env::var_os("FOIL2D_KEEP") {
+        let folder = std::path::PathBuf::from(folder);
+        replay.write(folder.join("sensor.html"))?;
+        foil2d::io::write_still(folder.join("sensor.svg"), &scene)?;
+    }
+    Ok(())
+}
+
 #[test]
 fn a_minute_of_five_hundred_surface_nodes_stays_below_three_megabytes() -> Outcome {
     let mut world = PhysicsWorld::new();

@@ -5,10 +5,14 @@ use crate::body::FlexBodyHandle;
 use crate::math::Vec2;
 use crate::rapier::prelude::RigidBodyHandle;
 
-/// Which nodes are held.
-pub(crate) enum Choice {
-    Nodes(Vec<usize>),
-    Where(Box<dyn Fn([f64; 2]) -> bool>),
+/// A condition on where a node is in the mesh's own coordinates (m).
+type Region = Box<dyn Fn([f64; 2]) -> bool>;
+
+/// Which nodes are held: those that are named, and those of the boundary that lie in a region.
+#[derive(Default)]
+pub(crate) struct Choice {
+    pub nodes: Vec<usize>,
+    pub regions: Vec<Region>,
 }
 
 /// What a builder has been told.
@@ -53,7 +57,7 @@ impl AttachmentBuilder {
     fn new(body: FlexBodyHandle, kind: AttachmentKind) -> Self {
         Self(Plan {
             body,
-            choice: Choice::Nodes(Vec::new()),
+            choice: Choice::default(),
             kind,
             has_rest_length: false,
             target: None,
@@ -83,7 +87,7 @@ impl AttachmentBuilder {
         Self::new(body, kind)
     }
 
-    /// Length of the spring at rest (m); without it, the length it has when it is attached.
+    /// Length of the spring at rest (m); without it, the length it has when it is attached. Pins and welds have none and are refused with it.
     pub fn rest_length(mut self, length: f64) -> Self {
         if let AttachmentKind::Spring { rest_length, .. } = &mut self.0.kind {
             *rest_length = length;
@@ -92,20 +96,21 @@ impl AttachmentBuilder {
         self
     }
 
-    /// Holds one node.
+    /// Holds one node, beside those chosen before.
     pub fn node(self, node: usize) -> Self {
         self.nodes([node])
     }
 
-    /// Holds these nodes.
+    /// Holds these nodes, beside those chosen before.
     pub fn nodes(mut self, nodes: impl IntoIterator<Item = usize>) -> Self {
-        self.0.choice = Choice::Nodes(nodes.into_iter().collect());
+        self.0.choice.nodes.extend(nodes);
         self
     }
 
-    /// Holds the nodes of the boundary whose position in the mesh's own coordinates (m) fulfils a condition: an edge or a region.
+    /// Holds the nodes of the boundary whose position in the mesh's own coordinates (m) fulfils a condition, an edge or a region, beside
+    /// those chosen before.
     pub fn where_(mut self, choose: impl Fn([f64; 2]) -> bool + 'static) -> Self {
-        self.0.choice = Choice::Where(Box::new(choose));
+        self.0.choice.regions.push(Box::new(choose));
         self
     }
 

@@ -81,6 +81,11 @@ pub enum AttachmentError {
     /// A point given for a weld, which holds every node where it is.
     #[error("a weld holds every node where it is and has no single point: leave out `at_point`")]
     WeldAtPoint,
+    /// A length at rest given for a pin or a weld.
+    #[error(
+        "a pin or a weld has no length at rest: leave out `rest_length`, or use `spring_damper`"
+    )]
+    NoSpring,
     /// The attachment was removed, or a body it held.
     #[error("{0:?} names an attachment that was removed, or whose body was: drop the handle")]
     Stale(AttachmentHandle),

@@ -128,7 +128,9 @@ pub enum MaterialError {
         value: f64,
     },
     /// The density is not a positive finite number.
-    #[error("the density is {value} kg/m^3: set a positive finite value with `.density(rho)`")]
+    #[error(
+        "the density is {value} kg/m^3: set a positive finite value with `.density(rho)`, of a hyperelastic solid `.with_density(rho)`"
+    )]
     Density {
         /// The value given (kg/m^3).
         value: f64,

@@ -199,6 +199,7 @@ pub(super) struct RigidTrack {
     first: usize,
     pub(super) n_frames: usize,
     lines: Vec<RigidLine>,
+    is_sensor: bool,
     /// x, y (m), angle (rad) without jumps.
     channels: [Channel; 3],
     angle: f64,
@@ -211,6 +212,7 @@ impl RigidTrack {
             first,
             n_frames: 0,
             lines: shape.lines.clone(),
+            is_sensor: shape.is_sensor,
             channels: Default::default(),
             angle: shape.angle(),
         }
@@ -238,10 +240,11 @@ impl RigidTrack {
         ];
         let _ = write!(
             json,
-            "{{\"index\":{},\"first\":{},\"n\":{},\"box\":{:?},\"lines\":[",
+            "{{\"index\":{},\"first\":{},\"n\":{},\"sensor\":{},\"box\":{:?},\"lines\":[",
             self.index,
             self.first,
             self.n_frames,
+            self.is_sensor,
             [range_x, range_y].concat(),
         );
         for (index, line) in self.lines.iter().enumerate() {

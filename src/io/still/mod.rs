@@ -37,7 +37,10 @@ const COLOURS: [[f64; 3]; 6] = [
     [190.0, 30.0, 45.0],
 ];
 
-/// Draws a step as SVG: flexible bodies with von Mises' stress, rigid ones as outlines, forces of contact as arrows: on the flexible body, or on the contactor of two.
+/// How the line of a collider that touches nothing is drawn.
+const DASHED: &str = " stroke-dasharray=\"6 4\"";
+
+/// Draws a step as SVG: flexible bodies with von Mises' stress, rigid ones as outlines, sensors dashed and empty, forces of contact as arrows: on the flexible body, or on the contactor of two.
 ///
 /// ```
 /// use foil2d::io::{Scene, still};
@@ -77,11 +80,19 @@ pub fn still(scene: &Scene<'_>) -> Result<String, OutputError> {
         for line in &shape.lines {
             let points = line.points.iter().map(|&at| shape.place(at).into());
             let points: Vec<Vec2> = points.collect();
-            let (tag, fill) = match line.is_closed {
-                true => ("polygon", "#d5d9e0"),
-                false => ("polyline", "none"),
+            let tag = if line.is_closed {
+                "polygon"
+            } else {
+                "polyline"
             };
-            view.draw(&mut picture, tag, &points, fill, "#6b7686");
+            let fill = if line.is_closed && !shape.is_sensor {
+                "#d5d9e0"
+            } else {
+                "none"
+            };
+            view.begin(&mut picture, tag, &points, fill, "#6b7686");
+            let dashes = if shape.is_sensor { DASHED } else { "" };
+            let _ = writeln!(picture, "{dashes}/>");
         }
     }
     for (body, values) in &stresses {
@@ -179,12 +190,18 @@ impl View {
     }
 
     fn draw(&self, picture: &mut String, tag: &str, points: &[Vec2], fill: &str, stroke: &str) {
+        self.begin(picture, tag, points, fill, stroke);
+        picture.push_str("/>\n");
+    }
+
+    /// All of an element but its end.
+    fn begin(&self, picture: &mut String, tag: &str, points: &[Vec2], fill: &str, stroke: &str) {
         let _ = write!(picture, "<{tag} points=\"");
         for &point in points {
             let [x, y] = self.place(point);
             let _ = write!(picture, "{x:.1},{y:.1} ");
         }
-        let _ = writeln!(picture, "\" fill=\"{fill}\" stroke=\"{stroke}\"/>");
+        let _ = write!(picture, "\" fill=\"{fill}\" stroke=\"{stroke}\"");
     }
 
     fn draw_forces(&self, picture: &mut String, scene: &Scene<'_>) {

@@ -17,6 +17,13 @@ pub fn of_course(course: &CourseReport, names: &Names) -> String {
         course.joint_violation,
         course.dissipated
     );
+    if course.has_gained() {
+        let _ = writeln!(
+            told,
+            "{:.4e} J were gained that no load brought, where there were {:.4e} J at most: shorten `dt`",
+            course.gained, course.most_energy
+        );
+    }
     if let Some((body, turn)) = course.turn.filter(|(_, turn)| *turn > 1e-3) {
         let body = names.of_flexible(body);
         let _ = writeln!(told, "{body} turned farthest, by {turn:.3} rad");
