@@ -3,7 +3,6 @@ use crate::kkt::Island;
 use crate::kkt::calm::tests::join;
 use crate::kkt::together::tests::{random_motion, rigid};
 use crate::path::samples::Random;
-use crate::system::Point;
 
 const DT: f64 = 1e-2;
 
