@@ -223,6 +223,28 @@ fn steps_that_are_cut_are_seldom_solved_again() {
     assert!(20 * n_again <= n_cut, "{n_again} of {n_cut} solved again");
 }
 
+/// A step in `n` parts is `n - 1` times found to need a cut, and tried no more often for that: not either where it is begun again with more of what
+/// is around, for which one part may have been solved in vain.
+#[test]
+fn what_had_to_be_cut_is_not_tried_again() {
+    let (mut n_cut, mut n_begun_again) = (0, 0);
+    for seed in 0..20 {
+        let mut scene = crush(seed);
+        for _ in 0..30 {
+            let report = scene.try_step().expect("nothing is wrong with it");
+            if report.n_solves() > 1 || report.n_islands() != 1 {
+                continue;
+            }
+            let least = 2 * report.n_parts() - 1;
+            let tried = report.n_tried();
+            assert!((least..=least + 1).contains(&tried), "{tried}, {least}");
+            n_cut += usize::from(report.n_parts() > 2);
+            n_begun_again += usize::from(report.n_parts() > 2 && report.is_detected());
+        }
+    }
+    assert!(n_cut > 50 && n_begun_again > 10, "{n_cut} {n_begun_again}");
+}
+
 /// A bar that begins to turn beside a block, with nothing else that moves: it is met in the step in which it comes.
 #[test]
 fn what_turns_in_its_place_is_met_however_fast() {

@@ -32,7 +32,7 @@
 //! | debug builds | | `[profile.dev.package."*"] opt-level = 3` |
 //!
 //! What a step will cost is told before it by [`doctor::ExpectedCost`](crate::doctor::ExpectedCost), in operations and to a factor of a few.
-//! What sleeps costs next to nothing, and bodies that do not touch cost what each costs alone. [`StepReport::n_factorizations`], [`n_newton`], [`n_parts`] and, with
+//! What sleeps costs next to nothing, and bodies that do not touch cost what each costs alone. [`StepReport::n_factorizations`], [`n_newton`], [`n_parts`], [`n_tried`] and, with
 //! the feature `timing`, [`times`] tell where a step went:
 //!
 //! ```
@@ -56,4 +56,5 @@
 //! [`StepReport::n_factorizations`]: crate::pipeline::StepReport::n_factorizations
 //! [`n_newton`]: crate::pipeline::StepReport::n_newton
 //! [`n_parts`]: crate::pipeline::StepReport::n_parts
+//! [`n_tried`]: crate::pipeline::StepReport::n_tried
 //! [`times`]: crate::pipeline::StepReport::times

@@ -19,6 +19,7 @@ impl StepReport {
             overbent: before.overbent,
             n_asleep: before.n_asleep,
             n_solves: before.n_solves,
+            n_tried: before.n_tried,
             is_detected: before.is_detected,
             times: before.times,
             quarantined_flex_bodies: before.quarantined_flex_bodies,

@@ -178,6 +178,7 @@ impl Solver {
             return Ok((IslandSummary::stopped(), [before; 2]));
         }
         let mut reserve = before;
+        books.report.n_tried += 1;
         let memory = if part.span.is_first() {
             &books.memory.contacts
         } else {

@@ -49,6 +49,8 @@ pub struct StepReport {
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pub(super) n_solves: usize,
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
+    pub(super) n_tried: usize,
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pub(super) n_factorizations: u64,
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pub(super) times: StageTimes,
@@ -180,6 +182,12 @@ impl StepReport {
     /// [`FlexParameters::max_cutbacks`](super::FlexParameters::max_cutbacks) times.
     pub fn n_parts(&self) -> usize {
         self.n_parts
+    }
+
+    /// Parts of all islands that were tried, those that had to be cut among them: one for each island where no step is cut, and a measure of what
+    /// the step has cost where some are.
+    pub fn n_tried(&self) -> usize {
+        self.n_tried
     }
 
     /// Islands in which the iterations of the [constraint functions](crate::kkt::ContactMethod::ConstraintFunction) did not converge:

@@ -243,6 +243,36 @@ impl ActiveContact {
 mod tests {
     use super::*;
     use crate::constraint::contact::Remembered;
+    use crate::kkt::Island;
+    use crate::path::{NearPair, Target};
+
+    /// A step that is stopped ends at the base: the overlap there is told, not where forces would have led.
+    #[test]
+    fn a_stopped_step_tells_the_overlap_of_its_base() {
+        let row = Kinematics::with_levers(-5.0, Vec2::new(0.0, 1.0), Vec2::zeros(), &[]);
+        let mut contact = ActiveContact::new(0, row, Remembered::default(), 0.5, &[]);
+        contact.base = Some(AtBase {
+            gap: -0.1,
+            moved: Vec2::zeros(),
+            near: NearPair {
+                pair: 0,
+                point: 0,
+                target: Target::Vertex(0),
+                xi: 0.0,
+                normal: Vec2::new(0.0, 1.0),
+                distance: 0.0,
+                key: 0,
+            },
+            is_meeting: false,
+        });
+        let mut island = Island::default();
+        island.contacts.push(contact);
+        assert_eq!(island.gap_violation(true), 0.1);
+        assert_eq!(island.gap_violation(false), 5.0);
+        // A signed row has no base: it is measured where the blocks are.
+        island.contacts[0].base = None;
+        assert_eq!(island.gap_violation(true), 5.0);
+    }
 
     #[test]
     fn what_gives_way_to_its_force_holds_to_its_law_where_it_rests() {
