@@ -311,13 +311,40 @@ fn a_run_is_told_as_it_was() {
     );
 }
 
+/// What lies still, and what an explicit step swings by, gains nothing.
+#[test]
+fn rounding_and_swings_are_no_gain() {
+    let mut still = Scene::new(1.0 / 60.0);
+    still.ground(0.0);
+    still.flexible(block_of(1e7).translation([0.0, 0.0]).can_sleep(false));
+    let mut swinging = Scene::in_free_space(4e-3).with_integrator(Beta2::central_difference());
+    swinging.flex.parameters.insists = true;
+    swinging.flexible(
+        block_of(1e6)
+            .linvel([1.0, 0.0])
+            .small_strain()
+            .pin_where(|[x, _]| x < 1e-9, Pin::both()),
+    );
+    for mut scene in [still, swinging] {
+        let mut course = Course::default();
+        for _ in 0..300 {
+            scene.step();
+            course.watch(scene.flex.report(), &scene.bodies);
+        }
+        assert!(!course.report().has_gained(), "{}", course.report());
+    }
+}
+
+fn block_of(modulus: f64) -> FlexBodyBuilder {
+    FlexBodyBuilder::rectangle([0.5, 0.5], [2, 2]).material(elastic(modulus, 1000.0, 0.0))
+}
+
 /// Nothing is gained by what a spring gives back; by a method that adds energy it is, and told: in free space all that there is above what
 /// there has been.
 #[test]
 fn energy_that_no_load_brought_is_told() {
     let mut hung = Scene::new(1.0 / 240.0);
-    let block = FlexBodyBuilder::rectangle([0.5, 0.5], [2, 2]).material(elastic(1e7, 1000.0, 0.0));
-    let block = hung.flexible(block);
+    let block = hung.flexible(block_of(1e7));
     let spring = AttachmentBuilder::spring_damper(block, 1e4, 0.0)
         .where_(|[_, y]| y > 0.49)
         .rest_length(0.5)

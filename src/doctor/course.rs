@@ -2,6 +2,7 @@
 
 use crate::body::{FlexBodyHandle, FlexBodySet};
 use crate::kkt::GAINED;
+use crate::math::REAL_EPSILON;
 use crate::pipeline::{Quality, StepReport, Unsolved};
 use std::fmt;
 
@@ -84,8 +85,13 @@ impl Course {
         told.energy[1] = energy.total();
         told.dissipated = energy.dissipated;
         told.most_energy = told.most_energy.max(energy.kinetic + energy.elastic);
-        self.most_dissipated = self.most_dissipated.max(energy.dissipated);
-        told.gained = told.gained.max(self.most_dissipated - energy.dissipated);
+        // What an explicit step swings by comes back.
+        let dissipated = energy.dissipated + energy.swing;
+        self.most_dissipated = self.most_dissipated.max(dissipated);
+        let gained = self.most_dissipated - dissipated;
+        if gained > REAL_EPSILON * energy.total().abs() {
+            told.gained = told.gained.max(gained);
+        }
         told.n_steps += 1;
         match report.quality() {
             Quality::Solved => {}
