@@ -49,7 +49,7 @@
 //!     flex.step(&mut world, &mut flex_bodies)?;
 //! }
 //! let report = flex.step(&mut world, &mut flex_bodies)?;
-//! assert!(report.n_newton() <= 4 && report.n_parts() == 1);
+//! assert!(report.n_newton() <= 4 && report.n_parts() == 1 && report.n_tried() == 1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

@@ -174,9 +174,7 @@ impl Island {
                 self.enough(is_eased, tolerance)
             };
             let lack = if is_eased && arrives {
-                let of_ways = CLOSE_ENOUGH * turned.way / enough;
-                // What is lost misses more than there are numbers for.
-                self.shortfall(true).max(of_ways).min(f64::MAX)
+                self.shortfall(true).max(CLOSE_ENOUGH * turned.way / enough)
             } else {
                 f64::INFINITY
             };

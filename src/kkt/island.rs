@@ -181,9 +181,9 @@ impl Island {
         let stretched = self.stretched_by_closing(&summary);
         summary.work = self.actual_work(settings) + joint_work.all + stretched;
         let allowance = loads + joint_work.all + stretched;
-        let is_worked = joint_work.idle > GAINED * summary.brought();
+        let joints_feed = joint_work.idle > GAINED * summary.brought();
         let is_thrown = self.is_flung() || !summary.is_unsolved() && self.is_thrown(&summary);
-        if (is_thrown || is_worked) && settings.may_be_cut {
+        if (is_thrown || joints_feed) && settings.may_be_cut {
             summary.is_stopped = true;
             return Ok(summary);
         }

@@ -98,6 +98,7 @@ pub(super) struct JointWork {
     pub idle: f64,
 }
 
+/// Sums up the work of the joint rows over the step, from their grips at its beginning and at its end.
 pub(super) fn joint_work(
     blocks: &[Block],
     ties: &[ActiveJoint],

@@ -91,7 +91,10 @@ impl Solver {
             self.may_be_cut(step, n_cuts, parameters, flex_bodies) && entry.may_go_further()
         };
         if !is_good && may_be_cut || goes_on {
-            self.known_cuts.note(self.first_body(), part.span);
+            // The few that are halved further are tried again: where a step may go on is counted anew.
+            if may_be_cut {
+                self.known_cuts.note(self.first_body(), part.span);
+            }
             if part.n_cuts > 0 && task.may_call_for_room {
                 return Ok(Progress::CallsForRoom);
             }

@@ -1,7 +1,8 @@
 //! Parts of a step that are known to need a cut.
 //!
 //! A step is begun again where its members leave the boxes they were looked for in, with more of what is around. What could not be solved
-//! in one piece before is not tried in one piece then: it would cost as much, and fail as it did.
+//! in one piece before is not tried in one piece then: it would cost as much, and nearly always fail as it did. A part that would not is taken in
+//! halves all the same, and told so.
 
 use crate::coupling::Span;
 

@@ -184,8 +184,8 @@ impl StepReport {
         self.n_parts
     }
 
-    /// Parts of all islands that were tried, those that had to be cut among them: one for each island where no step is cut, and a measure of what
-    /// the step has cost where some are.
+    /// Parts of all islands that were tried, with those that had to be cut and those of a step that was begun again: one for each island where
+    /// nothing is cut and the step is solved once, else a measure of what it has cost.
     pub fn n_tried(&self) -> usize {
         self.n_tried
     }

@@ -24,7 +24,8 @@ pub(in crate::kkt) struct Stage {
 }
 
 impl Island {
-    /// How far the laws are from holding, relative to the margins of the ways (-); what has slid off counts only with `counts_lost`.
+    /// How far the laws are from holding, relative to the margins of the ways (-), a number if all of them are; what has slid off counts only with
+    /// `counts_lost`.
     pub(super) fn shortfall(&mut self, counts_lost: bool) -> f64 {
         let least = self.margin;
         let mut worst = self.measure_joints() / least;
@@ -34,7 +35,14 @@ impl Island {
             let margin = contact
                 .base
                 .map_or(least, |base| self.path.margin(&base.near));
-            worst = worst.max(contact.shortfall(friction) / margin);
+            // What is lost misses as much as there are numbers for, over a margin more: infinite is what nobody has measured.
+            let missed = contact.shortfall(friction);
+            let share = if missed == f64::MAX {
+                missed
+            } else {
+                missed / margin
+            };
+            worst = worst.max(share);
         }
         worst
     }
@@ -121,5 +129,46 @@ impl Island {
         self.joint_grips.clone_from(&stage.grips);
         self.path.return_to(&stage.base);
         self.path.stop(&mut self.blocks);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::FEW_PASSES;
+    use super::super::trend::Trend;
+    use super::*;
+    use crate::constraint::contact::{
+        Candidate, ContactKey, ContactLaw, Kinematics, Owner, Pair, Remembered,
+    };
+    use crate::math::Vec2;
+
+    /// A contact that is lost in every pass misses its law by a number, whatever the margin is, and the passes are given up.
+    #[test]
+    fn passes_that_what_is_lost_holds_up_are_given_up() {
+        for margin in [1e-3, 10.0] {
+            let mut island = Island {
+                margin,
+                ..Island::default()
+            };
+            island.candidates.push(Candidate {
+                key: ContactKey {
+                    contactor: Owner::Flex(0),
+                    point: 0,
+                    target: Owner::Collider(0),
+                    part: 0,
+                },
+                pair: Pair::Near { blocks: [0, 1] },
+                law: ContactLaw::default(),
+            });
+            let row = Kinematics::with_levers(0.0, Vec2::new(0.0, 1.0), Vec2::zeros(), &[]);
+            let mut contact = ActiveContact::new(0, row, Remembered::default(), 0.0, &[]);
+            contact.is_lost = true;
+            island.contacts.push(contact);
+            assert_eq!(island.shortfall(false), 0.0);
+            let mut trend = Trend::new();
+            let given_up =
+                (0..20).find(|pass| trend.is_hopeless(island.shortfall(true), 19 - pass));
+            assert_eq!(given_up, Some(FEW_PASSES), "margin {margin} m");
+        }
     }
 }
