@@ -719,7 +719,7 @@ fn roundings_have_one_place() {
 
 /// Values of judgement, `math::judged`: let this number fall. `pipeline/sensitivity` asks what depends on them. Those of `linalg/cone`, `path`,
 /// `kkt/follow` and `kkt/sparse` are still to be declared.
-const MOST_JUDGED: usize = 37;
+const MOST_JUDGED: usize = 36;
 
 #[test]
 fn values_of_judgement_are_counted() {

@@ -2,6 +2,8 @@
 
 #[path = "complementarity/condensed.rs"]
 mod condensed;
+#[path = "complementarity/contradiction.rs"]
+mod contradiction;
 #[path = "complementarity/enumeration.rs"]
 mod enumeration;
 #[path = "complementarity/hand_cases.rs"]

@@ -102,6 +102,7 @@ impl Island {
         self.correct();
         self.path.stop(&mut self.blocks);
         self.measure_signed();
+        self.end_losses();
         for block in &mut self.blocks {
             match block {
                 Block::Flex(block) => {

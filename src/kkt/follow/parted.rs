@@ -15,11 +15,8 @@ impl Island {
     /// Lists what pressed in the last step and has flown out of reach as open contacts. Part of that force still acts in this step, and what
     /// energy it adds there can be taken back along its row only.
     ///
-    /// The iterations are over: nothing is lost any more.
     pub(in crate::kkt) fn list_parted(&mut self) {
-        for contact in &mut self.contacts {
-            contact.is_lost = false;
-        }
+        self.end_losses();
         for slot in 0..self.parted.len() {
             let before = self.parted[slot];
             let Some(base) = before.base else {
@@ -42,6 +39,43 @@ impl Island {
             };
             parted.kinematics.gap = gap;
             self.contacts.push(parted);
+        }
+    }
+
+    /// The iterations are over: nothing is lost any more. What geometry has no gap for, and does not press, is out of reach.
+    pub(in crate::kkt) fn end_losses(&mut self) {
+        for contact in self.contacts.iter_mut().filter(|one| one.is_lost) {
+            contact.is_lost = false;
+            if contact.multiplier[0] <= f64::MIN_POSITIVE {
+                contact.multiplier = [0.0; 2];
+                contact.kinematics.gap = f64::INFINITY;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constraint::contact::{Kinematics, Remembered};
+    use crate::math::Vec2;
+
+    /// What geometry has no gap for has none to tell of; what presses without one keeps the last.
+    #[test]
+    fn what_is_lost_and_does_not_press_tells_of_no_overlap() {
+        let row = Kinematics::with_levers(-3.0, Vec2::new(0.0, 1.0), Vec2::zeros(), &[]);
+        for (force, told) in [(0.0, 0.0), (f64::MIN_POSITIVE, 0.0), (1.0, 3.0)] {
+            let mut contact = ActiveContact::new(0, row, Remembered::default(), 0.5, &[]);
+            contact.multiplier[0] = force;
+            contact.is_lost = true;
+            let mut island = Island::default();
+            island.contacts.push(contact);
+            island.end_losses();
+            assert!(!island.contacts[0].is_lost);
+            assert_eq!(island.contacts[0].is_closed(), told > 0.0);
+            for is_stopped in [true, false] {
+                assert_eq!(island.gap_violation(is_stopped), told);
+            }
         }
     }
 }

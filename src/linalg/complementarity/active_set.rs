@@ -20,7 +20,7 @@ use crate::math::rounding;
 /// A residual at which the answer is exact but for round-off.
 const EXACT: f64 = rounding::SUM;
 /// A residual that is good enough for statuses that no longer change.
-const GOOD: f64 = rounding::ITERATED;
+pub(super) const GOOD: f64 = rounding::ITERATED;
 /// A row is redundant when less than this fraction of it is independent of the rows before.
 const RANK_TOLERANCE: f64 = rounding::SOLVED;
 /// Systems above this size are solved by iteration first.
@@ -135,7 +135,7 @@ impl ActiveSet {
                 self.velocities[row] = problem.velocity(row, &self.multipliers[..n]);
             }
             let now = measure(problem, &self.multipliers[..n], |row| self.velocities[row]);
-            best.offer(&self.multipliers[..n], status, now.residual);
+            best.offer(&self.multipliers[..n], status, now);
             if now.residual <= EXACT {
                 return true;
             }
@@ -144,8 +144,8 @@ impl ActiveSet {
             }
             if !self.update(problem, now, status) {
                 let unavoidable = matches!(problem.rows[now.worst_row], RowKind::Bilateral);
-                return now.residual <= GOOD
-                    || redundant && (unavoidable || now.residual <= redundancy_tolerance);
+                let is_small = unavoidable || now.residual <= redundancy_tolerance;
+                return now.residual <= GOOD || redundant && is_small && now.is_moderate();
             }
             redundant_left -= usize::from(redundant);
             if redundant_left == 0 || self.seen.contains(&fingerprint(status)) {

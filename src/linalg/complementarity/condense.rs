@@ -7,6 +7,7 @@
 //! Bilateral rows that depend on each other are solved by proximal steps instead.
 
 use super::dense::{dot, factorize_cholesky, solve_cholesky_in_place};
+use super::give::{INDEPENDENT, ROUNDS, approach, give};
 use super::problem::{ComplementarityError, Problem, RowKind, Status};
 use super::{Outcome, Solver};
 use crate::math::rounding;
@@ -17,24 +18,8 @@ const LEAST: usize = 8;
 /// What must be left of a row's mobility once the bilateral rows hold (-); rows with less are redundant.
 const LEFT: f64 = rounding::SHARE;
 
-/// What must be left of a bilateral row's mobility once the others hold, where all bodies are alike (-), or they depend on each other: what single
-/// precision knows of the places they are made of moves them by its square.
-pub(crate) const INDEPENDENT: f64 = rounding::SINGLE;
-
 /// Rank tolerance of the bilateral rows.
 const RANK_TOLERANCE: f64 = rounding::SOLVED;
-
-/// How often bilateral rows that depend on each other are solved with what they give way by, see [`give`].
-const ROUNDS: usize = 3;
-
-/// Share of its mobility by which a bilateral row gives way to the change of its force where such rows depend on each other (-), half way in
-/// digits between the share with which it depends on them and the whole: what moves is found to within the cube of that, and what is contradicted ends in
-/// few forces.
-///
-/// - `least`: what must be left of the row's mobility.
-fn give(least: f64) -> f64 {
-    least.max(RANK_TOLERANCE).sqrt()
-}
 
 /// What has become of the bilateral rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -123,15 +108,10 @@ impl Solver {
         if !condensed.soften(problem, &self.independence, multipliers) {
             return self.solve(problem, multipliers, status);
         }
-        let n = problem.rows.len();
         let mut outcome = Outcome::default();
         for _ in 0..ROUNDS {
-            condensed.free.clear();
-            condensed.free.extend_from_slice(problem.free);
-            for &row in &condensed.tied {
-                let give = condensed.delassus[row * (n + 1)] - problem.delassus[row * (n + 1)];
-                condensed.free[row] -= give * multipliers[row];
-            }
+            let giving = [problem.delassus, &condensed.delassus];
+            approach(giving, problem.free, multipliers, &mut condensed.free);
             let softened = Problem {
                 delassus: &condensed.delassus,
                 free: &condensed.free,

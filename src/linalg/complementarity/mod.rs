@@ -11,7 +11,8 @@
 //! Redundant rows (a rigid box on four points) share their load with minimum norm. Where that would
 //! overstep friction (the feet of a pyramid), or above 256 sticking rows, where the solve is iterative, they
 //! keep as much as they can of the load they had. Redundant rows that contradict each other slightly are
-//! averaged, see [`Solver::with_redundancy_tolerance`].
+//! averaged, see [`Solver::with_redundancy_tolerance`]. Rows that contradict each other by more, as those of a body between two that are driven
+//! together, have no multipliers: they get those of rows that give way by a thousandth of their mobility.
 //!
 //! ```
 //! use foil2d::linalg::complementarity::{Problem, RowKind, Solver, Status};
@@ -33,8 +34,10 @@
 
 mod active_set;
 mod condense;
+mod contradiction;
 mod dense;
 mod gauss_seidel;
+mod give;
 mod krylov;
 mod lemke;
 mod orthogonal;
@@ -45,30 +48,29 @@ mod status;
 pub use problem::{ComplementarityError, Problem, RowKind, Status};
 pub use residual::natural_map_residual;
 
-pub(crate) use condense::INDEPENDENT;
 pub(crate) use dense::{factorize_cholesky, solve_cholesky_in_place, solve_lu_in_place};
+pub(crate) use give::INDEPENDENT;
 
-use crate::math::{judged::Judged, rounding};
+use crate::math::rounding;
 use active_set::{ActiveSet, Redundancy};
 use condense::Condensed;
+use contradiction::Softened;
 use lemke::Lemke;
 use problem::Checked;
-use residual::measure;
+use residual::{Measure, measure};
 use status::identify;
 
 /// What is tried in turn when the active set repeats itself: its warm start once more with the least
 /// change of multipliers, sweeps (how many at most), Lemke's method (which path).
-const RESCUE: [(Method, usize); 6] = [
+const NEAR: [(Method, usize); 3] = [
     (Method::ActiveSet, 0),
     (Method::GaussSeidel, 50),
     (Method::Lemke, 0),
-    (Method::Lemke, 1),
-    (Method::Lemke, 2),
-    (Method::GaussSeidel, 500),
 ];
 
-/// The [`natural_map_residual`] below which rows contradict each other by no more than the rounding of the places that they were read from.
-const CONTRADICTED: Judged = Judged::new("linalg::CONTRADICTED", 1e-5);
+/// What is tried where that has not solved a problem, nor have rows that give way a little: other paths, and more sweeps.
+const PATHS: [(Method, usize); 2] = [(Method::Lemke, 1), (Method::Lemke, 2)];
+const LAST: [(Method, usize); 1] = [(Method::GaussSeidel, 500)];
 
 /// Sweeps of a solver that is asked for Gauss–Seidel, before the active set takes over: contacts of masses take some ten, and
 /// those of a surface that transmits forces as many as it has nodes, squared.
@@ -118,18 +120,24 @@ struct Answer {
     multipliers: Vec<f64>,
     status: Vec<Status>,
     residual: f64,
+    is_moderate: bool,
     method: Method,
     /// The solver now at work.
     candidate: Method,
 }
 
 impl Answer {
+    fn judge(&mut self, now: Measure) {
+        self.residual = now.residual;
+        self.is_moderate = now.is_moderate();
+    }
+
     /// Takes over multipliers that are better than the present ones.
-    fn offer(&mut self, multipliers: &[f64], status: &[Status], residual: f64) {
-        if residual < self.residual {
+    fn offer(&mut self, multipliers: &[f64], status: &[Status], now: Measure) {
+        if now.residual < self.residual {
             self.multipliers.copy_from_slice(multipliers);
             self.status.copy_from_slice(status);
-            self.residual = residual;
+            self.judge(now);
             self.method = self.candidate;
         }
     }
@@ -147,6 +155,7 @@ pub struct Solver {
     trial: Vec<f64>,
     status: Vec<Status>,
     condensed: Condensed,
+    softened: Softened,
 }
 
 impl Default for Solver {
@@ -161,6 +170,7 @@ impl Default for Solver {
             trial: Vec::new(),
             status: Vec::new(),
             condensed: Condensed::default(),
+            softened: Softened::default(),
         }
     }
 }
@@ -204,8 +214,8 @@ impl Solver {
 
     /// Solves the problem as well as it can; `outcome.residual` says how well.
     ///
-    /// An unsolvable problem (joints that contradict each other, a jammed wedge) hands back the
-    /// multipliers of least residual found. Rows that nothing can move (`W_ii = 0`) get the admissible
+    /// An unsolvable problem (joints that contradict each other, a body between two that are driven together) hands back the
+    /// multipliers of rows that give way a little, which bring no energy. Rows that nothing can move (`W_ii = 0`) get the admissible
     /// multiplier nearest to zero and the status [`Status::Open`].
     ///
     /// - `multipliers`: `p` of the last step or zeros, then the answer, shape `(n)`.
@@ -237,7 +247,9 @@ impl Solver {
         }
         if !self.follow_active_set(problem, Redundancy::MinimumNorm, &mut outcome) {
             self.status.copy_from_slice(status);
-            self.rescue(problem, &mut outcome);
+            if !self.rescue(problem, &NEAR, &mut outcome) {
+                self.give_way(problem, &mut outcome);
+            }
         }
         multipliers.copy_from_slice(&self.best.multipliers);
         status.copy_from_slice(&self.best.status);
@@ -300,28 +312,18 @@ impl Solver {
         active_set.run(problem, (trial, status), redundancy, best, outcome)
     }
 
-    /// Tries one way after the other until an answer is exact.
-    fn rescue(&mut self, problem: Checked, outcome: &mut Outcome) {
-        let mut unswept = f64::INFINITY;
-        for (method, effort) in RESCUE {
-            match (method, effort) {
-                (Method::GaussSeidel, _) if unswept.is_infinite() => unswept = self.best.residual,
-                // Sweeps and a path have not halved what the active set left: rows contradict each other by that, and the residual tells of it.
-                (Method::Lemke, 1)
-                    if self.best.residual > 0.5 * unswept && unswept < CONTRADICTED =>
-                {
-                    return;
-                }
-                _ => {}
-            }
+    /// Tries one way after the other until an answer is exact; returns whether one is.
+    fn rescue(
+        &mut self,
+        problem: Checked,
+        ways: &[(Method, usize)],
+        outcome: &mut Outcome,
+    ) -> bool {
+        ways.iter().any(|&(method, effort)| {
             self.best.candidate = method;
-            if !self.look_elsewhere(problem, method, effort, outcome) {
-                continue;
-            }
-            if self.follow_active_set(problem, Redundancy::LeastChange, outcome) {
-                return;
-            }
-        }
+            self.look_elsewhere(problem, method, effort, outcome)
+                && self.follow_active_set(problem, Redundancy::LeastChange, outcome)
+        })
     }
 
     /// Puts new multipliers and statuses in `trial` and `status`; false if the method has none.
@@ -365,6 +367,6 @@ impl Solver {
             slack,
             &mut self.status,
         );
-        self.best.offer(trial, &self.status, now.residual);
+        self.best.offer(trial, &self.status, now);
     }
 }

@@ -199,6 +199,23 @@ pub(super) struct Checked<'a> {
 }
 
 impl<'a> Checked<'a> {
+    /// The problem of these numbers, of the same shape, with the same laws.
+    pub fn with<'b>(&self, delassus: &'b [f64], free: &'b [f64]) -> Checked<'b>
+    where
+        'a: 'b,
+    {
+        Checked {
+            delassus,
+            free,
+            ..*self
+        }
+    }
+
+    pub fn has_friction(&self) -> bool {
+        let is_friction = |kind: &RowKind| matches!(kind, RowKind::Friction { .. });
+        self.rows.iter().any(is_friction)
+    }
+
     pub fn n_rows(&self) -> usize {
         self.rows.len()
     }
