@@ -124,6 +124,7 @@ impl Island {
                 of: Response::Velocity,
                 which: Rows::Kept,
                 unit: settings.dt,
+                give: 0.0,
             };
             self.solve_sparse(asked)?;
             return Ok(());

@@ -55,6 +55,8 @@ pub struct Island {
     pub(super) before_solve: Stage,
     /// Share of its own mobility that every contact gives way by to the change of its force (-).
     pub(super) softness: f64,
+    /// Share of its own mobility that every row gives way by to its impulse, and to the forces that accelerations follow from (-).
+    pub(super) impulse_give: f64,
     /// What the laws may miss at the very most: the least margin of the ways (m).
     pub(super) margin: f64,
     /// How fine the laws are to hold at the least, by what the step began with (m).

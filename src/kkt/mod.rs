@@ -20,6 +20,7 @@ mod gentle;
 mod group;
 mod impact;
 mod island;
+mod jammed;
 mod joined;
 mod joint_held;
 mod joint_law;

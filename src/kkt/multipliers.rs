@@ -41,6 +41,7 @@ impl Island {
                 of: Response::Position,
                 which: Rows::Kept,
                 unit: settings.b0,
+                give: 0.0,
             };
             let outcome = self.solve_sparse(asked)?;
             summary.residual = outcome.residual;

@@ -4,9 +4,11 @@
 //! angle beside a dof that nothing moves. The dense problem of [`delassus`](super::delassus) costs the cube of the number of rows, this
 //! one little more than factorizing the bodies: operations decide.
 
+mod asked;
 mod layout;
 mod turning;
 
+pub(super) use self::asked::Asked;
 use self::layout::Shape;
 use super::delassus::compliance;
 use super::follow::LARGE_TOLERANCE;
@@ -68,17 +70,6 @@ pub(super) struct Sparse {
     /// Couples of every block by which forces turn it beyond what they did before, by their levers and by the reference arms (N m).
     couples: Vec<[f64; 2]>,
     answer: Vec<f64>,
-}
-
-/// What is asked of a sparse solve.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Asked {
-    /// What responds.
-    pub of: Response,
-    /// Which rows of joints the forces act along.
-    pub which: Rows,
-    /// What the slip of the step is divided by to be of the unit of `free`: `b0` for positions (s²), the step for velocities (s).
-    pub unit: f64,
 }
 
 impl Island {
@@ -222,10 +213,11 @@ impl Island {
                         [0, 1].map(|k| (give[k] + kept[k]) * contact.multiplier[k]),
                     )
                 }
-                _ if self.is_joined(contact) => {
-                    ([0, 1].map(|k| give[k] + JOINED * scale[k]), [0.0; 2])
+                _ => {
+                    let joined = f64::from(self.is_joined(contact)) * JOINED.get();
+                    let share = asked.give.max(joined);
+                    ([0, 1].map(|k| give[k] + share * scale[k]), [0.0; 2])
                 }
-                _ => (give, [0.0; 2]),
             };
             let friction = match self.kinds.get(row + 1) {
                 Some(RowKind::Friction { coefficient, .. }) if has_friction => *coefficient,
@@ -306,6 +298,7 @@ impl Island {
                 give: [
                     self.joint_gives[slot]
                         + yielding
+                        + asked.give * scale
                         + (1.0 / tie.share_of(asked.of) - 1.0) * scale,
                     0.0,
                 ],

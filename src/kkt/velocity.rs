@@ -13,11 +13,12 @@
 
 use super::delassus::{RowDirection, assemble};
 use super::island::{ActiveContact, Island, KktError, SolveSettings};
+use super::jammed::are_jammed;
 use super::joint_system::Rows;
 use super::multipliers::prepare;
 use super::sparse::Asked;
 use super::unresolved::unresolved_shares;
-use crate::linalg::complementarity::{Problem, RowKind, Status};
+use crate::linalg::complementarity::{INDEPENDENT, Problem, RowKind, Status, give};
 use crate::math::{Vec2, perp, rounding};
 use crate::system::Response;
 
@@ -153,26 +154,52 @@ impl Island {
         self.multipliers.resize(self.kinds.len(), 0.0);
         for (row, direction) in self.rows.iter().enumerate() {
             let contact = &self.contacts[direction.contact];
-            if contact.is_hard {
+            if contact.is_hard && self.impulse_give == 0.0 {
                 let which = usize::from(direction.direction != contact.kinematics.normal);
                 self.multipliers[row] = contact.multiplier[which];
             }
         }
     }
 
-    /// Solves the rows listed, those of the contacts and those of the joints after them, for impulses (or forces, of accelerations).
+    /// Solves the rows listed, those of the contacts and those of the joints after them, for impulses (or forces, of accelerations). All rows give
+    /// way a little where impulses [jam](super::jammed).
     pub(super) fn solve_impulses(&mut self, of: Response, dt: f64) -> Result<(), KktError> {
+        self.acted.resize(self.kinds.len(), 0.0);
+        if of != Response::Acceleration {
+            self.impulse_give = 0.0;
+        }
+        self.solve_impulses_once(of, dt)?;
+        if of == Response::Velocity
+            && are_jammed(
+                &self.blocks,
+                &self.contacts,
+                (&self.rows, &self.free),
+                &self.multipliers,
+            )
+        {
+            self.impulse_give = give(INDEPENDENT);
+            self.solve_impulses_once(of, dt)?;
+        }
+        Ok(())
+    }
+
+    fn solve_impulses_once(&mut self, of: Response, dt: f64) -> Result<(), KktError> {
         let n = self.kinds.len();
-        self.acted.resize(n, 0.0);
         if of != Response::ByMass && self.is_sparse(n) {
             self.guess_impulses();
             let asked = Asked {
                 of,
                 which: Rows::End,
                 unit: dt,
+                give: self.impulse_give,
             };
             self.solve_sparse(asked)?;
             return Ok(());
+        }
+        match of {
+            Response::Velocity => self.hold_wedged(dt),
+            Response::Acceleration => self.hold_wedged(1.0),
+            _ => {}
         }
         let contacts = &self.contacts;
         assemble(
@@ -184,6 +211,9 @@ impl Island {
         );
         self.soften();
         self.expand_joints(of);
+        for row in 0..n {
+            self.delassus[row * (n + 1)] *= 1.0 + self.impulse_give;
+        }
         self.solve_rows()?;
         self.responses.clear();
         self.diagonals.clear();
@@ -194,6 +224,24 @@ impl Island {
             self.diagonals.push(line[row]);
         }
         Ok(())
+    }
+
+    /// Lets the friction of rigid bodies that began in each other, and stuck, hold with what its position stage had: forces that press overlaps apart
+    /// wedge bodies with each other, and velocities know nothing of these. Such bodies would fall while they stand.
+    ///
+    /// - `unit`: what forces act for (s), or 1 if forces are asked for.
+    fn hold_wedged(&mut self, unit: f64) {
+        for (row, direction) in self.rows.iter().enumerate() {
+            let contact = &self.contacts[direction.contact];
+            let is_wedged = contact.is_parting() && contact.status[1] == Status::Stick;
+            if let (RowKind::Friction { coefficient, .. }, true) = (self.kinds[row], is_wedged) {
+                let most = (coefficient * contact.multiplier[0] * unit).max(0.0);
+                self.kinds[row] = RowKind::Box {
+                    low: -most,
+                    high: most,
+                };
+            }
+        }
     }
 
     fn push_row(&mut self, contact: usize, direction: Vec2, free: f64, kind: RowKind) {

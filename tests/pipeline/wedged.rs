@@ -31,6 +31,13 @@ fn a_box_that_is_wedged_between_two_walls_rests_there() {
         (0.002, 0.05),
         (0.01, 0.1),
         (0.005, 0.3),
+        (0.003, 0.03),
+        (0.003, 0.04),
+        (0.008, 0.01),
+        (0.015, 0.05),
+        (0.004, 0.2),
+        (0.001, 0.1),
+        (0.01, -0.03),
     ];
     for (overlap, tilt) in cases {
         let (mut scene, block) = bin(0.2 - overlap, [0.3, 0.2], 0.47);
@@ -40,7 +47,7 @@ fn a_box_that_is_wedged_between_two_walls_rests_there() {
         let shape = ColliderBuilder::cuboid(0.2, 0.2).density(500.0);
         let (wedged, _) = scene.world.insert(wedged, shape.friction(0.5));
         let name = format!("{overlap} m, {tilt} rad");
-        let mut n_passes = 0;
+        let (mut n_passes, mut n_moving) = (0, 0);
         for step in 0..120 {
             scene.step();
             assert_eq!(scene.report().quality(), Quality::Solved, "{name}, {step}");
@@ -51,9 +58,15 @@ fn a_box_that_is_wedged_between_two_walls_rests_there() {
                 place.x.abs() < 0.02 && (0.19..0.23).contains(&place.y),
                 "{name}, {step}: {place:?}"
             );
-            assert!(step < 60 || speed < 0.05, "{name}, {step}: {speed} m/s");
+            // It may give way in a step or two, by no more than it falls in one.
+            assert!(
+                step < 60 || f64::from(speed) < G / 60.0,
+                "{name}, {step}: {speed} m/s"
+            );
+            n_moving += usize::from(step >= 60 && speed > 0.05);
         }
-        assert!(n_passes < 120 * 8, "{name}: {n_passes} passes");
+        assert!(n_moving <= 2, "{name}: moves in {n_moving} of 60 steps");
+        assert!(n_passes < 120 * 4, "{name}: {n_passes} passes");
         let top = f64::from(scene.world.bodies[wedged].translation().y) + 0.2;
         let carried = scene.body(block).total_contact_force()[1];
         let weight = 0.3 * 0.2 * 1000.0 * G;
@@ -133,4 +146,61 @@ fn a_weld_holds_what_is_wedged() {
         "{n_claimed}: {worst} m apart"
     );
     assert!(n_passes < 8 * n_claimed, "{n_passes} passes");
+}
+
+/// Boxes that overlap by a quarter of what they are wide, changed at random between fixed, kinematic and dynamic, and switched off and on: kinematic ones go on
+/// as fast as they were, and press others into what is fixed. What cannot get out is pressed, not thrown.
+#[test]
+fn what_is_changed_into_something_else_among_others_throws_nothing() {
+    let types = [
+        RigidBodyType::Fixed,
+        RigidBodyType::KinematicVelocityBased,
+        RigidBodyType::Dynamic,
+    ];
+    for seed in 0..24 {
+        let mut random = Dice(seed);
+        let mut pick = |n: usize| (random.between(0.0, 1.0) * n as f64) as usize % n;
+        let mut scene = Scene::new(1.0 / 60.0);
+        let ground = ColliderBuilder::cuboid(10.0, 0.5).translation(vec2(0.0, -0.5));
+        scene.fixed(ground.friction(0.5));
+        let held = RigidBodyBuilder::dynamic().translation(vec2(1000.0, 0.0));
+        let held = held.locked_axes(LockedAxes::all()).additional_mass(1.0);
+        let held = scene.world.insert_body(held);
+        let block = FlexBodyBuilder::rectangle([0.2, 0.2], [2, 2]);
+        let block = block.material(elastic(1e6, 1000.0, 1e-2));
+        let block = scene.flexible(block.translation([999.9, 0.5]));
+        let weld = AttachmentBuilder::weld(block).where_(|[_, y]| y < 1e-9);
+        (scene
+            .bodies
+            .attach(weld.to_rigid_body(held), &scene.world.bodies))
+        .expect("the block has nodes there");
+        let boxes: Vec<_> = (0..6)
+            .map(|k| {
+                let [column, row] = [k % 3, k / 3].map(f64::from);
+                let body = RigidBodyBuilder::dynamic();
+                let body = body.translation(vec2(0.31 * column, 0.3 + 0.5 * row));
+                let shape = ColliderBuilder::cuboid(0.2, 0.2).density(1000.0);
+                let (body, _) = scene.world.insert(body, shape);
+                // A joint that holds nothing makes all of them part of what is solved.
+                let nothing = GenericJointBuilder::new(JointAxesMask::empty());
+                scene.world.insert_impulse_joint(held, body, nothing);
+                body
+            })
+            .collect();
+        for round in 0..60 {
+            let body = &mut scene.world.bodies[boxes[pick(6)]];
+            if round % 2 == 0 {
+                body.set_body_type(types[pick(3)], true);
+            } else {
+                body.set_enabled(!body.is_enabled());
+            }
+            for _ in 0..2 {
+                scene.try_step().expect("the input is right");
+                for &body in &boxes {
+                    let speed = scene.world.bodies[body].linvel().length();
+                    assert!(speed < 10.0, "seed {seed}, round {round}: {speed} m/s");
+                }
+            }
+        }
+    }
 }

@@ -18,7 +18,7 @@ pub(super) const ROUNDS: usize = 3;
 /// few forces.
 ///
 /// - `least`: what must be left of the row's mobility.
-pub(super) fn give(least: f64) -> f64 {
+pub(crate) fn give(least: f64) -> f64 {
     least.max(rounding::SOLVED).sqrt()
 }
 

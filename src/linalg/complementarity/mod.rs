@@ -49,7 +49,7 @@ pub use problem::{ComplementarityError, Problem, RowKind, Status};
 pub use residual::natural_map_residual;
 
 pub(crate) use dense::{factorize_cholesky, solve_cholesky_in_place, solve_lu_in_place};
-pub(crate) use give::INDEPENDENT;
+pub(crate) use give::{INDEPENDENT, give};
 
 use crate::math::rounding;
 use active_set::{ActiveSet, Redundancy};
