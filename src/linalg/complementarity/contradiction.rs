@@ -11,6 +11,9 @@ use super::problem::{Checked, RowKind, Status};
 use super::residual::measure;
 use super::{Answer, LAST, NEAR, Outcome, PATHS, Solver};
 
+/// Steps at most: halvings of either of two numbers, which rounding ends before that.
+const MOST_STEPS: usize = 100;
+
 /// Buffers of a problem whose rows give way.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Softened {
@@ -30,7 +33,7 @@ enum Course {
     Arrives,
     /// They go on in multipliers that move nothing: rows contradict each other, and what is missed is in the mean the least (Pazy 1971).
     Contradicts,
-    /// A step has not been found, or neither it nor what it moves was less than half of the one before.
+    /// A step has not been found, or neither it nor what it moves was less than half of the one before, or there is no end of them.
     Fails,
 }
 
@@ -72,7 +75,7 @@ impl Solver {
     ) -> Course {
         softened.begin(problem);
         let mut last = [f64::INFINITY; 2];
-        loop {
+        for _ in 0..MOST_STEPS {
             let giving = [problem.delassus, &softened.delassus];
             let (multipliers, free) = (&softened.multipliers, &mut softened.free);
             approach(giving, problem.free, multipliers, free);
@@ -95,6 +98,7 @@ impl Solver {
             }
             last = next;
         }
+        Course::Fails
     }
 }
 
