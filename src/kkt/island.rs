@@ -139,9 +139,11 @@ impl Island {
         reserve: &mut f64,
     ) -> Result<IslandSummary, KktError> {
         self.n_pivots = 0;
+        self.impulse_give = 0.0;
         let summary = self.solve_stages(settings, memory, reserve)?;
         Ok(IslandSummary {
             n_pivots: self.n_pivots,
+            is_jammed: self.impulse_give > 0.0,
             ..summary
         })
     }

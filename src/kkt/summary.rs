@@ -19,6 +19,8 @@ pub struct IslandSummary {
     pub is_stopped: bool,
     /// Kinetic energy that the loads would give to the members at rest if nothing held them (J).
     pub load_energy: f64,
+    /// Whether rows gave way to impulses that jammed.
+    pub is_jammed: bool,
     /// Whether bodies that began in each other were pressed apart.
     pub is_parting: bool,
     /// Largest overlap left at a candidate (m).

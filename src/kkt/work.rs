@@ -194,16 +194,21 @@ pub(super) fn external_work(blocks: &[Block], contacts: &[ActiveContact]) -> f64
 /// The momentum of all blocks if each moved along one line with its kinetic energy (N s).
 pub(super) fn momentum_at_most(blocks: &[Block]) -> f64 {
     let momenta = blocks.iter().map(|block| {
-        let (mass, energy) = match block {
-            Block::Flex(block) => (block.mass(), block.kinetic_energy()),
-            Block::Rigid(block) => {
-                let [x, y, _] = block.mass();
-                (x.max(y), block.kinetic_energy(block.current()))
-            }
-        };
+        let (mass, energy) = mass_and_energy(block);
         (2.0 * mass * energy).sqrt()
     });
     momenta.sum()
+}
+
+/// What has to be moved of a block at the most (kg), and its kinetic energy (J).
+pub(super) fn mass_and_energy(block: &Block) -> (f64, f64) {
+    match block {
+        Block::Flex(block) => (block.mass(), block.kinetic_energy()),
+        Block::Rigid(block) => {
+            let [x, y, _] = block.mass();
+            (x.max(y), block.kinetic_energy(block.current()))
+        }
+    }
 }
 
 pub(super) fn kinetic_energy(blocks: &[Block]) -> f64 {

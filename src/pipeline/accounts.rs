@@ -75,6 +75,7 @@ impl StepReport {
         self.n_failed += counts[0];
         self.n_substituted += counts[1];
         self.n_pivots += summary.n_pivots;
+        self.n_jammed += usize::from(summary.is_jammed);
         self.energy_limited += summary.limited;
         let gain: f64 =
             summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();

@@ -44,6 +44,7 @@ pub struct StepReport {
     pub(super) n_parts: usize,
     pub(super) n_failed: usize,
     pub(super) n_substituted: usize,
+    pub(super) n_jammed: usize,
     pub(super) n_pivots: usize,
     /// What was spent is no state.
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
@@ -226,6 +227,12 @@ impl StepReport {
     fn count_of(&self, quality: Quality) -> usize {
         let unsolved = self.unsolved.iter();
         unsolved.filter(|one| one.quality == quality).count()
+    }
+
+    /// Parts of islands in which driven bodies press others that cannot get out: impulses gave way by a thousandth there, and what is driven goes
+    /// into what it presses. The overlap is told as ever, see [`Self::gap_violation`].
+    pub fn n_jammed(&self) -> usize {
+        self.n_jammed
     }
 
     /// Pivots of the complementarity solver and factorizations of sparse contact problems, in all stages, summed over the islands.

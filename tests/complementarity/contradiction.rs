@@ -1,7 +1,7 @@
 //! Rows that contradict each other: what they ask for is met in the mean, by multipliers that bring no energy.
 
 use crate::support::{Case, Numbers, random_contacts};
-use foil2d::linalg::complementarity::{Problem, RowKind, Solver, Status};
+use foil2d::linalg::complementarity::{Problem, RowKind, Solver, Status, natural_map_residual};
 
 /// `p·(b + W p / 2)`, and the largest `sqrt(W_ii) |p_i|` over the largest `|b_i| / sqrt(W_ii)`.
 fn gain_and_size(problem: &Problem, multipliers: &[f64]) -> (f64, f64) {
@@ -51,6 +51,9 @@ fn a_body_between_walls_that_close_moves_with_their_mean() {
             let (gain, size) = gain_and_size(&case.problem(), &multipliers);
             assert!(gain < 0.0, "{gain:e}");
             assert!(size < 1e4, "{size:e}");
+            // and what goes on along the ray is no better for its size
+            let far: Vec<f64> = multipliers.iter().map(|p| 1e12 * p).collect();
+            assert!(natural_map_residual(&case.problem(), &far) > 1e-4);
             // the outcome tells of it, and no path was followed for what has no end
             assert!(outcome.residual > 1e-5, "{outcome:?}");
             assert!(outcome.n_sweeps <= 50, "{outcome:?}");

@@ -52,20 +52,26 @@ fn a_box_that_is_wedged_between_two_walls_rests_there() {
             scene.step();
             assert_eq!(scene.report().quality(), Quality::Solved, "{name}, {step}");
             n_passes += scene.report().n_newton();
+            assert_eq!(scene.report().n_jammed(), 0, "{name}, {step}");
             let body = &scene.world.bodies[wedged];
             let (place, speed) = (body.translation(), body.linvel().length());
             assert!(
                 place.x.abs() < 0.02 && (0.19..0.23).contains(&place.y),
                 "{name}, {step}: {place:?}"
             );
-            // It may give way in a step or two, by what it falls in one.
+            // One case gives way in a step or two, by what it falls in one.
             assert!(
                 step < 60 || f64::from(speed) < 1.1 * G / 60.0,
                 "{name}, {step}: {speed} m/s"
             );
             n_moving += usize::from(step >= 60 && speed > 0.05);
         }
-        assert!(n_moving <= 2, "{name}: moves in {n_moving} of 60 steps");
+        let most = if (overlap, tilt) == (0.008, 0.01) {
+            2
+        } else {
+            0
+        };
+        assert!(n_moving <= most, "{name}: moves in {n_moving} of 60 steps");
         assert!(n_passes < 120 * 4, "{name}: {n_passes} passes");
         let top = f64::from(scene.world.bodies[wedged].translation().y) + 0.2;
         let carried = scene.body(block).total_contact_force()[1];
@@ -157,6 +163,7 @@ fn what_is_changed_into_something_else_among_others_throws_nothing() {
         RigidBodyType::KinematicVelocityBased,
         RigidBodyType::Dynamic,
     ];
+    let mut n_jammed = 0;
     for seed in 0..24 {
         let mut random = Dice(seed);
         let mut pick = |n: usize| (random.between(0.0, 1.0) * n as f64) as usize % n;
@@ -196,6 +203,7 @@ fn what_is_changed_into_something_else_among_others_throws_nothing() {
             }
             for _ in 0..2 {
                 scene.try_step().expect("the input is right");
+                n_jammed += scene.report().n_jammed();
                 for &body in &boxes {
                     let speed = scene.world.bodies[body].linvel().length();
                     assert!(speed < 10.0, "seed {seed}, round {round}: {speed} m/s");
@@ -203,4 +211,5 @@ fn what_is_changed_into_something_else_among_others_throws_nothing() {
             }
         }
     }
+    assert!(n_jammed > 0, "none of them jams");
 }

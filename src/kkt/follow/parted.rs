@@ -14,7 +14,6 @@ impl Island {
 
     /// Lists what pressed in the last step and has flown out of reach as open contacts. Part of that force still acts in this step, and what
     /// energy it adds there can be taken back along its row only.
-    ///
     pub(in crate::kkt) fn list_parted(&mut self) {
         self.end_losses();
         for slot in 0..self.parted.len() {

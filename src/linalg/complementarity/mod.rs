@@ -70,6 +70,7 @@ const NEAR: [(Method, usize); 3] = [
 
 /// What is tried where that has not solved a problem, nor have rows that give way a little: other paths, and more sweeps.
 const PATHS: [(Method, usize); 2] = [(Method::Lemke, 1), (Method::Lemke, 2)];
+/// What is tried where rows that give way have come to no end.
 const LAST: [(Method, usize); 1] = [(Method::GaussSeidel, 500)];
 
 /// Sweeps of a solver that is asked for Gauss–Seidel, before the active set takes over: contacts of masses take some ten, and

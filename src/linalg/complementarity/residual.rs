@@ -2,6 +2,7 @@
 
 use super::give::{INDEPENDENT, give};
 use super::problem::{Checked, Problem};
+
 /// The natural-map residual of `multipliers`, free of units.
 ///
 /// `max_i sqrt(W_ii) |p_i - proj_i(p_i - w_i / W_ii)|`, where `proj_i` is the projection on the
