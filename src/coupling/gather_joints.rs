@@ -126,18 +126,18 @@ impl JointGatherer<'_, '_> {
                 let key = JointKey { owner, row };
                 row += 1;
                 let remembered = self.last.recall(&key);
-                let first = island.joint_grips.len();
+                let first = island.joints.grips.len();
                 hold_anchor(island, (target, centre), anchor);
                 let weight = 1.0 / nodes.len() as f64;
                 let grips = nodes
                     .iter()
                     .map(|&node| JointGrip::new(own, Point::Node(node), weight));
-                island.joint_grips.extend(grips);
-                island.joints.push(JointRow {
+                island.joints.grips.extend(grips);
+                island.joints.rows.push(JointRow {
                     key,
                     measure,
                     sign: 1.0,
-                    grips: (first, island.joint_grips.len()),
+                    grips: (first, island.joints.grips.len()),
                     law,
                     remembered,
                 });
@@ -151,12 +151,12 @@ fn hold_anchor(island: &mut Island, (target, centre): (usize, Vec2), anchor: &An
     match *anchor {
         Anchor::Point(local) => {
             let arm = Point::Arm(local - centre);
-            island.joint_grips.push(JointGrip::new(target, arm, -1.0));
+            island.joints.grips.push(JointGrip::new(target, arm, -1.0));
         }
         Anchor::Surface([a, b], xi) => {
             for (node, weight) in [(a, xi - 1.0), (b, -xi)] {
                 let grip = JointGrip::new(target, Point::Node(node), weight);
-                island.joint_grips.push(grip);
+                island.joints.grips.push(grip);
             }
         }
     }

@@ -267,16 +267,16 @@ impl RowWriter<'_> {
                 Measure::Turn(self.turn() - raw)
             }
         };
-        let start = self.island.joint_grips.len();
+        let start = self.island.joints.grips.len();
         for (side, weight) in [(first, -1.0), (second, 1.0)] {
             let grip = JointGrip::new(side.block, Point::Arm(side.arm), weight);
-            self.island.joint_grips.push(grip);
+            self.island.joints.grips.push(grip);
         }
         let key = JointKey {
             owner: self.owner,
             row: kind + axis as u32,
         };
-        self.island.joints.push(JointRow {
+        self.island.joints.rows.push(JointRow {
             key,
             measure,
             sign,

@@ -5,7 +5,7 @@
 //! group; where a joint or a pin holds it, `c` is the motion of that. No joined motion with the momentum of the group has less energy than `c`.
 
 use super::group::Group;
-use super::joint_rows::ActiveJoint;
+use super::joints::ActiveJoint;
 use crate::constraint::joint::JointGrip;
 use crate::system::{Block, Hold, RigidRates};
 

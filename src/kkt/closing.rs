@@ -7,158 +7,159 @@
 
 use super::active_contact::ActiveContact;
 use super::island::{Island, KktError, SolveSettings};
-use super::joint_law::Finish;
-use super::joint_rows::{ActiveJoint, add_wrench};
-use super::joint_system::Rows;
+use super::joints::{ActiveJoint, add_wrench};
+use super::joints::{Among, Rows};
 use super::sparse::Asked;
 use super::summary::IslandSummary;
+use super::{cones, gathered, impulses};
 use crate::constraint::joint::unit_wrench;
 use crate::linalg::complementarity::RowKind;
 use crate::system::{Block, Point, Response};
 
-impl Island {
-    /// Takes what closes joints out of velocities and accelerations.
-    ///
-    /// # Errors
-    /// If a number is not finite.
-    pub(super) fn take_out_closings(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
-        if settings.is_explicit || !(self.closes() || self.parts_joined()) {
-            return Ok(());
-        }
-        self.gather_partings();
-        self.rows.clear();
-        self.kinds.clear();
-        self.free.clear();
-        self.acted.clear();
-        self.joint_rows.clear();
-        self.joint_gives.clear();
-        for (index, tie) in self.ties.iter().enumerate() {
-            if tie.holds() {
-                self.joint_rows.push(index);
-                self.joint_gives.push(0.0);
-                let achieved = if tie.closing == 0.0 {
-                    0.0
-                } else {
-                    tie.closing + tie.gap
-                };
-                let parted = self.parted(tie);
-                self.free.push(parted - achieved / settings.b0);
-                self.kinds.push(RowKind::Bilateral);
-            }
-        }
-        self.solve_closings(settings)?;
-        for slot in 0..self.joint_rows.len() {
-            self.ties[self.joint_rows[slot]].closer = self.multipliers[slot];
-        }
-        self.clear_impulses();
-        self.wrenches.clear();
-        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
-        for at in 0..self.ties.len() {
-            let tie = self.ties[at];
-            if !tie.is_hard && tie.closer != 0.0 {
-                self.gather_closer(&tie, settings.b1);
-            }
-        }
-        self.add_to_rigid(Response::Velocity, settings.b1);
-        self.respond();
-        self.add_to_flexible(Response::Velocity, 1.0);
-        if !settings.is_within {
-            self.add_to_rigid(Response::Acceleration, 1.0);
-            self.add_to_flexible(Response::Acceleration, 1.0);
-        }
-        self.clear_impulses();
-        Ok(())
+/// Takes what closes joints out of velocities and accelerations.
+///
+/// # Errors
+/// If a number is not finite.
+pub(super) fn take_out_closings(
+    island: &mut Island,
+    settings: &SolveSettings,
+) -> Result<(), KktError> {
+    if settings.is_explicit || !(closes(island) || parts_joined(island)) {
+        return Ok(());
     }
-
-    /// Whether bodies that joints hold too are parted by contacts: these multipliers are no forces, nor is what joints answer to them.
-    fn parts_joined(&self) -> bool {
-        let parts = |contact: &ActiveContact| contact.is_parting() && contact.is_closed();
-        !self.ties.is_empty() && self.contacts.iter().any(parts)
-    }
-
-    /// Gathers the wrenches of the contacts that part rigid bodies.
-    fn gather_partings(&mut self) {
-        self.wrenches.clear();
-        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
-        for contact in self.contacts.iter().filter(|contact| contact.is_parting()) {
-            let wrenches = Some(&mut self.wrenches[..]);
-            let (rows, forces) = (&contact.kinematics, contact.multiplier);
-            Self::spread(&mut self.blocks, rows, forces, wrenches, |_, _, _, _| {});
-        }
-    }
-
-    /// How contacts that part move a joint row, over `b0` (N/kg, or N m/(kg m²) of what keeps an angle).
-    fn parted(&self, tie: &ActiveJoint) -> f64 {
-        let is_turn = tie.row.measure.is_turn();
-        let grips = self.joint_grips[tie.row.grips.0..tie.row.grips.1].iter();
-        let moved = grips.map(|grip| match &self.blocks[grip.block] {
-            Block::Rigid(block) => {
-                let wrench = unit_wrench(grip, tie.direction, is_turn);
-                block.mobility_between(wrench, self.wrenches[grip.block], Response::Velocity)
-            }
-            Block::Flex(_) => 0.0,
-        });
-        moved.sum()
-    }
-
-    /// Whether ends that were put apart come nearer in this step.
-    pub(super) fn closes(&self) -> bool {
-        self.ties.iter().any(|tie| tie.closing != 0.0)
-    }
-
-    /// Elastic energy that closing has stored: who has put ends apart has brought it (J).
-    pub(super) fn stretched_by_closing(&self, summary: &IslandSummary) -> f64 {
-        match self.closes() {
-            true => (summary.end_energy[1] - summary.start_energy[1]).max(0.0),
-            false => 0.0,
-        }
-    }
-
-    fn solve_closings(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
-        let n = self.kinds.len();
-        self.acted.resize(n, 0.0);
-        if self.is_sparse(n) {
-            self.multipliers.clear();
-            self.multipliers.resize(n, 0.0);
-            let asked = Asked {
-                of: Response::Velocity,
-                which: Rows::Kept,
-                unit: settings.dt,
-                give: 0.0,
+    gather_partings(island);
+    island.problem.clear_rows();
+    island.problem.acted.clear();
+    island.joints.listed.clear();
+    island.joints.gives.clear();
+    for (index, tie) in island.joints.ties.iter().enumerate() {
+        if tie.holds() {
+            island.joints.listed.push(index);
+            island.joints.gives.push(0.0);
+            let achieved = if tie.closing == 0.0 {
+                0.0
+            } else {
+                tie.closing + tie.gap
             };
-            self.solve_sparse(asked)?;
-            return Ok(());
+            let parted = parted(island, tie);
+            island.problem.free.push(parted - achieved / settings.b0);
+            island.problem.kinds.push(RowKind::Bilateral);
         }
-        self.delassus.clear();
-        self.expand_delassus(Response::Velocity, Rows::Kept);
-        self.solve_rows()
     }
-
-    /// Takes the force that closes a row back.
-    fn gather_closer(&mut self, tie: &ActiveJoint, b1: f64) {
-        let is_turn = tie.row.measure.is_turn();
-        for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {
-            match (&mut self.blocks[grip.block], grip.point) {
-                (Block::Flex(block), Point::Node(node)) => {
-                    let force = -tie.closer * grip.weight * tie.direction;
-                    block.gather_impulse(Response::Velocity, node, b1 * force, grip.lever);
-                    block.gather_impulse(Response::Acceleration, node, force, grip.lever);
-                }
-                _ => add_wrench(
-                    &mut self.wrenches[grip.block],
-                    -tie.closer,
-                    unit_wrench(grip, tie.direction, is_turn),
-                ),
-            }
+    solve_closings(island, settings)?;
+    for slot in 0..island.joints.listed.len() {
+        island.joints.ties[island.joints.listed[slot]].closer = island.problem.multipliers[slot];
+    }
+    gathered::clear_impulses(island);
+    island.wrenches.clear();
+    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    for at in 0..island.joints.ties.len() {
+        let tie = island.joints.ties[at];
+        if !tie.is_hard && tie.closer != 0.0 {
+            gather_closer(island, &tie, settings.b1);
         }
+    }
+    gathered::add_to_rigid(island, Response::Velocity, settings.b1);
+    gathered::respond(island);
+    gathered::add_to_flexible(island, Response::Velocity, 1.0);
+    if !settings.is_within {
+        gathered::add_to_rigid(island, Response::Acceleration, 1.0);
+        gathered::add_to_flexible(island, Response::Acceleration, 1.0);
+    }
+    gathered::clear_impulses(island);
+    Ok(())
+}
+
+/// Whether bodies that joints hold too are parted by contacts: these multipliers are no forces, nor is what joints answer to them.
+fn parts_joined(island: &Island) -> bool {
+    let parts = |contact: &ActiveContact| contact.is_parting() && contact.is_closed();
+    !island.joints.ties.is_empty() && island.contacts.iter().any(parts)
+}
+
+/// Gathers the wrenches of the contacts that part rigid bodies.
+fn gather_partings(island: &mut Island) {
+    island.wrenches.clear();
+    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    for contact in island
+        .contacts
+        .iter()
+        .filter(|contact| contact.is_parting())
+    {
+        let wrenches = Some(&mut island.wrenches[..]);
+        let (rows, forces) = (&contact.kinematics, contact.multiplier);
+        gathered::spread(&mut island.blocks, rows, forces, wrenches, |_, _, _, _| {});
     }
 }
 
-impl ActiveJoint {
-    /// Whether the row has held what it measures in this step.
-    fn holds(&self) -> bool {
-        let is_law = matches!(self.finish, Finish::Hold { .. } | Finish::Limit);
-        is_law && self.is_movable && !self.is_left && self.is_closed()
+/// How contacts that part move a joint row, over `b0` (N/kg, or N m/(kg m²) of what keeps an angle).
+fn parted(island: &Island, tie: &ActiveJoint) -> f64 {
+    let is_turn = tie.row.measure.is_turn();
+    let grips = island.joints.grips[tie.row.grips.0..tie.row.grips.1].iter();
+    let moved = grips.map(|grip| match &island.blocks[grip.block] {
+        Block::Rigid(block) => {
+            let wrench = unit_wrench(grip, tie.direction, is_turn);
+            block.mobility_between(wrench, island.wrenches[grip.block], Response::Velocity)
+        }
+        Block::Flex(_) => 0.0,
+    });
+    moved.sum()
+}
+
+/// Whether ends that were put apart come nearer in this step.
+pub(super) fn closes(island: &Island) -> bool {
+    island.joints.ties.iter().any(|tie| tie.closing != 0.0)
+}
+
+/// Elastic energy that closing has stored: who has put ends apart has brought it (J).
+pub(super) fn stretched_by_closing(island: &Island, summary: &IslandSummary) -> f64 {
+    match closes(island) {
+        true => (summary.end_energy[1] - summary.start_energy[1]).max(0.0),
+        false => 0.0,
+    }
+}
+
+fn solve_closings(island: &mut Island, settings: &SolveSettings) -> Result<(), KktError> {
+    let n = island.problem.kinds.len();
+    island.problem.acted.resize(n, 0.0);
+    if cones::is_sparse(island, n) {
+        island.problem.multipliers.clear();
+        island.problem.multipliers.resize(n, 0.0);
+        let asked = Asked {
+            of: Response::Velocity,
+            which: Rows::Kept,
+            unit: settings.dt,
+            give: 0.0,
+        };
+        cones::solve_sparse(island, asked)?;
+        return Ok(());
+    }
+    island.problem.delassus.clear();
+    let among = Among {
+        blocks: &island.blocks,
+        contacts: &island.contacts,
+    };
+    island
+        .joints
+        .expand(&mut island.problem, among, (Response::Velocity, Rows::Kept));
+    impulses::solve_rows(island)
+}
+
+/// Takes the force that closes a row back.
+fn gather_closer(island: &mut Island, tie: &ActiveJoint, b1: f64) {
+    let is_turn = tie.row.measure.is_turn();
+    for grip in &island.joints.grips[tie.row.grips.0..tie.row.grips.1] {
+        match (&mut island.blocks[grip.block], grip.point) {
+            (Block::Flex(block), Point::Node(node)) => {
+                let force = -tie.closer * grip.weight * tie.direction;
+                block.gather_impulse(Response::Velocity, node, b1 * force, grip.lever);
+                block.gather_impulse(Response::Acceleration, node, force, grip.lever);
+            }
+            _ => add_wrench(
+                &mut island.wrenches[grip.block],
+                -tie.closer,
+                unit_wrench(grip, tie.direction, is_turn),
+            ),
+        }
     }
 }
 
@@ -200,8 +201,8 @@ mod tests {
                 island.blocks.push(rigid(&mut random, Vec2::new(x, 0.0)).0);
             }
             join(&mut island, [0, 1]);
-            island.ties[0].is_hard = true;
-            island.list_holders();
+            island.joints.ties[0].is_hard = true;
+            island.joints.list_holders(&island.blocks);
             let (force, normal) = (7.0, Vec2::new(1.0, slant).normalize());
             let grips = [(0, 1.0), (1, -1.0)]
                 .map(|(block, weight)| (block, Point::Arm(Vec2::zeros()), weight, Vec2::zeros()));
@@ -210,9 +211,9 @@ mod tests {
                 ActiveContact::new(0, row, Remembered::default(), 0.0, &island.blocks);
             (contact.asked, contact.multiplier) = (asked, [force, 0.0]);
             island.contacts.push(contact);
-            assert!(island.take_out_closings(&SETTINGS).is_ok());
+            assert!(take_out_closings(&mut island, &SETTINGS).is_ok());
             let expected = if asked < 0.0 { -force * normal.x } else { 0.0 };
-            let found = island.ties[0].closer;
+            let found = island.joints.ties[0].closer;
             assert!((found - expected).abs() < 1e-12, "{slant}: {found}");
         }
     }

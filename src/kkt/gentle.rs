@@ -3,10 +3,12 @@
 //! Positions stay on the feasible path. Velocities are those of the motion without contact, projected so that nothing that touches
 //! approaches: a projection in the metric of the masses takes energy and never gives any, and its impulses come in pairs.
 
+use super::follow;
 use super::island::{Island, KktError, SolveSettings};
-use super::position::PARTING_RATE;
 use super::summary::IslandSummary;
+use super::tolerances::PARTING_RATE;
 use super::work::{applied_work, end_energy};
+use super::working_set;
 use crate::constraint::contact::ContactMemory;
 use crate::linalg::complementarity::Status;
 use crate::math::{are_held, judged::Judged};
@@ -18,106 +20,108 @@ pub const GAINED: Judged = Judged::new("kkt::GAINED", 0.01);
 /// Energy gained in a step, relative to what there was and was brought, that no swing of stored accelerations explains (-).
 pub const DOUBLED: Judged = Judged::new("kkt::DOUBLED", 1.0);
 
-impl Island {
-    /// Whether a step that is not solved has gained energy.
-    ///
-    /// Parts of a step that gain a little each are not to gain much together: each has its share. What contact has taken before is not theirs to
-    /// give back.
-    pub(super) fn has_gained(&self, settings: &SolveSettings, summary: &IslandSummary) -> bool {
-        let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
-        // What stands together where the step began has gained nothing.
-        let is_unsolved = summary.is_cut || summary.is_stopped && !self.path.is_empty();
-        // Forces that no solution gave do no work to count on: neither of joints nor of driven bodies.
-        let supply = applied_work(&self.blocks).max(0.0);
-        let gain = after - before - supply;
-        let share = GAINED * settings.dt / settings.whole;
-        is_unsolved && (gain.is_nan() || gain > share * (before + supply))
-    }
+/// Whether a step that is not solved has gained energy.
+///
+/// Parts of a step that gain a little each are not to gain much together: each has its share. What contact has taken before is not theirs to
+/// give back.
+pub(super) fn has_gained(
+    island: &Island,
+    settings: &SolveSettings,
+    summary: &IslandSummary,
+) -> bool {
+    let [before, after] = [summary.start_energy, summary.end_energy].map(|[k, e]| k + e);
+    // What stands together where the step began has gained nothing.
+    let is_unsolved = summary.is_cut || summary.is_stopped && !island.path.is_empty();
+    // Forces that no solution gave do no work to count on: neither of joints nor of driven bodies.
+    let supply = applied_work(&island.blocks).max(0.0);
+    let gain = after - before - supply;
+    let share = GAINED * settings.dt / settings.whole;
+    is_unsolved && (gain.is_nan() || gain > share * (before + supply))
+}
 
-    /// Whether bodies that touch have come to more kinetic energy than twice what was brought and what they part with, by the margin at least: no
-    /// forces that mean anything do that.
-    pub(super) fn is_thrown(&self, summary: &IslandSummary) -> bool {
-        let overlaps = self.contacts.iter().map(|contact| -contact.allowance);
-        let deepest = overlaps.fold(self.margin, f64::max);
-        let masses = self.blocks.iter().map(|block| match block {
-            Block::Flex(block) => block.mass(),
-            Block::Rigid(block) => block.mass()[0].max(block.mass()[1]),
-        });
-        let parting = 2.0 * masses.sum::<f64>() * (PARTING_RATE * deepest).powi(2);
-        let most = (1.0 + DOUBLED.get()) * summary.brought() + parting;
-        let may_touch = !self.path.is_empty() || !self.contacts.is_empty();
-        may_touch && summary.end_energy[0] > most
-    }
+/// Whether bodies that touch have come to more kinetic energy than twice what was brought and what they part with, by the margin at least: no
+/// forces that mean anything do that.
+pub(super) fn is_thrown(island: &Island, summary: &IslandSummary) -> bool {
+    let overlaps = island.contacts.iter().map(|contact| -contact.allowance);
+    let deepest = overlaps.fold(island.passes.margin, f64::max);
+    let masses = island.blocks.iter().map(|block| match block {
+        Block::Flex(block) => block.mass(),
+        Block::Rigid(block) => block.mass()[0].max(block.mass()[1]),
+    });
+    let parting = 2.0 * masses.sum::<f64>() * (PARTING_RATE * deepest).powi(2);
+    let most = (1.0 + DOUBLED.get()) * summary.brought() + parting;
+    let may_touch = !island.path.is_empty() || !island.contacts.is_empty();
+    may_touch && summary.end_energy[0] > most
+}
 
-    /// Whether some rigid body has come to a motion that rapier's numbers do not hold.
-    pub(super) fn is_flung(&self) -> bool {
-        self.blocks.iter().any(|block| match block {
-            Block::Flex(_) => false,
-            Block::Rigid(block) => {
-                let motion = block.current();
-                let [place, velocity] = [motion.centre, motion.velocity];
-                let numbers = [
-                    place.x,
-                    place.y,
-                    velocity.x,
-                    velocity.y,
-                    motion.angle,
-                    motion.spin,
-                ];
-                !(are_held(&numbers) && block.smooth_end.iter().all(|value| value.is_finite()))
+/// Whether some rigid body has come to a motion that rapier's numbers do not hold.
+pub(super) fn is_flung(island: &Island) -> bool {
+    island.blocks.iter().any(|block| match block {
+        Block::Flex(_) => false,
+        Block::Rigid(block) => {
+            let motion = block.current();
+            let [place, velocity] = [motion.centre, motion.velocity];
+            let numbers = [
+                place.x,
+                place.y,
+                velocity.x,
+                velocity.y,
+                motion.angle,
+                motion.spin,
+            ];
+            !(are_held(&numbers) && block.smooth_end.iter().all(|value| value.is_finite()))
+        }
+    })
+}
+
+/// Ends the step where it was first stopped, or where it began, without forces of position.
+///
+/// # Errors
+/// If a number is not finite.
+pub(super) fn end_gently(
+    island: &mut Island,
+    settings: &SolveSettings,
+    memory: &ContactMemory,
+    summary: &mut IslandSummary,
+) -> Result<(), KktError> {
+    (summary.is_cut, summary.is_stopped) = (false, true);
+    let tolerance = working_set::gap_tolerance(island, settings);
+    if !follow::return_to_first_stop(island) {
+        follow::return_to_start(island, settings, memory, tolerance);
+    }
+    let touching = island.path.least_margin();
+    for contact in &mut island.contacts {
+        let is_near = contact.base.is_none_or(|base| base.gap <= touching);
+        // Closed for the law of velocities, with no force of position to speak of.
+        let pressed = if is_near { f64::MIN_POSITIVE } else { 0.0 };
+        contact.multiplier = [pressed, 0.0];
+        contact.impulse = [0.0; 2];
+        contact.settled = [0.0; 2];
+        contact.status = [Status::Open; 2];
+        contact.is_massless = false;
+    }
+    for tie in &mut island.joints.ties {
+        tie.multiplier = 0.0;
+        (tie.kick, tie.impulse) = (0.0, 0.0);
+    }
+    working_set::correct(island);
+    island.path.stop(&mut island.blocks);
+    working_set::measure_signed(island);
+    follow::end_losses(island);
+    for block in &mut island.blocks {
+        match block {
+            Block::Flex(block) => {
+                block.place_velocities();
+                block.measure_elastic_energy();
             }
-        })
+            Block::Rigid(block) => block.forget_contact(),
+        }
     }
-
-    /// Ends the step where it was first stopped, or where it began, without forces of position.
-    ///
-    /// # Errors
-    /// If a number is not finite.
-    pub(super) fn end_gently(
-        &mut self,
-        settings: &SolveSettings,
-        memory: &ContactMemory,
-        summary: &mut IslandSummary,
-    ) -> Result<(), KktError> {
-        (summary.is_cut, summary.is_stopped) = (false, true);
-        let tolerance = self.gap_tolerance(settings);
-        if !self.return_to_first_stop() {
-            self.return_to_start(settings, memory, tolerance);
-        }
-        let touching = self.path.least_margin();
-        for contact in &mut self.contacts {
-            let is_near = contact.base.is_none_or(|base| base.gap <= touching);
-            // Closed for the law of velocities, with no force of position to speak of.
-            let pressed = if is_near { f64::MIN_POSITIVE } else { 0.0 };
-            contact.multiplier = [pressed, 0.0];
-            contact.impulse = [0.0; 2];
-            contact.settled = [0.0; 2];
-            contact.status = [Status::Open; 2];
-            contact.is_massless = false;
-        }
-        for tie in &mut self.ties {
-            tie.multiplier = 0.0;
-            (tie.kick, tie.impulse) = (0.0, 0.0);
-        }
-        self.correct();
-        self.path.stop(&mut self.blocks);
-        self.measure_signed();
-        self.end_losses();
-        for block in &mut self.blocks {
-            match block {
-                Block::Flex(block) => {
-                    block.place_velocities();
-                    block.measure_elastic_energy();
-                }
-                Block::Rigid(block) => block.forget_contact(),
-            }
-        }
-        summary.gap_violation = self.gap_violation(true);
-        settings.treatment().finish(self, settings, summary)?;
-        summary.work = self.actual_work(settings) + self.joint_work(settings).all;
-        summary.end_energy = end_energy(&self.blocks);
-        Ok(())
-    }
+    summary.gap_violation = working_set::gap_violation(island, true);
+    settings.treatment().finish(island, settings, summary)?;
+    summary.work = island.actual_work(settings) + island.joint_work(settings).all;
+    summary.end_energy = end_energy(&island.blocks);
+    Ok(())
 }
 
 #[cfg(test)]
@@ -176,14 +180,14 @@ mod tests {
             ..IslandSummary::default()
         };
         let mut island = balls(true);
-        island.margin = MARGIN;
+        island.passes.margin = MARGIN;
         // Both at twice the pace at which so much parts.
         let parting = |way: f64| 2.0 * 0.5 * 2.0 * (2.0 * PARTING_RATE.get() * way).powi(2);
         let at_margin = parting(MARGIN);
-        for (more, is_thrown) in [(-40.0, false), (-0.1, false), (0.1, true), (1e20, true)] {
+        for (more, expected) in [(-40.0, false), (-0.1, false), (0.1, true), (1e20, true)] {
             summary.end_energy = [40.0 + at_margin + more, 1e3];
-            assert_eq!(island.is_thrown(&summary), is_thrown, "{more} J");
-            assert!(!balls(false).is_thrown(&summary));
+            assert_eq!(is_thrown(&island, &summary), expected, "{more} J");
+            assert!(!is_thrown(&balls(false), &summary));
         }
         let grips = [0, 1].map(|block| {
             (
@@ -197,9 +201,9 @@ mod tests {
         let mut contact = ActiveContact::new(0, row, Remembered::default(), 0.0, &island.blocks);
         contact.allowance = -0.1;
         island.contacts.push(contact);
-        for (more, is_thrown) in [(-0.1, false), (0.1, true)] {
+        for (more, expected) in [(-0.1, false), (0.1, true)] {
             summary.end_energy = [40.0 + parting(0.1) + more, 0.0];
-            assert_eq!(island.is_thrown(&summary), is_thrown, "{more} J");
+            assert_eq!(is_thrown(&island, &summary), expected, "{more} J");
         }
     }
 }

@@ -5,8 +5,9 @@
 //! positions are corrected without their velocities. The error, of the first order in the step, is taken out by turning the
 //! velocities of the whole group rigidly, which changes no relative velocity at any contact.
 
+use super::gathered;
 use super::island::{Island, SolveSettings};
-use super::joint_rows::{ActiveJoint, add_wrench};
+use super::joints::add_wrench;
 use crate::constraint::joint::unit_wrench;
 use crate::math::{Vec2, cross, perp};
 use crate::system::{Block, Moments, Point, Step};
@@ -35,166 +36,151 @@ impl LateForce {
     }
 }
 
-impl Island {
-    /// Counts what lasting forces do beyond their time in a part of a step. `1 - β1` of a force acts in the part that follows, as long as that
-    /// is, and is counted where it is found, as if that were as long as the step: sums over any parts balance momentum then, and what rests
-    /// carries its weight in each of them.
-    pub(super) fn count_late_forces(&mut self, settings: &SolveSettings) {
-        let late = (1.0 - settings.b1 / settings.dt) * (settings.whole - settings.dt);
-        for contact in &mut self.contacts {
-            if !contact.is_hard {
-                let (now, before) = (contact.lasting(), contact.remembered.lasting);
-                contact.late = [0, 1].map(|axis| late * (now[axis] - before[axis]));
-            }
+/// Counts what lasting forces do beyond their time in a part of a step. `1 - β1` of a force acts in the part that follows, as long as that
+/// is, and is counted where it is found, as if that were as long as the step: sums over any parts balance momentum then, and what rests
+/// carries its weight in each of them.
+pub(super) fn count_late_forces(island: &mut Island, settings: &SolveSettings) {
+    let late = (1.0 - settings.b1 / settings.dt) * (settings.whole - settings.dt);
+    for contact in &mut island.contacts {
+        if !contact.is_hard {
+            let (now, before) = (contact.lasting(), contact.remembered.lasting);
+            contact.late = [0, 1].map(|axis| late * (now[axis] - before[axis]));
         }
     }
+}
 
-    /// What soft contacts and joints with flexible blocks that store accelerations have done to every rigid one, and do on in the next step.
-    pub fn late_forces(&self, step: &Step, late: &mut Vec<LateForce>) {
-        let none = LateForce {
-            is_stored: !step.is_within(),
-            ..LateForce::default()
+/// What soft contacts and joints with flexible blocks that store accelerations have done to every rigid one, and do on in the next step.
+pub fn late_forces(island: &Island, step: &Step, late: &mut Vec<LateForce>) {
+    let none = LateForce {
+        is_stored: !step.is_within(),
+        ..LateForce::default()
+    };
+    late.clear();
+    late.resize(island.blocks.len(), none);
+    let stores = |block: usize| matches!(&island.blocks[block], Block::Flex(body) if !body.is_large() && !body.is_explicit());
+    for contact in island.contacts.iter().filter(|contact| !contact.is_hard) {
+        let kinematics = &contact.kinematics;
+        let [normal, tangent] = contact.lasting();
+        let force = normal * kinematics.normal + tangent * kinematics.tangent();
+        let grips = || kinematics.attachments().iter();
+        let Some(partner) = grips().map(|grip| grip.block).find(|&block| stores(block)) else {
+            continue;
         };
-        late.clear();
-        late.resize(self.blocks.len(), none);
-        let stores = |block: usize| matches!(&self.blocks[block], Block::Flex(body) if !body.is_large() && !body.is_explicit());
-        for contact in self.contacts.iter().filter(|contact| !contact.is_hard) {
-            let kinematics = &contact.kinematics;
-            let [normal, tangent] = contact.lasting();
-            let force = normal * kinematics.normal + tangent * kinematics.tangent();
-            let grips = || kinematics.attachments().iter();
-            let Some(partner) = grips().map(|grip| grip.block).find(|&block| stores(block)) else {
-                continue;
-            };
-            for grip in grips() {
-                let share = grip.weight * force;
-                let wrench = [share.x, share.y, cross(grip.grip.lever, share)];
-                late[grip.block].add(wrench, self.flex_index[partner]);
-            }
+        for grip in grips() {
+            let share = grip.weight * force;
+            let wrench = [share.x, share.y, cross(grip.grip.lever, share)];
+            late[grip.block].add(wrench, island.flex_index[partner]);
         }
-        for tie in self.ties.iter().filter(|tie| !tie.is_hard) {
-            let grips = &self.joint_grips[tie.row.grips.0..tie.row.grips.1];
-            let Some(partner) = grips
-                .iter()
-                .map(|grip| grip.block)
-                .find(|&block| stores(block))
-            else {
-                continue;
-            };
-            for grip in grips {
-                let wrench = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
-                let force = tie.multiplier - tie.closer;
-                late[grip.block].add(wrench.map(|part| force * part), self.flex_index[partner]);
+    }
+    for tie in island.joints.ties.iter().filter(|tie| !tie.is_hard) {
+        let grips = &island.joints.grips[tie.row.grips.0..tie.row.grips.1];
+        let Some(partner) = grips
+            .iter()
+            .map(|grip| grip.block)
+            .find(|&block| stores(block))
+        else {
+            continue;
+        };
+        for grip in grips {
+            let wrench = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
+            let force = tie.multiplier - tie.closer;
+            late[grip.block].add(wrench.map(|part| force * part), island.flex_index[partner]);
+        }
+    }
+}
+
+/// Leaves on every flexible block the contact forces that acted, those of impulses included.
+pub(super) fn publish_forces(island: &mut Island, dt: f64) {
+    for block in &mut island.blocks {
+        if let Block::Flex(block) = block {
+            block.clear_contact_force();
+        }
+    }
+    for contact in &island.contacts {
+        let force = contact.force(dt);
+        gathered::spread(
+            &mut island.blocks,
+            &contact.kinematics,
+            force,
+            None,
+            |block, node, force, lever| block.add_contact_force(node, force, lever),
+        );
+    }
+    publish_joint_forces(island, dt);
+}
+
+/// Leaves the forces of soft joints on the flexible blocks.
+pub(super) fn publish_joint_forces(island: &mut Island, dt: f64) {
+    for tie in island.joints.ties.iter().filter(|tie| !tie.is_hard) {
+        let force = tie.force(dt) * tie.row.sign;
+        for grip in &island.joints.grips[tie.row.grips.0..tie.row.grips.1] {
+            if let (Block::Flex(block), Point::Node(node)) =
+                (&mut island.blocks[grip.block], grip.point)
+            {
+                let share: Vec2 = force * grip.weight * tie.direction;
+                block.add_contact_force(node, share, grip.lever);
             }
         }
     }
+}
 
-    /// Leaves on every flexible block the contact forces that acted, those of impulses included.
-    pub(super) fn publish_forces(&mut self, dt: f64) {
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.clear_contact_force();
-            }
-        }
-        for contact in &self.contacts {
-            let force = contact.force(dt);
-            Self::spread(
-                &mut self.blocks,
-                &contact.kinematics,
-                force,
-                None,
-                |block, node, force, lever| block.add_contact_force(node, force, lever),
-            );
-        }
-        self.publish_joint_forces(dt);
+/// Restores the angular momentum of every group of free bodies that touch, each other or themselves.
+pub(super) fn balance_angular_momentum(island: &mut Island) {
+    island.groups.clear();
+    island.groups.extend(0..island.blocks.len());
+    island.touch_themselves.clear();
+    island.touch_themselves.resize(island.blocks.len(), false);
+    let closed = island.contacts.iter().filter(|contact| contact.is_closed());
+    let pressed = closed.map(|contact| island.candidates[contact.candidate].pair.blocks());
+    let tied = island.joints.ties.iter().map(|tie| {
+        let (first, last) = tie.row.grips;
+        [first, last - 1].map(|grip| island.joints.grips[grip].block)
+    });
+    for pair in pressed
+        .chain(island.pressed_before.iter().copied())
+        .chain(tied)
+    {
+        island.touch_themselves[pair[0]] |= pair[0] == pair[1];
+        let [one, other] = pair.map(|block| root(&island.groups, block));
+        island.groups[one.max(other)] = one.min(other);
     }
-
-    /// Leaves the forces of soft joints on the flexible blocks.
-    pub(super) fn publish_joint_forces(&mut self, dt: f64) {
-        for tie in self.ties.iter().filter(|tie| !tie.is_hard) {
-            let force = tie.force(dt) * tie.row.sign;
-            for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {
-                if let (Block::Flex(block), Point::Node(node)) =
-                    (&mut self.blocks[grip.block], grip.point)
-                {
-                    let share: Vec2 = force * grip.weight * tie.direction;
-                    block.add_contact_force(node, share, grip.lever);
-                }
-            }
+    for block in 0..island.groups.len() {
+        island.groups[block] = root(&island.groups, block);
+    }
+    for block in 0..island.groups.len() {
+        let has_partner = island.groups[block + 1..].contains(&block);
+        if island.groups[block] == block && (has_partner || island.touch_themselves[block]) {
+            balance_group(island, block);
         }
     }
+}
 
-    /// Mean force of a joint row over the step in the world, on the side of positive weights, or its torque (N or N m).
-    pub fn joint_force(&self, tie: &ActiveJoint, dt: f64) -> (Vec2, f64) {
-        let force = tie.force(dt);
-        if tie.row.measure.is_turn() {
-            return (Vec2::zeros(), force);
+fn balance_group(island: &mut Island, group: usize) {
+    let mut common = None;
+    let (mut start, mut end) = (Sum::default(), Sum::default());
+    let members = || (0..island.groups.len()).filter(|&block| island.groups[block] == group);
+    for block in members() {
+        // One acceleration for all has no moment about the centre of mass.
+        let own = island.blocks[block].uniform_acceleration();
+        if own.is_none() || *common.get_or_insert(own) != own {
+            return;
         }
-        if !tie.is_hard {
-            return (force * tie.row.sign * tie.direction, 0.0);
-        }
-        let sum = (tie.kick * tie.direction + tie.impulse * tie.end) / dt;
-        (sum, 0.0)
+        start.add(&island.blocks[block].start_moments());
+        end.add(&island.blocks[block].end_moments());
     }
-
-    /// Restores the angular momentum of every group of free bodies that touch, each other or themselves.
-    pub(super) fn balance_angular_momentum(&mut self) {
-        self.groups.clear();
-        self.groups.extend(0..self.blocks.len());
-        self.touch_themselves.clear();
-        self.touch_themselves.resize(self.blocks.len(), false);
-        let closed = self.contacts.iter().filter(|contact| contact.is_closed());
-        let pressed = closed.map(|contact| self.candidates[contact.candidate].pair.blocks());
-        let tied = self.ties.iter().map(|tie| {
-            let (first, last) = tie.row.grips;
-            [first, last - 1].map(|grip| self.joint_grips[grip].block)
-        });
-        for pair in pressed
-            .chain(self.pressed_before.iter().copied())
-            .chain(tied)
-        {
-            self.touch_themselves[pair[0]] |= pair[0] == pair[1];
-            let [one, other] = pair.map(|block| root(&self.groups, block));
-            self.groups[one.max(other)] = one.min(other);
-        }
-        for block in 0..self.groups.len() {
-            self.groups[block] = root(&self.groups, block);
-        }
-        for block in 0..self.groups.len() {
-            let has_partner = self.groups[block + 1..].contains(&block);
-            if self.groups[block] == block && (has_partner || self.touch_themselves[block]) {
-                self.balance_group(block);
-            }
-        }
+    let centre = end.centre();
+    let (mut gained, mut inertia) = (0.0, 0.0);
+    for block in members() {
+        gained -= start.angular_momentum(&island.blocks[block].start_moments());
+        let moments = island.blocks[block].end_moments();
+        gained += end.angular_momentum(&moments);
+        inertia += moments.inertia + moments.mass * (moments.centre - centre).norm_squared();
     }
-
-    fn balance_group(&mut self, group: usize) {
-        let mut common = None;
-        let (mut start, mut end) = (Sum::default(), Sum::default());
-        let members = || (0..self.groups.len()).filter(|&block| self.groups[block] == group);
-        for block in members() {
-            // One acceleration for all has no moment about the centre of mass.
-            let own = self.blocks[block].uniform_acceleration();
-            if own.is_none() || *common.get_or_insert(own) != own {
-                return;
-            }
-            start.add(&self.blocks[block].start_moments());
-            end.add(&self.blocks[block].end_moments());
-        }
-        let centre = end.centre();
-        let (mut gained, mut inertia) = (0.0, 0.0);
-        for block in members() {
-            gained -= start.angular_momentum(&self.blocks[block].start_moments());
-            let moments = self.blocks[block].end_moments();
-            gained += end.angular_momentum(&moments);
-            inertia += moments.inertia + moments.mass * (moments.centre - centre).norm_squared();
-        }
-        let spin = -gained / inertia;
-        for block in 0..self.groups.len() {
-            if self.groups[block] == group {
-                let lever = self.blocks[block].centre() - centre;
-                self.blocks[block].add_rigid_velocity(spin * perp(lever), spin);
-            }
+    let spin = -gained / inertia;
+    for block in 0..island.groups.len() {
+        if island.groups[block] == group {
+            let lever = island.blocks[block].centre() - centre;
+            island.blocks[block].add_rigid_velocity(spin * perp(lever), spin);
         }
     }
 }

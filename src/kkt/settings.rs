@@ -1,7 +1,6 @@
 //! What a solve is asked for, and why there may be none.
 
 use super::constraint_function::ContactMethod;
-use super::impact::ImpactTreatment;
 use crate::linalg::complementarity::{ComplementarityError, Method};
 use crate::linalg::cone::ConeError;
 use thiserror::Error;
@@ -27,6 +26,29 @@ pub enum KktError {
     /// The sparse contact problem holds numbers that are not finite.
     #[error(transparent)]
     Cone(#[from] ConeError),
+}
+
+/// How impacts are treated. Whether a body's contact boundary carries inertia is chosen per body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub enum ImpactTreatment {
+    /// Velocity impulses between masses and on impacts shorter than the step, and no energy from contact: stable at any
+    /// step and mesh.
+    #[default]
+    Stabilized,
+    /// (C.5) as printed, multipliers enter the stored acceleration. Unstable on impact: for comparison only.
+    Plain,
+    /// Velocities and accelerations of masses in contact are projected so that they stay in contact (Hughes et al. 1976;
+    /// Laursen and Love 2002): [`Stabilized`](Self::Stabilized) without its energy stage.
+    Projected,
+    /// The contact forces of a step act on its end alone and are no part of the acceleration that the next step starts from
+    /// (Kane et al. 1999): loses energy at impact and gains none afterwards. The velocity of a node that stays in contact
+    /// changes sign with every step, and its force swings with it, without growing. Contacts through nodes without mass are
+    /// quasi-static as ever.
+    ImplicitForces,
 }
 
 /// Settings of a solve.

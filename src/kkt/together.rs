@@ -75,143 +75,144 @@ fn rates_of(motion: &RigidMotion) -> RigidRates {
     }
 }
 
-impl Island {
-    /// Ends the step where it began; returns whether it does.
-    ///
-    /// Not if loads beyond all measure are to blame: then the step is to be refused.
-    pub(super) fn end_together(&mut self, dt: f64, summary: &mut IslandSummary) -> bool {
-        let is_overloaded =
-            |block: &Block| matches!(block, Block::Flex(block) if block.is_overloaded());
-        if self.blocks.iter().any(is_overloaded) {
-            return false;
+/// Ends the step where it began; returns whether it does.
+///
+/// Not if loads beyond all measure are to blame: then the step is to be refused.
+pub(super) fn end_together(island: &mut Island, dt: f64, summary: &mut IslandSummary) -> bool {
+    let is_overloaded =
+        |block: &Block| matches!(block, Block::Flex(block) if block.is_overloaded());
+    if island.blocks.iter().any(is_overloaded) {
+        return false;
+    }
+    (summary.is_cut, summary.is_stopped) = (false, true);
+    // Explicit bodies wait at rest for their forces, and so does what they meet.
+    let is_explicit = |block: &Block| matches!(block, Block::Flex(body) if body.is_explicit());
+    let has_explicit = island.blocks.iter().any(is_explicit);
+    let leaders = touching_groups(island);
+    let mut groups = vec![Group::default(); island.blocks.len()];
+    for (block, &leader) in island.blocks.iter().zip(&leaders) {
+        let group = &mut groups[leader];
+        match moments_of(block) {
+            Ok(own) => group.add(&own),
+            Err(motion) => group.anchor = group.anchor.or(Some(rates_of(&motion))),
         }
-        (summary.is_cut, summary.is_stopped) = (false, true);
-        // Explicit bodies wait at rest for their forces, and so does what they meet.
-        let is_explicit = |block: &Block| matches!(block, Block::Flex(body) if body.is_explicit());
-        let has_explicit = self.blocks.iter().any(is_explicit);
-        let leaders = self.touching_groups();
-        let mut groups = vec![Group::default(); self.blocks.len()];
-        for (block, &leader) in self.blocks.iter().zip(&leaders) {
-            let group = &mut groups[leader];
-            match moments_of(block) {
-                Ok(own) => group.add(&own),
-                Err(motion) => group.anchor = group.anchor.or(Some(rates_of(&motion))),
-            }
+    }
+    for (block, &leader) in island.blocks.iter().zip(&leaders) {
+        if let Ok(own) = moments_of(block) {
+            groups[leader].add_turning(&own);
         }
-        for (block, &leader) in self.blocks.iter().zip(&leaders) {
-            if let Ok(own) = moments_of(block) {
-                groups[leader].add_turning(&own);
-            }
+    }
+    let may_go = !has_explicit && are_alone(island, &leaders);
+    let before = groups.clone();
+    if may_go {
+        for (block, &leader) in island.blocks.iter().zip(&leaders) {
+            groups[leader].push(dt * resultant(block));
         }
-        let may_go = !has_explicit && self.are_alone(&leaders);
-        let before = groups.clone();
-        if may_go {
-            for (block, &leader) in self.blocks.iter().zip(&leaders) {
-                groups[leader].push(dt * resultant(block));
-            }
-        }
-        self.contacts.clear();
-        self.pressed_before.clear();
-        self.ties.clear();
-        for (block, &leader) in self.blocks.iter_mut().zip(&leaders) {
-            let own = moments_of(block);
-            let centre = own
-                .as_ref()
-                .map_or_else(|motion| motion.centre, |own| own.centre);
-            let motion = groups[leader].motion();
-            let (velocity, spin) = (motion.at(centre), motion.spin);
-            let goes = may_go && own.is_ok() && groups[leader].anchor.is_none();
-            if goes {
-                let change = motion.velocity - before[leader].motion().velocity;
-                let way = RigidWay {
-                    about: motion.about,
-                    shift: dt * (motion.velocity - 0.5 * change),
-                    turn: dt * spin,
-                    velocity: motion.velocity,
-                    spin,
-                    acceleration: change / dt,
-                };
-                match block {
-                    Block::Flex(body) => body.carry_on(&way),
-                    Block::Rigid(body) => body.carry_on(&way),
-                }
-                continue;
-            }
+    }
+    island.contacts.clear();
+    island.pressed_before.clear();
+    island.joints.ties.clear();
+    for (block, &leader) in island.blocks.iter_mut().zip(&leaders) {
+        let own = moments_of(block);
+        let centre = own
+            .as_ref()
+            .map_or_else(|motion| motion.centre, |own| own.centre);
+        let motion = groups[leader].motion();
+        let (velocity, spin) = (motion.at(centre), motion.spin);
+        let goes = may_go && own.is_ok() && groups[leader].anchor.is_none();
+        if goes {
+            let change = motion.velocity - before[leader].motion().velocity;
+            let way = RigidWay {
+                about: motion.about,
+                shift: dt * (motion.velocity - 0.5 * change),
+                turn: dt * spin,
+                velocity: motion.velocity,
+                spin,
+                acceleration: change / dt,
+            };
             match block {
-                Block::Flex(body) if body.is_pinned() || body.is_explicit() => body.hold(),
-                Block::Flex(body) => body.move_on(velocity, spin),
-                Block::Rigid(body) => {
-                    body.hold();
-                    if own.is_ok() && !has_explicit {
-                        body.move_on(velocity, spin);
-                    }
+                Block::Flex(body) => body.carry_on(&way),
+                Block::Rigid(body) => body.carry_on(&way),
+            }
+            continue;
+        }
+        match block {
+            Block::Flex(body) if body.is_pinned() || body.is_explicit() => body.hold(),
+            Block::Flex(body) => body.move_on(velocity, spin),
+            Block::Rigid(body) => {
+                body.hold();
+                if own.is_ok() && !has_explicit {
+                    body.move_on(velocity, spin);
                 }
             }
         }
-        true
     }
+    true
+}
 
-    /// Whether no two of those that might meet in the step are of different groups.
-    fn are_alone(&self, leaders: &[usize]) -> bool {
-        let mut pairs = self.candidates.iter().map(|one| one.pair.blocks());
-        self.path.is_empty() && pairs.all(|[one, other]| leaders[one] == leaders[other])
-    }
+/// Whether no two of those that might meet in the step are of different groups.
+fn are_alone(island: &Island, leaders: &[usize]) -> bool {
+    let mut pairs = island.candidates.iter().map(|one| one.pair.blocks());
+    island.path.is_empty() && pairs.all(|[one, other]| leaders[one] == leaders[other])
+}
 
-    /// Makes velocities and energies known of members that have been put elsewhere after the stages.
-    pub(super) fn measure_ended(&mut self, settings: &SolveSettings, summary: &mut IslandSummary) {
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.place_velocities();
-                block.measure_elastic_energy();
-            }
+/// Makes velocities and energies known of members that have been put elsewhere after the stages.
+pub(super) fn measure_ended(
+    island: &mut Island,
+    settings: &SolveSettings,
+    summary: &mut IslandSummary,
+) {
+    for block in &mut island.blocks {
+        if let Block::Flex(block) = block {
+            block.place_velocities();
+            block.measure_elastic_energy();
         }
-        let swings = self.blocks.iter().map(|block| block.swing()[1]);
-        (summary.swing, summary.pending) = (swings.sum(), 0.0);
-        summary.work = self.actual_work(settings);
-        summary.end_energy = end_energy(&self.blocks);
     }
+    let swings = island.blocks.iter().map(|block| block.swing()[1]);
+    (summary.swing, summary.pending) = (swings.sum(), 0.0);
+    summary.work = island.actual_work(settings);
+    summary.end_energy = end_energy(&island.blocks);
+}
 
-    /// For each block the first one of those that it touches or is joined with, directly or by others.
-    fn touching_groups(&self) -> Vec<usize> {
-        self.groups_of(|_| true)
-    }
+/// For each block the first one of those that it touches or is joined with, directly or by others.
+fn touching_groups(island: &Island) -> Vec<usize> {
+    groups_of(island, |_| true)
+}
 
-    /// The same, joined only by blocks that count.
-    pub(super) fn groups_of(&self, counts: impl Fn(&Block) -> bool) -> Vec<usize> {
-        let mut leaders: Vec<usize> = (0..self.blocks.len()).collect();
-        let mut join = |blocks: &mut dyn Iterator<Item = usize>| {
-            let mut first = None;
-            for block in blocks {
-                let found = leader_of(&leaders, block);
-                match first {
-                    None => first = Some(found),
-                    Some(other) => {
-                        let (low, high) = (found.min(other), found.max(other));
-                        leaders[high] = low;
-                        first = Some(low);
-                    }
+/// The same, joined only by blocks that count.
+pub(super) fn groups_of(island: &Island, counts: impl Fn(&Block) -> bool) -> Vec<usize> {
+    let mut leaders: Vec<usize> = (0..island.blocks.len()).collect();
+    let mut join = |blocks: &mut dyn Iterator<Item = usize>| {
+        let mut first = None;
+        for block in blocks {
+            let found = leader_of(&leaders, block);
+            match first {
+                None => first = Some(found),
+                Some(other) => {
+                    let (low, high) = (found.min(other), found.max(other));
+                    leaders[high] = low;
+                    first = Some(low);
                 }
             }
-        };
-        let margin = self.path.least_margin();
-        for contact in &self.contacts {
-            let touches =
-                contact.is_closed() || contact.base.is_some_and(|base| base.gap <= margin);
-            if touches {
-                let attachments = contact.kinematics.attachments().iter();
-                let blocks = attachments.map(|attachment| attachment.block);
-                join(&mut blocks.filter(|&block| counts(&self.blocks[block])));
-            }
         }
-        for tie in &self.ties {
-            let (from, to) = tie.row.grips;
-            let blocks = self.joint_grips[from..to].iter().map(|grip| grip.block);
-            join(&mut blocks.filter(|&block| counts(&self.blocks[block])));
+    };
+    let margin = island.path.least_margin();
+    for contact in &island.contacts {
+        let touches = contact.is_closed() || contact.base.is_some_and(|base| base.gap <= margin);
+        if touches {
+            let attachments = contact.kinematics.attachments().iter();
+            let blocks = attachments.map(|attachment| attachment.block);
+            join(&mut blocks.filter(|&block| counts(&island.blocks[block])));
         }
-        (0..self.blocks.len())
-            .map(|block| leader_of(&leaders, block))
-            .collect()
     }
+    for tie in &island.joints.ties {
+        let (from, to) = tie.row.grips;
+        let blocks = island.joints.grips[from..to].iter().map(|grip| grip.block);
+        join(&mut blocks.filter(|&block| counts(&island.blocks[block])));
+    }
+    (0..island.blocks.len())
+        .map(|block| leader_of(&leaders, block))
+        .collect()
 }
 
 fn leader_of(leaders: &[usize], mut block: usize) -> usize {

@@ -1,7 +1,7 @@
 //! Energies of blocks, and the work that is done on them.
 
 use super::active_contact::ActiveContact;
-use super::joint_rows::{ActiveJoint, add_wrench};
+use super::joints::{ActiveJoint, add_wrench};
 use crate::constraint::joint::{JointGrip, JointLaw, unit_wrench};
 use crate::math::Vec2;
 use crate::system::{Balance, Block, FlexBlock, RigidBlock, RigidMotion};

@@ -19,6 +19,7 @@ impl JointReport {
         let owner = |tie: &ActiveJoint| tie.row.key.owner;
         let joints = part
             .island
+            .joints
             .ties
             .chunk_by(move |one, next| owner(one) == owner(next));
         joints.map(move |ties| Self::of(names.held(owner(&ties[0])), ties, part))
@@ -29,7 +30,7 @@ impl JointReport {
         let (mut sum, mut count) = (Vec2::zeros(), 0.0);
         let share = part.span.share();
         for tie in ties {
-            let (along, turn) = part.island.joint_force(tie, part.step.dt);
+            let (along, turn) = tie.force_in_world(part.step.dt);
             let (along, turn) = (share * along, share * turn);
             force += along;
             torque += turn;
@@ -52,7 +53,7 @@ impl JointReport {
 /// Weights and positions of the points that a row pulls along its direction (-, m).
 fn pulled(tie: &ActiveJoint, island: &Island) -> impl Iterator<Item = (f64, Vec2)> {
     let (first, last) = tie.row.grips;
-    let grips = island.joint_grips[first..last].iter();
+    let grips = island.joints.grips[first..last].iter();
     let pulled = grips.filter(|grip| grip.weight > 0.0);
     pulled.map(|grip| {
         let block = &island.blocks[grip.block];

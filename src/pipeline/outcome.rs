@@ -6,7 +6,7 @@ use crate::constraint::joint::{JointOwner, Measure};
 use crate::coupling::{
     FlexPool, JointImpulse, Landing, Push, RapierSets, keep_awake, keep_landing_awake, wake_moving,
 };
-use crate::kkt::LateForce;
+use crate::kkt::{LateForce, late_forces};
 use crate::rapier::prelude::ImpulseJointHandle;
 use crate::system::Block;
 
@@ -52,7 +52,7 @@ impl Outcome {
             return;
         }
         let island = part.island;
-        island.late_forces(&part.step, &mut self.late);
+        late_forces(island, &part.step, &mut self.late);
         for &(block, handle) in part.seats.claimed() {
             let late = self.late[block];
             if let Block::Rigid(block) = &island.blocks[block] {
@@ -74,7 +74,7 @@ impl Outcome {
     /// Adds the impulses of a part to those of the parts before it.
     fn add_joint_impulses(&mut self, part: &SolvedPart<'_>, entry: &Entry) {
         let dt = part.step.dt;
-        for tie in &part.island.ties {
+        for tie in &part.island.joints.ties {
             let JointOwner::Impulse(index, generation) = tie.row.key.owner else {
                 continue;
             };

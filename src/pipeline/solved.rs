@@ -33,7 +33,7 @@ impl SolvedPart<'_> {
             };
             contacts.remember(self.island.candidates[contact.candidate].key, state);
         }
-        for tie in &self.island.ties {
+        for tie in &self.island.joints.ties {
             joints.remember(tie.row.key, tie.left_behind());
         }
     }

@@ -3,7 +3,8 @@ use crate::constraint::joint::{
     JointGrip, JointKey, JointLaw, JointOwner, JointRow, Measure, RememberedJoint,
 };
 use crate::kkt::Island;
-use crate::kkt::joint_law::Finish;
+use crate::kkt::joints::Finish;
+use crate::kkt::together;
 use crate::kkt::together::tests::{flexible, island_of, random_motion, rigid};
 use crate::linalg::complementarity::{RowKind, Status};
 use crate::math::{Vec2, cross};
@@ -12,14 +13,15 @@ use crate::system::{Block, Point, RigidBlock};
 
 /// A joint between two blocks, wherever that is.
 pub(in crate::kkt) fn join(island: &mut Island, blocks: [usize; 2]) {
-    let first = island.joint_grips.len();
+    let first = island.joints.grips.len();
     for (block, weight) in blocks.into_iter().zip([1.0, -1.0]) {
         let point = match &island.blocks[block] {
             Block::Flex(_) => Point::Node(0),
             Block::Rigid(_) => Point::Arm(Vec2::zeros()),
         };
         island
-            .joint_grips
+            .joints
+            .grips
             .push(JointGrip::new(block, point, weight));
     }
     let row = JointRow {
@@ -36,7 +38,7 @@ pub(in crate::kkt) fn join(island: &mut Island, blocks: [usize; 2]) {
         },
         remembered: None::<RememberedJoint>,
     };
-    island.ties.push(ActiveJoint {
+    island.joints.ties.push(ActiveJoint {
         row,
         is_hard: false,
         has_mass: true,
@@ -69,8 +71,8 @@ pub(in crate::kkt) fn join(island: &mut Island, blocks: [usize; 2]) {
 }
 
 fn calmed(island: &mut Island, excess: f64) -> f64 {
-    let leaders = island.groups_of(|block| !block.is_prescribed());
-    let joints = (&island.ties[..], &island.joint_grips[..]);
+    let leaders = together::groups_of(island, |block| !block.is_prescribed());
+    let joints = (&island.joints.ties[..], &island.joints.grips[..]);
     remove_relative_motion(&mut island.blocks, joints, &leaders, excess)
 }
 

@@ -22,14 +22,13 @@
 //! |---|---|
 //! | `functions` | `w`, `v` and their derivatives |
 //! | `newton` | the Jacobian, a Newton step and its line search |
-//! | `iterate` | the iterations of an island, and what follows when they fail |
+//!
+//! `kkt/smooth` iterates with them, and knows what follows when that fails.
 
 mod functions;
-mod iterate;
 mod newton;
 
-pub(super) use iterate::Trial;
-pub(super) use newton::Newton;
+pub(super) use newton::{Newton, Scale};
 
 use thiserror::Error;
 

@@ -33,275 +33,282 @@ struct Listed {
     base: AtBase,
 }
 
-impl Island {
-    /// Lists the near pairs of the base as contacts, and keeps the signed ones. A contact that is near no more stays for one solve, which
-    /// takes its force out.
-    pub(super) fn list_near(&mut self, listing: &Listing<'_>) {
-        if self.path.is_empty() {
-            return;
+/// Lists the near pairs of the base as contacts, and keeps the signed ones. A contact that is near no more stays for one solve, which
+/// takes its force out.
+pub(super) fn list_near(island: &mut Island, listing: &Listing<'_>) {
+    if island.path.is_empty() {
+        return;
+    }
+    part_meetings(island);
+    island.path.list_near();
+    std::mem::swap(&mut island.contacts, &mut island.passes.contacts_before);
+    island.contacts.clear();
+    island.passes.fresh.clear();
+    island.passes.handed_over.clear();
+    island.passes.slot_of.clear();
+    island
+        .passes
+        .slot_of
+        .resize(island.candidates.len(), u32::MAX);
+    for (slot, contact) in island.passes.contacts_before.iter().enumerate() {
+        island.passes.slot_of[contact.candidate] = slot as u32;
+        if contact.base.is_none() {
+            island.contacts.push(*contact);
         }
-        self.part_meetings();
-        self.path.list_near();
-        std::mem::swap(&mut self.contacts, &mut self.contacts_before);
-        self.contacts.clear();
-        self.fresh.clear();
-        self.handed_over.clear();
-        self.slot_of.clear();
-        self.slot_of.resize(self.candidates.len(), u32::MAX);
-        for (slot, contact) in self.contacts_before.iter().enumerate() {
-            self.slot_of[contact.candidate] = slot as u32;
-            if contact.base.is_none() {
-                self.contacts.push(*contact);
-            }
+    }
+    for near in 0..island.path.near().len() {
+        let near = island.path.near()[near];
+        if island.path.is_at_meeting(&near) {
+            continue;
         }
-        for near in 0..self.path.near().len() {
-            let near = self.path.near()[near];
-            if self.path.is_at_meeting(&near) {
-                continue;
-            }
-            let kinematics = self.path.kinematics(&near);
+        let kinematics = island.path.kinematics(&near);
+        let listed = Listed {
+            near,
+            key: island.path.key(&near),
+            law: island.path.law(&near),
+            kinematics,
+            base: AtBase {
+                gap: kinematics.gap,
+                moved: island.path.moved(&kinematics, &island.blocks),
+                near,
+                is_meeting: false,
+            },
+        };
+        list(island, &listed, listing);
+    }
+    for index in 0..island.path.n_meetings() {
+        if let Some((near, kinematics, moved, law, key)) = island.path.held(index) {
+            let base = AtBase {
+                gap: kinematics.gap,
+                moved,
+                near,
+                is_meeting: true,
+            };
             let listed = Listed {
                 near,
-                key: self.path.key(&near),
-                law: self.path.law(&near),
+                key,
+                law,
                 kinematics,
-                base: AtBase {
-                    gap: kinematics.gap,
-                    moved: self.path.moved(&kinematics, &self.blocks),
-                    near,
-                    is_meeting: false,
-                },
+                base,
             };
-            self.list(&listed, listing);
-        }
-        for index in 0..self.path.n_meetings() {
-            if let Some((near, kinematics, moved, law, key)) = self.path.held(index) {
-                let base = AtBase {
-                    gap: kinematics.gap,
-                    moved,
-                    near,
-                    is_meeting: true,
-                };
-                let listed = Listed {
-                    near,
-                    key,
-                    law,
-                    kinematics,
-                    base,
-                };
-                self.list(&listed, listing);
-            }
-        }
-        let before = std::mem::take(&mut self.contacts_before);
-        for contact in &before {
-            let is_left = self.slot_of[contact.candidate] != u32::MAX;
-            if let Some(base) = contact.base
-                && is_left
-                && contact.multiplier != [0.0; 2]
-            {
-                self.follow_contact(contact, &base, listing);
-            }
-        }
-        self.contacts_before = before;
-    }
-
-    /// Hands what is near no more over to the pair that it has slid to, if there is one; else it stays for one solve.
-    fn follow_contact(&mut self, contact: &ActiveContact, base: &AtBase, listing: &Listing<'_>) {
-        let applied = if listing.is_again {
-            contact.applied
-        } else {
-            contact.kinematics
-        };
-        let next = if base.is_meeting {
-            None
-        } else {
-            self.next_of(contact, base)
-        };
-        let Some(next) = next else {
-            self.lose_contact(contact, applied);
-            // Corners of rigid bodies lose forces for good.
-            let may_meet =
-                !contact.is_hard && !listing.is_again && !base.is_meeting && !contact.is_lost;
-            if may_meet && !self.path.is_at_meeting(&base.near) {
-                self.note_slide(contact, base, None, listing);
-            }
-            return;
-        };
-        let met = self.contacts[next];
-        if self.handed_over.contains(&next) {
-            // It has one force already, and takes one only.
-            self.lose_contact(contact, applied);
-        } else {
-            let is_swapped = met
-                .base
-                .is_some_and(|now| now.near.point != base.near.point);
-            let applied = if is_swapped {
-                applied.swapped()
-            } else {
-                applied
-            };
-            self.handed_over.push(next);
-            self.contacts[next] = ActiveContact {
-                candidate: met.candidate,
-                kinematics: met.kinematics,
-                base: met.base,
-                applied,
-                slip_before: self.slip_before(contact, &met),
-                is_lost: false,
-                ..*contact
-            };
-        }
-        if !listing.is_again {
-            self.note_slide(contact, base, Some(&met), listing);
+            list(island, &listed, listing);
         }
     }
+    let before = std::mem::take(&mut island.passes.contacts_before);
+    for contact in &before {
+        let is_left = island.passes.slot_of[contact.candidate] != u32::MAX;
+        if let Some(base) = contact.base
+            && is_left
+            && contact.multiplier != [0.0; 2]
+        {
+            follow_contact(island, contact, &base, listing);
+        }
+    }
+    island.passes.contacts_before = before;
+}
 
-    /// Keeps a contact that is near no more for one solve, which takes its force out.
-    fn lose_contact(&mut self, contact: &ActiveContact, applied: Kinematics) {
-        self.contacts.push(ActiveContact {
+/// Hands what is near no more over to the pair that it has slid to, if there is one; else it stays for one solve.
+fn follow_contact(
+    island: &mut Island,
+    contact: &ActiveContact,
+    base: &AtBase,
+    listing: &Listing<'_>,
+) {
+    let applied = if listing.is_again {
+        contact.applied
+    } else {
+        contact.kinematics
+    };
+    let next = if base.is_meeting {
+        None
+    } else {
+        next_of(island, contact, base)
+    };
+    let Some(next) = next else {
+        lose_contact(island, contact, applied);
+        // Corners of rigid bodies lose forces for good.
+        let may_meet =
+            !contact.is_hard && !listing.is_again && !base.is_meeting && !contact.is_lost;
+        if may_meet && !island.path.is_at_meeting(&base.near) {
+            note_slide(island, contact, base, None, listing);
+        }
+        return;
+    };
+    let met = island.contacts[next];
+    if island.passes.handed_over.contains(&next) {
+        // It has one force already, and takes one only.
+        lose_contact(island, contact, applied);
+    } else {
+        let is_swapped = met
+            .base
+            .is_some_and(|now| now.near.point != base.near.point);
+        let applied = if is_swapped {
+            applied.swapped()
+        } else {
+            applied
+        };
+        island.passes.handed_over.push(next);
+        island.contacts[next] = ActiveContact {
+            candidate: met.candidate,
+            kinematics: met.kinematics,
+            base: met.base,
             applied,
-            is_lost: true,
+            slip_before: slip_before(island, contact, &met),
+            is_lost: false,
             ..*contact
-        });
+        };
     }
+    if !listing.is_again {
+        note_slide(island, contact, base, Some(&met), listing);
+    }
+}
 
-    /// Notes that the force of a contact has slid to another one, or off a corner.
-    fn note_slide(
-        &mut self,
-        contact: &ActiveContact,
-        base: &AtBase,
-        next: Option<&ActiveContact>,
-        listing: &Listing<'_>,
-    ) {
-        let rows = [&contact.kinematics, &next.unwrap_or(contact).kinematics];
-        let to = next.and_then(|next| next.base);
-        if to.is_some() == next.is_some() {
-            let to = to.as_ref().map(|to| &to.near);
-            self.path
-                .note_slide(&base.near, to, rows, contact.multiplier, listing.pass);
+/// Keeps a contact that is near no more for one solve, which takes its force out.
+fn lose_contact(island: &mut Island, contact: &ActiveContact, applied: Kinematics) {
+    island.contacts.push(ActiveContact {
+        applied,
+        is_lost: true,
+        ..*contact
+    });
+}
+
+/// Notes that the force of a contact has slid to another one, or off a corner.
+fn note_slide(
+    island: &mut Island,
+    contact: &ActiveContact,
+    base: &AtBase,
+    next: Option<&ActiveContact>,
+    listing: &Listing<'_>,
+) {
+    let rows = [&contact.kinematics, &next.unwrap_or(contact).kinematics];
+    let to = next.and_then(|next| next.base);
+    if to.is_some() == next.is_some() {
+        let to = to.as_ref().map(|to| &to.near);
+        island
+            .path
+            .note_slide(&base.near, to, rows, contact.multiplier, listing.pass);
+    }
+}
+
+/// What makes the slip at the base go on from that of a contact whose force the next one takes over.
+///
+/// Rows of one corner touch at places as far apart as the offset: where the bodies turn, each has slid another way since the step began,
+/// and what sticks on the one would be dragged along by the other, to and fro.
+fn slip_before(island: &Island, contact: &ActiveContact, next: &ActiveContact) -> f64 {
+    let slid = |row: &Kinematics| row.tangent().dot(&island.path.moved(row, &island.blocks));
+    contact.slip_before + slid(&contact.kinematics) - slid(&next.kinematics)
+}
+
+/// The contact, new in this list or without a force, of the vertices where another one has slid off.
+fn next_of(island: &Island, contact: &ActiveContact, base: &AtBase) -> Option<usize> {
+    let vertices = island.path.slid_over(&base.near)?;
+    let normal = contact.kinematics.normal;
+    let side = |near: &NearPair| {
+        if near.point == base.near.point {
+            1.0
+        } else {
+            -1.0
         }
-    }
+    };
+    let along = |slot: usize| {
+        let next = &island.contacts[slot];
+        let near = &next.base.as_ref()?.near;
+        (near.pair == base.near.pair && island.path.is_at(near, vertices))
+            .then(|| (slot, side(near) * next.kinematics.normal.dot(&normal)))
+    };
+    let is_free = |&slot: &usize| {
+        let next = &island.contacts[slot];
+        !next.is_lost && (next.multiplier == [0.0; 2] || island.passes.fresh.contains(&slot))
+    };
+    let found = (0..island.contacts.len()).filter(is_free).filter_map(along);
+    let nearest = found.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
+    (nearest.1 > 0.0).then_some(nearest.0)
+}
 
-    /// What makes the slip at the base go on from that of a contact whose force the next one takes over.
-    ///
-    /// Rows of one corner touch at places as far apart as the offset: where the bodies turn, each has slid another way since the step began,
-    /// and what sticks on the one would be dragged along by the other, to and fro.
-    fn slip_before(&self, contact: &ActiveContact, next: &ActiveContact) -> f64 {
-        let slid = |row: &Kinematics| row.tangent().dot(&self.path.moved(row, &self.blocks));
-        contact.slip_before + slid(&contact.kinematics) - slid(&next.kinematics)
-    }
-
-    /// The contact, new in this list or without a force, of the vertices where another one has slid off.
-    fn next_of(&self, contact: &ActiveContact, base: &AtBase) -> Option<usize> {
-        let vertices = self.path.slid_over(&base.near)?;
-        let normal = contact.kinematics.normal;
-        let side = |near: &NearPair| {
-            if near.point == base.near.point {
-                1.0
+/// Adds a row of the base to the contacts, with what it was before.
+fn list(island: &mut Island, listed: &Listed, listing: &Listing<'_>) {
+    let &Listed {
+        near,
+        key,
+        law,
+        kinematics,
+        base,
+    } = listed;
+    let candidates = &mut island.candidates;
+    let candidate = *island.near_candidates.entry(key).or_insert_with(|| {
+        let pair = Pair::Near {
+            blocks: island.path.blocks_of(&near),
+        };
+        candidates.push(Candidate { key, pair, law });
+        candidates.len() - 1
+    });
+    candidates[candidate].law = law;
+    let known = island.passes.slot_of.get_mut(candidate);
+    let slot = known.map_or(u32::MAX, |slot| std::mem::replace(slot, u32::MAX));
+    let mut contact = match island.passes.contacts_before.get(slot as usize) {
+        Some(&before) => ActiveContact {
+            applied: if listing.is_again {
+                before.applied
             } else {
-                -1.0
-            }
-        };
-        let along = |slot: usize| {
-            let next = &self.contacts[slot];
-            let near = &next.base.as_ref()?.near;
-            (near.pair == base.near.pair && self.path.is_at(near, vertices))
-                .then(|| (slot, side(near) * next.kinematics.normal.dot(&normal)))
-        };
-        let is_free = |&slot: &usize| {
-            let next = &self.contacts[slot];
-            !next.is_lost && (next.multiplier == [0.0; 2] || self.fresh.contains(&slot))
-        };
-        let found = (0..self.contacts.len()).filter(is_free).filter_map(along);
-        let nearest = found.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
-        (nearest.1 > 0.0).then_some(nearest.0)
-    }
-
-    /// Adds a row of the base to the contacts, with what it was before.
-    fn list(&mut self, listed: &Listed, listing: &Listing<'_>) {
-        let &Listed {
-            near,
-            key,
-            law,
-            kinematics,
-            base,
-        } = listed;
-        let candidates = &mut self.candidates;
-        let candidate = *self.near_candidates.entry(key).or_insert_with(|| {
-            let pair = Pair::Near {
-                blocks: self.path.blocks_of(&near),
-            };
-            candidates.push(Candidate { key, pair, law });
-            candidates.len() - 1
-        });
-        candidates[candidate].law = law;
-        let known = self.slot_of.get_mut(candidate);
-        let slot = known.map_or(u32::MAX, |slot| std::mem::replace(slot, u32::MAX));
-        let mut contact = match self.contacts_before.get(slot as usize) {
-            Some(&before) => ActiveContact {
-                applied: if listing.is_again {
-                    before.applied
-                } else {
-                    before.kinematics
-                },
-                kinematics: if listing.keeps_rows && !base.is_meeting {
-                    before.kinematics
-                } else {
-                    kinematics
-                },
-                ..before
+                before.kinematics
             },
-            // What is at work stays at work until the step ends.
-            None if self.is_held_by_joints(&kinematics) => return,
-            None => {
-                let remembered = listing
-                    .memory
-                    .map_or(Remembered::default(), |memory| memory.recall(&key));
-                let friction = law.friction;
-                let mut contact =
-                    ActiveContact::new(candidate, kinematics, remembered, friction, &self.blocks);
-                if listing.memory.is_some() && base.gap < -listing.slop {
-                    contact.allowance = listing.kept * base.gap;
-                } else if listing.memory.is_none() && contact.is_hard {
-                    contact.allowance = self.late_allowance(&kinematics, &base, listing);
-                }
-                contact.asked = contact.allowance;
-                self.fresh.push(self.contacts.len());
-                contact
+            kinematics: if listing.keeps_rows && !base.is_meeting {
+                before.kinematics
+            } else {
+                kinematics
+            },
+            ..before
+        },
+        // What is at work stays at work until the step ends.
+        None if island.joints.hold_fast(&island.blocks, &kinematics) => return,
+        None => {
+            let remembered = listing
+                .memory
+                .map_or(Remembered::default(), |memory| memory.recall(&key));
+            let friction = law.friction;
+            let mut contact =
+                ActiveContact::new(candidate, kinematics, remembered, friction, &island.blocks);
+            if listing.memory.is_some() && base.gap < -listing.slop {
+                contact.allowance = listing.kept * base.gap;
+            } else if listing.memory.is_none() && contact.is_hard {
+                contact.allowance = late_allowance(island, &kinematics, &base, listing);
             }
-        };
-        contact.base = Some(base);
-        contact.is_lost = false;
-        self.contacts.push(contact);
-    }
-
-    /// What a row that comes near within the step leaves of an overlap that rapier has handed over (m), zero or less: as much as the rest of
-    /// both bodies, which part by and by, and no more than there was along the row.
-    fn late_allowance(&self, row: &Kinematics, base: &AtBase, listing: &Listing<'_>) -> f64 {
-        let began = base.gap - row.normal.dot(&base.moved);
-        if began >= -listing.slop {
-            return 0.0;
-        }
-        let is_of_both = |contact: &&ActiveContact| {
+            contact.asked = contact.allowance;
+            island.passes.fresh.push(island.contacts.len());
             contact
-                .base
-                .is_some_and(|other| other.near.pair == base.near.pair)
-        };
-        let others = self.contacts_before.iter().filter(is_of_both);
-        let left = others.fold(0.0, |least, contact| f64::min(least, contact.allowance));
-        left.max(listing.kept * began)
-    }
+        }
+    };
+    contact.base = Some(base);
+    contact.is_lost = false;
+    island.contacts.push(contact);
+}
 
-    /// Lets vertices go that need not be held together.
-    fn part_meetings(&mut self) {
-        for contact in &self.contacts {
-            if let Some(base) = contact.base
-                && base.is_meeting
-                && !contact.is_lost
-                && contact.status[1] != Status::Stick
-            {
-                self.path.let_go(&base.near);
-            }
+/// What a row that comes near within the step leaves of an overlap that rapier has handed over (m), zero or less: as much as the rest of
+/// both bodies, which part by and by, and no more than there was along the row.
+fn late_allowance(island: &Island, row: &Kinematics, base: &AtBase, listing: &Listing<'_>) -> f64 {
+    let began = base.gap - row.normal.dot(&base.moved);
+    if began >= -listing.slop {
+        return 0.0;
+    }
+    let is_of_both = |contact: &&ActiveContact| {
+        contact
+            .base
+            .is_some_and(|other| other.near.pair == base.near.pair)
+    };
+    let others = island.passes.contacts_before.iter().filter(is_of_both);
+    let left = others.fold(0.0, |least, contact| f64::min(least, contact.allowance));
+    left.max(listing.kept * began)
+}
+
+/// Lets vertices go that need not be held together.
+fn part_meetings(island: &mut Island) {
+    for contact in &island.contacts {
+        if let Some(base) = contact.base
+            && base.is_meeting
+            && !contact.is_lost
+            && contact.status[1] != Status::Stick
+        {
+            island.path.let_go(&base.near);
         }
     }
 }

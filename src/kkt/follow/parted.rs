@@ -3,52 +3,52 @@
 use super::Island;
 use crate::kkt::island::{ActiveContact, AtBase};
 
-impl Island {
-    /// Notes what pressed in the last step: the first list of near pairs has just been made.
-    pub(super) fn note_pressing(&mut self) {
-        let pressing = |contact: &&ActiveContact| contact.remembered.normal > 0.0;
-        self.parted.clear();
-        self.parted
-            .extend(self.contacts.iter().filter(pressing).copied());
-    }
+/// Notes what pressed in the last step: the first list of near pairs has just been made.
+pub(super) fn note_pressing(island: &mut Island) {
+    let pressing = |contact: &&ActiveContact| contact.remembered.normal > 0.0;
+    island.passes.parted.clear();
+    island
+        .passes
+        .parted
+        .extend(island.contacts.iter().filter(pressing).copied());
+}
 
-    /// Lists what pressed in the last step and has flown out of reach as open contacts. Part of that force still acts in this step, and what
-    /// energy it adds there can be taken back along its row only.
-    pub(in crate::kkt) fn list_parted(&mut self) {
-        self.end_losses();
-        for slot in 0..self.parted.len() {
-            let before = self.parted[slot];
-            let Some(base) = before.base else {
-                continue;
-            };
-            if self
-                .contacts
-                .iter()
-                .any(|contact| contact.candidate == before.candidate)
-            {
-                continue;
-            }
-            let gap = f64::INFINITY;
-            let mut parted = ActiveContact {
-                multiplier: [0.0; 2],
-                impulse: [0.0; 2],
-                is_lost: false,
-                base: Some(AtBase { gap, ..base }),
-                ..before
-            };
-            parted.kinematics.gap = gap;
-            self.contacts.push(parted);
+/// Lists what pressed in the last step and has flown out of reach as open contacts. Part of that force still acts in this step, and what
+/// energy it adds there can be taken back along its row only.
+pub(in crate::kkt) fn list_parted(island: &mut Island) {
+    end_losses(island);
+    for slot in 0..island.passes.parted.len() {
+        let before = island.passes.parted[slot];
+        let Some(base) = before.base else {
+            continue;
+        };
+        if island
+            .contacts
+            .iter()
+            .any(|contact| contact.candidate == before.candidate)
+        {
+            continue;
         }
+        let gap = f64::INFINITY;
+        let mut parted = ActiveContact {
+            multiplier: [0.0; 2],
+            impulse: [0.0; 2],
+            is_lost: false,
+            base: Some(AtBase { gap, ..base }),
+            ..before
+        };
+        parted.kinematics.gap = gap;
+        island.contacts.push(parted);
     }
+}
 
-    /// The iterations are over: nothing is lost any more. What geometry has no gap for, and does not press, is out of reach.
-    pub(in crate::kkt) fn end_losses(&mut self) {
-        for contact in self.contacts.iter_mut().filter(|one| one.is_lost) {
-            contact.is_lost = false;
-            if contact.multiplier[0] <= f64::MIN_POSITIVE {
-                contact.multiplier = [0.0; 2];
-                contact.kinematics.gap = f64::INFINITY;
-            }
+/// The iterations are over: nothing is lost any more. What geometry has no gap for, and does not press, is out of reach.
+pub(in crate::kkt) fn end_losses(island: &mut Island) {
+    for contact in island.contacts.iter_mut().filter(|one| one.is_lost) {
+        contact.is_lost = false;
+        if contact.multiplier[0] <= f64::MIN_POSITIVE {
+            contact.multiplier = [0.0; 2];
+            contact.kinematics.gap = f64::INFINITY;
         }
     }
 }
@@ -57,6 +57,7 @@ impl Island {
 mod tests {
     use super::*;
     use crate::constraint::contact::{Kinematics, Remembered};
+    use crate::kkt::working_set;
     use crate::math::Vec2;
 
     /// What geometry has no gap for has none to tell of; what presses without one keeps the last.
@@ -69,11 +70,11 @@ mod tests {
             contact.is_lost = true;
             let mut island = Island::default();
             island.contacts.push(contact);
-            island.end_losses();
+            end_losses(&mut island);
             assert!(!island.contacts[0].is_lost);
             assert_eq!(island.contacts[0].is_closed(), told > 0.0);
             for is_stopped in [true, false] {
-                assert_eq!(island.gap_violation(is_stopped), told);
+                assert_eq!(working_set::gap_violation(&island, is_stopped), told);
             }
         }
     }

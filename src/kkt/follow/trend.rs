@@ -1,6 +1,6 @@
 //! Whether passes that are left can still end a step.
 
-use super::{CLOSE_ENOUGH, FEW_PASSES};
+use crate::kkt::tolerances::{CLOSE_ENOUGH, FEW_PASSES};
 
 /// What the last passes lacked of the laws, relative to the margins (-).
 #[derive(Clone, Copy, Debug)]

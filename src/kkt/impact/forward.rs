@@ -1,6 +1,7 @@
 //! Multipliers at the forward increment, for `β0 = 0`; see `kkt/forward.rs`.
 
 use super::Treatment;
+use crate::kkt::forward;
 use crate::kkt::island::{Island, KktError, SolveSettings};
 use crate::kkt::summary::IslandSummary;
 
@@ -15,6 +16,6 @@ impl Treatment for Forward {
         settings: &SolveSettings,
         summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
-        island.solve_forward(settings, summary)
+        forward::solve_forward(island, settings, summary)
     }
 }

@@ -12,11 +12,13 @@
 //! impact changes sign with every step, and the force alternates by `2 m v / dt` for as long. Nodes without mass have no `M⁻¹`: contacts there are quasi-static, as (C.5) says.
 
 use super::Treatment;
+use crate::kkt::gathered;
 use crate::kkt::island::{ActiveContact, Island, KktError, SolveSettings};
 use crate::kkt::summary::IslandSummary;
+use crate::kkt::{momentum, velocity};
 use crate::system::{Block, Response};
 
-/// See [`ImpactTreatment::ImplicitForces`](super::ImpactTreatment::ImplicitForces).
+/// See [`ImpactTreatment::ImplicitForces`](crate::kkt::ImpactTreatment::ImplicitForces).
 #[derive(Debug)]
 pub(super) struct ImplicitForces;
 
@@ -30,11 +32,11 @@ impl Treatment for ImplicitForces {
         for contact in &mut island.contacts {
             contact.is_settled = !contact.is_hard;
         }
-        island.take_out_hard_forces();
+        velocity::take_out_hard_forces(island);
         // Between rigid bodies there is only the impact law.
-        island.finish_joints(settings)?;
-        island.take_from_acceleration(settings);
-        island.balance_angular_momentum();
+        velocity::finish_joints(island, settings)?;
+        take_from_acceleration(island, settings);
+        momentum::balance_angular_momentum(island);
         Ok(())
     }
 }
@@ -44,43 +46,41 @@ fn is_implicit(contact: &ActiveContact) -> bool {
     contact.is_closed() && !contact.is_hard && !contact.is_massless
 }
 
-impl Island {
-    fn take_from_acceleration(&mut self, settings: &SolveSettings) {
-        let beta0 = 2.0 * settings.b0 / (settings.dt * settings.dt);
-        self.clear_impulses();
-        self.wrenches.clear();
-        self.wrenches.resize(self.blocks.len(), [0.0; 3]);
-        for contact in self
-            .contacts
-            .iter_mut()
-            .filter(|contact| is_implicit(contact))
-        {
-            Self::spread(
-                &mut self.blocks,
-                &contact.kinematics,
-                contact.multiplier,
-                Some(&mut self.wrenches),
-                |block, node, force, lever| {
-                    block.gather_impulse(Response::Velocity, node, force, lever);
-                    block.gather_impulse(Response::Acceleration, node, force, lever);
-                },
-            );
-            // The mean force over the step is `β0 p̃`.
-            let part = (beta0 - 1.0) * settings.dt;
-            contact.impulse = contact.multiplier.map(|force| part * force);
+fn take_from_acceleration(island: &mut Island, settings: &SolveSettings) {
+    let beta0 = 2.0 * settings.b0 / (settings.dt * settings.dt);
+    gathered::clear_impulses(island);
+    island.wrenches.clear();
+    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    for contact in island
+        .contacts
+        .iter_mut()
+        .filter(|contact| is_implicit(contact))
+    {
+        gathered::spread(
+            &mut island.blocks,
+            &contact.kinematics,
+            contact.multiplier,
+            Some(&mut island.wrenches),
+            |block, node, force, lever| {
+                block.gather_impulse(Response::Velocity, node, force, lever);
+                block.gather_impulse(Response::Acceleration, node, force, lever);
+            },
+        );
+        // The mean force over the step is `β0 p̃`.
+        let part = (beta0 - 1.0) * settings.dt;
+        contact.impulse = contact.multiplier.map(|force| part * force);
+    }
+    for block in &mut island.blocks {
+        if let Block::Flex(block) = block {
+            block.respond_by_mass();
         }
-        for block in &mut self.blocks {
-            if let Block::Flex(block) = block {
-                block.respond_by_mass();
-            }
-        }
-        let excess = settings.b1 - beta0 * settings.dt;
-        for (of, scale) in [
-            (Response::Velocity, -excess),
-            (Response::Acceleration, -1.0),
-        ] {
-            self.add_to_rigid(of, scale);
-            self.add_to_flexible(of, scale);
-        }
+    }
+    let excess = settings.b1 - beta0 * settings.dt;
+    for (of, scale) in [
+        (Response::Velocity, -excess),
+        (Response::Acceleration, -1.0),
+    ] {
+        gathered::add_to_rigid(island, of, scale);
+        gathered::add_to_flexible(island, of, scale);
     }
 }

@@ -4,6 +4,7 @@
 use super::Treatment;
 use crate::kkt::island::{Island, KktError, SolveSettings};
 use crate::kkt::summary::IslandSummary;
+use crate::kkt::velocity;
 
 /// No treatment.
 #[derive(Debug)]
@@ -16,13 +17,13 @@ impl Treatment for Plain {
         settings: &SolveSettings,
         _summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
-        island.keep_plain_forces();
-        if !island.ties.is_empty() {
+        velocity::keep_plain_forces(island);
+        if !island.joints.ties.is_empty() {
             // Joints hold their velocities all the same.
             for contact in &mut island.contacts {
                 contact.is_settled = true;
             }
-            island.finish_joints(settings)?;
+            velocity::finish_joints(island, settings)?;
         }
         Ok(())
     }

@@ -4,8 +4,9 @@
 use super::Treatment;
 use crate::kkt::island::{Island, KktError, SolveSettings};
 use crate::kkt::summary::IslandSummary;
+use crate::kkt::{momentum, velocity};
 
-/// See [`ImpactTreatment::Projected`](super::ImpactTreatment::Projected).
+/// See [`ImpactTreatment::Projected`](crate::kkt::ImpactTreatment::Projected).
 #[derive(Debug)]
 pub(super) struct Projected;
 
@@ -16,8 +17,8 @@ impl Treatment for Projected {
         settings: &SolveSettings,
         _summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
-        island.solve_velocities(settings)?;
-        island.balance_angular_momentum();
+        velocity::solve_velocities(island, settings)?;
+        momentum::balance_angular_momentum(island);
         Ok(())
     }
 }

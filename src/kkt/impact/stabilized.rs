@@ -5,7 +5,7 @@ use super::projected::Projected;
 use crate::kkt::island::{Island, KktError, SolveSettings};
 use crate::kkt::summary::IslandSummary;
 
-/// See [`ImpactTreatment::Stabilized`](super::ImpactTreatment::Stabilized).
+/// See [`ImpactTreatment::Stabilized`](crate::kkt::ImpactTreatment::Stabilized).
 #[derive(Debug)]
 pub(super) struct Stabilized;
 

@@ -1,6 +1,6 @@
 //! What is asked of a sparse solve.
 
-use crate::kkt::joint_system::Rows;
+use crate::kkt::joints::Rows;
 use crate::system::Response;
 
 /// What is asked of a sparse solve.

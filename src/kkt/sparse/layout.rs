@@ -18,7 +18,7 @@ pub(super) enum Shape {
 }
 
 impl Shape {
-    pub(super) fn of(block: &Block) -> Self {
+    pub(in crate::kkt) fn of(block: &Block) -> Self {
         match block {
             Block::Flex(block) => Self::Flex(Arc::clone(block.model())),
             Block::Rigid(block) if block.is_prescribed() => Self::None,
@@ -26,7 +26,7 @@ impl Shape {
         }
     }
 
-    pub(super) fn is_that_of(&self, block: &Block) -> bool {
+    pub(in crate::kkt) fn is_that_of(&self, block: &Block) -> bool {
         match (self, block) {
             (Self::Flex(model), Block::Flex(block)) => Arc::ptr_eq(model, block.model()),
             (Self::None, Block::Rigid(block)) => block.is_prescribed(),
@@ -78,24 +78,24 @@ impl Kept {
 }
 
 impl Sparse {
-    pub(super) fn n_nodes(&self) -> usize {
+    pub(in crate::kkt) fn n_nodes(&self) -> usize {
         let kept = self.kept.get(self.at);
         kept.map_or(0, |kept| kept.matrix.n_nodes())
     }
 
-    pub(super) fn forget_unused(&mut self) {
+    pub(in crate::kkt) fn forget_unused(&mut self) {
         self.kept.retain(|kept| kept.is_in_use);
         for kept in &mut self.kept {
             kept.is_in_use = false;
         }
     }
 
-    pub(super) fn scratch_begin(&mut self) {
+    pub(in crate::kkt) fn scratch_begin(&mut self) {
         self.load.fill(0.0);
     }
 
     /// Writes the bodies' matrices, in a new pattern if the bodies are others than those of every island that is known.
-    pub(super) fn fill_matrix(&mut self, blocks: &[Block]) {
+    pub(in crate::kkt) fn fill_matrix(&mut self, blocks: &[Block]) {
         let known = self.kept.iter().position(|kept| kept.is_of(blocks));
         self.at = known.unwrap_or_else(|| {
             self.kept.push(Kept::lay_out(blocks));
@@ -122,7 +122,7 @@ impl Sparse {
     }
 
     /// Adds what a point of a block contributes to a row along two directions.
-    pub(super) fn grip(
+    pub(in crate::kkt) fn grip(
         &mut self,
         blocks: &[Block],
         block: usize,
@@ -147,7 +147,7 @@ impl Sparse {
         }
     }
 
-    pub(super) fn wrench(&mut self, moves: [bool; 3], first: u32, wrenches: [[f64; 3]; 2]) {
+    pub(in crate::kkt) fn wrench(&mut self, moves: [bool; 3], first: u32, wrenches: [[f64; 3]; 2]) {
         let [normal, tangent] = wrenches.map(|wrench| {
             std::array::from_fn::<f64, 3, _>(|i| if moves[i] { wrench[i] } else { 0.0 })
         });
@@ -166,7 +166,7 @@ impl Sparse {
         });
     }
 
-    pub(super) fn joint_grip(
+    pub(in crate::kkt) fn joint_grip(
         &mut self,
         blocks: &[Block],
         grip: &JointGrip,
@@ -191,7 +191,7 @@ impl Sparse {
         }
     }
 
-    pub(super) fn push_load(
+    pub(in crate::kkt) fn push_load(
         &mut self,
         blocks: &[Block],
         block: usize,
@@ -212,7 +212,7 @@ impl Sparse {
         }
     }
 
-    pub(super) fn push_wrench(&mut self, blocks: &[Block], block: usize, wrench: [f64; 3]) {
+    pub(in crate::kkt) fn push_wrench(&mut self, blocks: &[Block], block: usize, wrench: [f64; 3]) {
         let Block::Rigid(body) = &blocks[block] else {
             return;
         };

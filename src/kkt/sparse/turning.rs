@@ -3,14 +3,14 @@
 use super::Sparse;
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::JointGrip;
-use crate::kkt::island::ActiveContact;
-use crate::kkt::joint_rows::ActiveJoint;
+use crate::kkt::active_contact::ActiveContact;
+use crate::kkt::joints::ActiveJoint;
 use crate::math::Vec2;
 use crate::system::{Block, Grip, Point, Response};
 
 impl Sparse {
     /// Adds up the couples of the forces at hand along the rows at hand, less those along the rows that they have acted along.
-    pub(super) fn add_up_couples(
+    pub(in crate::kkt) fn add_up_couples(
         &mut self,
         blocks: &[Block],
         contacts: &[ActiveContact],
@@ -49,7 +49,7 @@ impl Sparse {
     }
 
     /// How a point of a block moves under the couples listed, beyond the answer of its matrix to the forces (m/s²).
-    pub(super) fn turned(&self, blocks: &[Block], block: usize, grip: Grip) -> Vec2 {
+    pub(in crate::kkt) fn turned(&self, blocks: &[Block], block: usize, grip: Grip) -> Vec2 {
         match (&blocks[block], grip.point) {
             (Block::Flex(body), Point::Node(node)) => {
                 body.turned((node, grip.lever), self.couples[block], Response::Position)

@@ -6,6 +6,7 @@ use crate::constraint::contact::{
 use crate::fe::material::LinearElastic;
 use crate::integrator::Beta2;
 use crate::kkt::ActiveContact;
+use crate::kkt::together;
 use crate::math::{cross, perp};
 use crate::path::samples::Random;
 use crate::system::{FlexBlock, FlexLoad, Point, RigidBlock, RigidLoad, Step};
@@ -124,7 +125,11 @@ pub(in crate::kkt) fn island_of(blocks: Vec<(Block, Sums)>) -> (Island, Vec<Sums
 }
 
 fn ended(island: &mut Island) -> Vec<Sums> {
-    assert!(island.end_together(DT, &mut IslandSummary::default()));
+    assert!(together::end_together(
+        island,
+        DT,
+        &mut IslandSummary::default()
+    ));
     island.blocks.iter_mut().map(at_end).collect()
 }
 

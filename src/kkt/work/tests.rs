@@ -20,14 +20,14 @@ impl Joined {
         }
         for law in laws {
             join(&mut island, [0, 1]);
-            if let Some(tie) = island.ties.last_mut() {
+            if let Some(tie) = island.joints.ties.last_mut() {
                 (tie.is_hard, tie.row.law) = (true, *law);
                 [tie.direction, tie.end] = [0, 1].map(|_| random.point(1.0).normalize());
                 [tie.kick, tie.impulse] = [0, 1].map(|_| random.within(2.0));
             }
         }
-        let mut ends = island.joint_grips.clone();
-        for grip in island.joint_grips.iter_mut().chain(&mut ends) {
+        let mut ends = island.joints.grips.clone();
+        for grip in island.joints.grips.iter_mut().chain(&mut ends) {
             grip.lever = random.point(0.5);
         }
         Self { island, ends }
@@ -35,10 +35,10 @@ impl Joined {
 
     /// Lets the impulses of a row act on both bodies.
     fn press(&mut self, row: usize) {
-        let tie = &self.island.ties[row];
+        let tie = &self.island.joints.ties[row];
         for at in tie.row.grips.0..tie.row.grips.1 {
             let sides = [
-                (&self.island.joint_grips[at], tie.direction, tie.kick),
+                (&self.island.joints.grips[at], tie.direction, tie.kick),
                 (&self.ends[at], tie.end, tie.impulse),
             ];
             for (grip, along, impulse) in sides {
@@ -54,10 +54,10 @@ impl Joined {
 
     fn work(&self) -> JointWork {
         let grips = WorkGrips {
-            start: &self.island.joint_grips,
+            start: &self.island.joints.grips,
             end: &self.ends,
         };
-        joint_work(&self.island.blocks, &self.island.ties, grips, DT)
+        joint_work(&self.island.blocks, &self.island.joints.ties, grips, DT)
     }
 
     fn gained(&self) -> f64 {

@@ -1,6 +1,8 @@
 use super::*;
 use crate::constraint::contact::Owner;
 use crate::kkt::feasible::{FeasiblePath, Way};
+use crate::kkt::follow::listing;
+use crate::kkt::working_set;
 use crate::math::Vec2;
 use crate::path::Target;
 use crate::system::{Block, RigidBlock, RigidMotion};
@@ -86,7 +88,7 @@ fn pressing(island: &Island) -> ActiveContact {
 fn a_tip_that_turns_over_a_ridge_has_slid_no_other_way_on_the_other_side() {
     for is_wedge_first in [true, false] {
         let mut island = wedge_on_roof(is_wedge_first);
-        island.list_near(&PASS);
+        listing::list_near(&mut island, &PASS);
         let Some(tip) = island.contacts.iter_mut().find(|contact| {
             contact.base.is_some_and(|base| {
                 base.near.point == 0 && matches!(base.near.target, Target::Edge(_))
@@ -100,13 +102,13 @@ fn a_tip_that_turns_over_a_ridge_has_slid_no_other_way_on_the_other_side() {
         for (x, angle) in [(0.02, 0.2), (-0.03, 0.3), (0.01, 0.4)] {
             lead(&mut island, x, angle);
             let before = pressing(&island);
-            island.measure(false);
+            working_set::measure(&mut island, false);
             let left = before.kinematics;
             let slid = left
                 .tangent()
                 .dot(&island.path.moved(&left, &island.blocks))
                 + before.slip_before;
-            island.list_near(&PASS);
+            listing::list_near(&mut island, &PASS);
             let now = pressing(&island);
             let target = |contact: &ActiveContact| contact.base.map(|base| base.near.target);
             assert_ne!(target(&before), target(&now), "the tip stays on its side");
@@ -118,7 +120,7 @@ fn a_tip_that_turns_over_a_ridge_has_slid_no_other_way_on_the_other_side() {
                 (own - slid).abs() > 0.1 * CLOSING * angle,
                 "rows that agree show nothing: {own} and {slid}"
             );
-            island.measure(false);
+            working_set::measure(&mut island, false);
             let now = pressing(&island).slip;
             assert!((now - slid).abs() < 1e-12, "{now} m after {slid} m");
         }

@@ -5,9 +5,9 @@
 //! that are turned by the share `s = 1 - 1/K` of the step's own turn; then `K (1 - s) = 1`, stable for any `K`, and what the step
 //! does not resolve is damped. The stiffness is that of the last step's forces, so that the problem stays linear.
 
-use super::joint_rows::ActiveJoint;
-use super::settings::SolveSettings;
+use super::ActiveJoint;
 use crate::constraint::joint::{JointGrip, JointLaw, unit_wrench};
+use crate::kkt::settings::SolveSettings;
 use crate::system::Block;
 
 /// `dt² Σ r·F / I` up to which turning is resolved.

@@ -1,15 +1,15 @@
 //! Laws of joint rows at a step's length: where a row is to be at its end, how far its force lets it give way, and between what bounds the force is.
 
-use super::island::SolveSettings;
-use super::position::PARTING_RATE;
 use crate::constraint::geometry::RESTING;
 use crate::constraint::joint::{JointLaw, JointRow, Spring};
+use crate::kkt::settings::SolveSettings;
+use crate::kkt::tolerances::PARTING_RATE;
 use crate::linalg::complementarity::RowKind;
 use crate::math::exp;
 
 /// What the velocity stage does about a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Finish {
+pub(in crate::kkt) enum Finish {
     /// `G'v' = rate`, for rows that hold, or drive with bounds.
     Hold {
         /// Velocity (m/s or rad/s).

@@ -166,12 +166,12 @@ fn a_turn_counts_at_the_radius_of_gyration() {
             ..Island::default()
         };
         join(&mut island, others);
-        let tie = &mut island.ties[0];
+        let tie = &mut island.joints.ties[0];
         (tie.is_hard, tie.gap) = (true, 0.3);
-        let way = missing_way(&island.blocks, tie, &island.joint_grips);
+        let way = missing_way(&island.blocks, tie, &island.joints.grips);
         assert_eq!(way, 0.3);
         tie.row.measure = Measure::Turn(0.0);
-        let way = missing_way(&island.blocks, tie, &island.joint_grips);
+        let way = missing_way(&island.blocks, tie, &island.joints.grips);
         assert!((way - 0.3 * gyration).abs() < 1e-12, "{way}");
     }
 }
@@ -186,7 +186,7 @@ fn what_comes_less_than_half_as_near_is_out_of_reach() {
             ..Island::default()
         };
         join(&mut island, [1, 0]);
-        let tie = &mut island.ties[0];
+        let tie = &mut island.joints.ties[0];
         (tie.start, tie.asked, tie.target) = (0.4, [0.3, -0.1], 0.0);
         (tie.goal, tie.closing) = (0.3, -0.1);
         tie.leave(missed, slop);

@@ -1,8 +1,8 @@
 //! Contacts between bodies that a joint holds: both may hold the same motion.
 
-use super::active_contact::ActiveContact;
-use super::joint_rows::ActiveJoint;
+use super::ActiveJoint;
 use crate::constraint::joint::JointGrip;
+use crate::kkt::active_contact::ActiveContact;
 use crate::math::judged::{Judged, NEGLIGIBLE};
 
 /// Share of its own mobility by which a contact between bodies that a joint holds gives way to its impulse (-).
@@ -10,7 +10,7 @@ use crate::math::judged::{Judged, NEGLIGIBLE};
 /// Boxes that are hinged at the middle of faces that touch press at both ends of these while the hinge pulls, with forces of any size that change nothing as
 /// long as levers stay what they are. They turn within the step, and such forces did work: energy grew by 10⁵. What approaches with `v` so goes on with
 /// a thousandth of that, and rounding, of 10⁻⁹ `v`, ends in a millionth of the impulse that stops it.
-pub(super) const JOINED: Judged = NEGLIGIBLE;
+pub(in crate::kkt) const JOINED: Judged = NEGLIGIBLE;
 
 /// Pairs of blocks that joints hold, in order.
 #[derive(Clone, Debug, Default)]

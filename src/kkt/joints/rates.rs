@@ -1,11 +1,11 @@
 //! Joint rows in the velocity and acceleration problems, and what joints do to the energy.
 
-use super::island::{Island, KktError, SolveSettings};
-use super::joint_law::{Finish, bounded};
-use super::joint_rows::{ActiveJoint, add_wrench};
-use super::joint_system::Rows;
-use super::unresolved::share_of;
+use super::law::bounded;
+use super::{ActiveJoint, Among, Finish, Joints, Rows, add_wrench};
 use crate::constraint::joint::{JointGrip, Spring, When, unit_wrench};
+use crate::kkt::problem::RowProblem;
+use crate::kkt::settings::{KktError, SolveSettings};
+use crate::kkt::unresolved::share_of;
 use crate::linalg::complementarity::{Problem, RowKind, Status};
 use crate::math::{
     judged::{Judged, NEGLIGIBLE},
@@ -19,14 +19,14 @@ const LEFT_ALONE: Judged = NEGLIGIBLE;
 /// Distance from its bound (m or rad) within which a limit that pushed in the last step has pushed all along.
 const STAYED: f64 = rounding::SINGLE;
 
-impl Island {
+impl Joints {
     /// Gives the rigid blocks the velocities that go with the forces of the position stage.
-    pub(super) fn kick_joints(&mut self, settings: &SolveSettings) {
+    pub(in crate::kkt) fn kick(&mut self, blocks: &mut [Block], settings: &SolveSettings) {
         if self.ties.is_empty() {
             return;
         }
-        self.twists.kick(&mut self.blocks, settings);
-        self.aim_joints_at_end();
+        self.twists.kick(blocks, settings);
+        self.aim_at_end(blocks);
         for index in 0..self.ties.len() {
             let tie = &mut self.ties[index];
             if !tie.is_hard {
@@ -45,40 +45,40 @@ impl Island {
                 0.0
             };
             let tie = self.ties[index];
-            self.push_rigid(&tie, Rows::Kept, tie.kick);
-            self.push_rigid(&tie, Rows::End, tie.impulse);
+            self.push_rigid(blocks, &tie, (Rows::Kept, tie.kick));
+            self.push_rigid(blocks, &tie, (Rows::End, tie.impulse));
         }
     }
 
     /// Measures the rows of the step's end.
-    fn aim_joints_at_end(&mut self) {
+    fn aim_at_end(&mut self, blocks: &[Block]) {
         self.end_grips.clear();
-        self.end_grips.extend_from_slice(&self.joint_grips);
+        self.end_grips.extend_from_slice(&self.grips);
         for index in 0..self.ties.len() {
             let tie = &mut self.ties[index];
             let grips = &mut self.end_grips[tie.row.grips.0..tie.row.grips.1];
-            tie.end = tie.row.sign * tie.row.measure.aim(&self.blocks, grips, When::Now);
+            tie.end = tie.row.sign * tie.row.measure.aim(blocks, grips, When::Now);
             if let (false, Finish::Hold { rate }) = (tie.is_hard, tie.finish) {
                 let tie = self.ties[index];
-                self.ties[index].share = self.unresolved_joint(&tie);
-                self.ties[index].driven = rate - self.driven_rate(&tie);
+                self.ties[index].share = self.unresolved_share(blocks, &tie);
+                self.ties[index].driven = rate - self.driven_rate(blocks, &tie);
             }
         }
     }
 
     /// How far the velocity stage holds a soft row: wholly between masses, through a massless node by the share that is
     /// shorter than the step.
-    fn unresolved_joint(&self, tie: &ActiveJoint) -> f64 {
+    fn unresolved_share(&self, blocks: &[Block], tie: &ActiveJoint) -> f64 {
         if tie.has_mass {
             return 1.0;
         }
         let (grips, along) = (self.end_grips_of(tie), tie.end);
         let (mut rigid, mut actual) = (0.0, 0.0);
         for at in grips {
-            rigid += at.weight.abs() * self.blocks[at.block].rigid_mobility(at.grip(), along);
+            rigid += at.weight.abs() * blocks[at.block].rigid_mobility(at.grip(), along);
             for from in grips.iter().filter(|from| from.block == at.block) {
                 let compliance =
-                    self.blocks[at.block].compliance(at.grip(), from.grip(), Response::Velocity);
+                    blocks[at.block].compliance(at.grip(), from.grip(), Response::Velocity);
                 actual += at.weight * from.weight * along.dot(&(compliance * along));
             }
         }
@@ -90,17 +90,17 @@ impl Island {
     }
 
     /// Gives the rigid blocks of a row an impulse along it.
-    fn push_rigid(&mut self, tie: &ActiveJoint, which: Rows, impulse: f64) {
+    fn push_rigid(&self, blocks: &mut [Block], tie: &ActiveJoint, (which, impulse): (Rows, f64)) {
         if impulse == 0.0 {
             return;
         }
         let is_turn = tie.row.measure.is_turn();
         let (grips, direction) = match which {
-            Rows::Kept => (&self.joint_grips, tie.direction),
+            Rows::Kept => (&self.grips, tie.direction),
             Rows::End => (&self.end_grips, tie.end),
         };
         for grip in &grips[tie.row.grips.0..tie.row.grips.1] {
-            if let Block::Rigid(block) = &mut self.blocks[grip.block] {
+            if let Block::Rigid(block) = &mut blocks[grip.block] {
                 let wrench = unit_wrench(grip, direction, is_turn);
                 block.add_impulse(wrench.map(|value| impulse * value));
             }
@@ -108,8 +108,8 @@ impl Island {
     }
 
     /// `G'v'` of a row (m/s or rad/s).
-    fn joint_rate(&self, tie: &ActiveJoint) -> f64 {
-        self.along(tie, |block, grip| match block {
+    fn rate(&self, blocks: &[Block], tie: &ActiveJoint) -> f64 {
+        self.along(blocks, tie, |block, grip| match block {
             Block::Rigid(block) => block.rates(),
             Block::Flex(flex) => match grip.point {
                 Point::Node(node) => {
@@ -121,9 +121,18 @@ impl Island {
         })
     }
 
+    /// Part of `G'v'` of a row that is driven from outside (m/s or rad/s).
+    fn driven_rate(&self, blocks: &[Block], tie: &ActiveJoint) -> f64 {
+        self.along(blocks, tie, |block, _| match block {
+            Block::Rigid(block) if block.is_prescribed() => block.rates(),
+            _ => [0.0; 3],
+        })
+    }
+
     /// `Σ w·f` over the grips of a row at the end; `f` of a flexible block has two components.
-    pub(super) fn along(
+    pub(in crate::kkt) fn along(
         &self,
+        blocks: &[Block],
         tie: &ActiveJoint,
         value: impl Fn(&Block, &JointGrip) -> [f64; 3],
     ) -> f64 {
@@ -131,52 +140,59 @@ impl Island {
         let mut sum = 0.0;
         for grip in self.end_grips_of(tie) {
             let wrench = unit_wrench(grip, tie.end, is_turn);
-            let value = value(&self.blocks[grip.block], grip);
+            let value = value(&blocks[grip.block], grip);
             sum += wrench.iter().zip(value).map(|(w, v)| w * v).sum::<f64>();
         }
         sum
     }
 
     /// Lists the joint rows of the velocity problem that take part, after those of the contacts.
-    pub(super) fn list_joint_velocities(
+    pub(in crate::kkt) fn list_velocities(
         &mut self,
-        settings: &SolveSettings,
+        problem: &mut RowProblem,
+        (blocks, settings): (&[Block], &SolveSettings),
         takes_part: impl Fn(&ActiveJoint) -> bool,
     ) {
-        self.joint_rows.clear();
-        self.joint_gives.clear();
+        self.listed.clear();
+        self.gives.clear();
         for index in 0..self.ties.len() {
             let tie = &self.ties[index];
             if !takes_part(tie) {
                 continue;
             }
-            let Some((free, kind, give)) = self.velocity_law(tie, settings) else {
+            let Some((free, kind, give)) = self.velocity_law(blocks, tie, settings) else {
                 continue;
             };
-            self.joint_rows.push(index);
-            self.joint_gives.push(give);
-            self.free.push(free);
-            self.kinds.push(kind);
+            self.listed.push(index);
+            self.gives.push(give);
+            problem.free.push(free);
+            problem.kinds.push(kind);
         }
     }
 
     /// Adds the joint rows listed to the Delassus matrix of the contacts' rows, softened by their shares.
-    pub(super) fn expand_joints(&mut self, of: Response) {
-        if self.joint_rows.is_empty() {
+    pub(in crate::kkt) fn expand_softened(
+        &mut self,
+        problem: &mut RowProblem,
+        among: Among<'_>,
+        of: Response,
+    ) {
+        if self.listed.is_empty() {
             return;
         }
-        self.expand_delassus(of, Rows::End);
-        let (n, first) = (self.kinds.len(), self.rows.len());
-        for (slot, &row) in self.joint_rows.iter().enumerate() {
+        self.expand(problem, among, (of, Rows::End));
+        let (n, first) = (problem.kinds.len(), problem.rows.len());
+        for (slot, &row) in self.listed.iter().enumerate() {
             let diagonal = (first + slot) * (n + 1);
             let share = self.ties[row].share;
-            self.delassus[diagonal] = self.delassus[diagonal] / share + self.joint_gives[slot];
+            problem.delassus[diagonal] = problem.delassus[diagonal] / share + self.gives[slot];
         }
     }
 
     /// Free velocity, law and give (m/s per N s) of a row that takes part in the velocity problem.
     fn velocity_law(
         &self,
+        blocks: &[Block],
         tie: &ActiveJoint,
         settings: &SolveSettings,
     ) -> Option<(f64, RowKind, f64)> {
@@ -190,13 +206,13 @@ impl Island {
                     RowKind::Box { high, .. } => bounded(half * high),
                     kind => kind,
                 };
-                Some((self.joint_rate(tie) - rate, kind, 0.0))
+                Some((self.rate(blocks, tie) - rate, kind, 0.0))
             }
-            Finish::Limit => Some((self.joint_rate(tie), RowKind::Unilateral, 0.0)),
+            Finish::Limit => Some((self.rate(blocks, tie), RowKind::Unilateral, 0.0)),
             Finish::Stiff(spring) => {
                 let (offset, give) = stiff_law(&spring, tie.gap + tie.goal, settings.dt);
                 let kind = bounded(0.5 * settings.dt * spring.most);
-                Some((self.joint_rate(tie) + offset, kind, give))
+                Some((self.rate(blocks, tie) + offset, kind, give))
             }
             Finish::Spring | Finish::Nothing => None,
         }
@@ -204,23 +220,26 @@ impl Island {
 
     /// Gathers the joints' part of a solution as impulses on flexible blocks and wrenches on rigid ones; of accelerations only
     /// that of soft rows, as hard ones leave none.
-    pub(super) fn gather_joint_rows(&mut self, of: Response) {
-        let first = self.rows.len();
-        for slot in 0..self.joint_rows.len() {
-            let (index, value) = (self.joint_rows[slot], self.multipliers[first + slot]);
+    pub(in crate::kkt) fn gather(
+        &self,
+        problem: &RowProblem,
+        (blocks, wrenches): (&mut [Block], &mut [[f64; 3]]),
+        of: Response,
+    ) {
+        for (&index, &value) in self.listed.iter().zip(problem.of_joints()) {
             let tie = self.ties[index];
             if value == 0.0 || (of == Response::Acceleration && tie.is_hard) {
                 continue;
             }
             let is_turn = tie.row.measure.is_turn();
             for grip in &self.end_grips[tie.row.grips.0..tie.row.grips.1] {
-                match (&mut self.blocks[grip.block], grip.point) {
+                match (&mut blocks[grip.block], grip.point) {
                     (Block::Flex(block), Point::Node(node)) => {
                         let impulse = value * grip.weight * tie.end;
                         block.gather_impulse(of, node, impulse, grip.lever);
                     }
                     _ => add_wrench(
-                        &mut self.wrenches[grip.block],
+                        &mut wrenches[grip.block],
                         value,
                         unit_wrench(grip, tie.end, is_turn),
                     ),
@@ -230,32 +249,31 @@ impl Island {
     }
 
     /// Notes the impulses of a solved velocity problem.
-    pub(super) fn take_joint_impulses(&mut self) {
-        let first = self.rows.len();
-        for (slot, &row) in self.joint_rows.iter().enumerate() {
-            self.ties[row].impulse += self.multipliers[first + slot];
+    pub(in crate::kkt) fn take_impulses(&mut self, problem: &RowProblem) {
+        for (&row, impulse) in self.listed.iter().zip(problem.of_joints()) {
+            self.ties[row].impulse += impulse;
         }
     }
 
     /// Adds the forces of soft joints to the wrenches of rigid blocks.
-    pub(super) fn add_soft_joints(&mut self) {
+    pub(in crate::kkt) fn add_soft_forces(&self, blocks: &[Block], wrenches: &mut [[f64; 3]]) {
         for tie in self.ties.iter().filter(|tie| !tie.is_hard) {
-            for grip in &self.joint_grips[tie.row.grips.0..tie.row.grips.1] {
-                if let Block::Rigid(_) = &self.blocks[grip.block] {
+            for grip in &self.grips[tie.row.grips.0..tie.row.grips.1] {
+                if let Block::Rigid(_) = &blocks[grip.block] {
                     let wrench = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
-                    add_wrench(&mut self.wrenches[grip.block], tie.multiplier, wrench);
+                    add_wrench(&mut wrenches[grip.block], tie.multiplier, wrench);
                 }
             }
         }
     }
 
     /// Whether some joint holds a flexible block, so that accelerations are settled.
-    pub(super) fn has_soft_joints(&self) -> bool {
+    pub(in crate::kkt) fn has_soft(&self) -> bool {
         self.ties.iter().any(|tie| !tie.is_hard)
     }
 
     /// Adds the mean forces of hard springs to the wrenches: in the acceleration problem they are known.
-    pub(super) fn add_spring_forces(&mut self, dt: f64) {
+    pub(in crate::kkt) fn add_spring_forces(&self, wrenches: &mut [[f64; 3]], dt: f64) {
         for tie in self.ties.iter().filter(|tie| tie.is_hard) {
             if !matches!(tie.finish, Finish::Spring | Finish::Stiff(_)) {
                 continue;
@@ -263,15 +281,20 @@ impl Island {
             let force = (tie.kick + tie.impulse) / dt;
             for grip in &self.end_grips[tie.row.grips.0..tie.row.grips.1] {
                 let wrench = unit_wrench(grip, tie.end, tie.row.measure.is_turn());
-                add_wrench(&mut self.wrenches[grip.block], force, wrench);
+                add_wrench(&mut wrenches[grip.block], force, wrench);
             }
         }
     }
 
     /// Lists the joint rows of the acceleration problem that take part, `G'a' = ` what turning asks for.
-    pub(super) fn list_joint_accelerations(&mut self, takes_part: impl Fn(&ActiveJoint) -> bool) {
-        self.joint_rows.clear();
-        self.joint_gives.clear();
+    pub(in crate::kkt) fn list_accelerations(
+        &mut self,
+        problem: &mut RowProblem,
+        (blocks, wrenches): (&[Block], &[[f64; 3]]),
+        takes_part: impl Fn(&ActiveJoint) -> bool,
+    ) {
+        self.listed.clear();
+        self.gives.clear();
         for index in 0..self.ties.len() {
             let tie = &self.ties[index];
             if !takes_part(tie) {
@@ -283,31 +306,13 @@ impl Island {
             if !holds || matches!(tie.status, Status::SlipPositive | Status::SlipNegative) {
                 continue;
             }
-            let acceleration = self.along(tie, |block, grip| self.total_acceleration(block, grip));
-            self.joint_rows.push(index);
-            self.joint_gives.push(0.0);
-            self.free.push(acceleration);
-            self.kinds.push(RowKind::Bilateral);
-        }
-    }
-
-    /// Acceleration of a grip's block, the centripetal part of the grip included.
-    fn total_acceleration(&self, block: &Block, grip: &JointGrip) -> [f64; 3] {
-        let centripetal = -block.spin() * block.spin() * grip.lever;
-        match block {
-            Block::Rigid(rigid) => {
-                let (under, turn) = block.acceleration_under(&self.wrenches, grip.block);
-                let [x, y, own] = rigid.smooth_end;
-                [
-                    x + under.x + centripetal.x,
-                    y + under.y + centripetal.y,
-                    own + turn,
-                ]
-            }
-            Block::Flex(_) => {
-                let sum = block.smooth_acceleration(grip.grip()) + centripetal;
-                [sum.x, sum.y, 0.0]
-            }
+            let acceleration = self.along(blocks, tie, |block, grip| {
+                total_acceleration(block, grip, wrenches)
+            });
+            self.listed.push(index);
+            self.gives.push(0.0);
+            problem.free.push(acceleration);
+            problem.kinds.push(RowKind::Bilateral);
         }
     }
 
@@ -315,56 +320,66 @@ impl Island {
     ///
     /// # Errors
     /// If a number is not finite.
-    pub(super) fn hold_joints(&mut self, settings: &SolveSettings) -> Result<(), KktError> {
-        self.joint_rows.clear();
+    pub(in crate::kkt) fn answer_contacts(
+        &mut self,
+        problem: &mut RowProblem,
+        among: Among<'_>,
+        settings: &SolveSettings,
+    ) -> Result<(), KktError> {
+        self.listed.clear();
         for index in 0..self.ties.len() {
-            if self.velocity_law(&self.ties[index], settings).is_some() {
-                self.joint_rows.push(index);
+            if self
+                .velocity_law(among.blocks, &self.ties[index], settings)
+                .is_some()
+            {
+                self.listed.push(index);
             }
         }
-        if self.joint_rows.is_empty() {
+        if self.listed.is_empty() {
             return Ok(());
         }
-        let (first, n_joints) = (self.rows.len(), self.joint_rows.len());
+        let (first, n_joints) = (problem.rows.len(), self.listed.len());
         let n = first + n_joints;
-        self.delassus.clear();
-        self.delassus.resize(first * first, 0.0);
-        self.expand_delassus(Response::Velocity, Rows::End);
-        self.free.clear();
-        self.kinds.clear();
+        problem.delassus.clear();
+        problem.delassus.resize(first * first, 0.0);
+        self.expand(problem, among, (Response::Velocity, Rows::End));
+        problem.free.clear();
+        problem.kinds.clear();
         for slot in 0..n_joints {
-            let line = &self.delassus[(first + slot) * n..(first + slot + 1) * n];
-            let pairs = line.iter().zip(&self.multipliers);
-            self.free.push(pairs.map(|(w, p)| w * p).sum());
-            self.kinds.push(RowKind::Bilateral);
+            let line = &problem.delassus[(first + slot) * n..(first + slot + 1) * n];
+            let pairs = line.iter().zip(&problem.multipliers);
+            problem.free.push(pairs.map(|(w, p)| w * p).sum());
+            problem.kinds.push(RowKind::Bilateral);
         }
         for slot in 0..n_joints {
             let source = (first + slot) * n + first;
-            self.delassus
+            problem
+                .delassus
                 .copy_within(source..source + n_joints, slot * n_joints);
         }
-        self.delassus.truncate(n_joints * n_joints);
-        self.joint_answer.clear();
-        self.joint_answer.resize(n_joints, 0.0);
-        self.statuses.clear();
-        self.statuses.resize(n_joints, Status::Stick);
-        let problem = Problem {
-            delassus: &self.delassus,
-            free: &self.free,
-            rows: &self.kinds,
+        problem.delassus.truncate(n_joints * n_joints);
+        self.answer.clear();
+        self.answer.resize(n_joints, 0.0);
+        problem.statuses.clear();
+        problem.statuses.resize(n_joints, Status::Stick);
+        let rows = Problem {
+            delassus: &problem.delassus,
+            free: &problem.free,
+            rows: &problem.kinds,
             acted: &[],
         };
-        self.solver
-            .solve_condensed(&problem, &mut self.joint_answer, &mut self.statuses)?;
-        self.multipliers.extend_from_slice(&self.joint_answer);
+        problem
+            .solver
+            .solve_condensed(&rows, &mut self.answer, &mut problem.statuses)?;
+        problem.multipliers.extend_from_slice(&self.answer);
         Ok(())
     }
 
     /// Lets the damping of rigid blocks in joints know the velocities that the joints have left; that of all, what contacts have left, where
     /// multipliers act wholly within the step.
-    pub(super) fn settle_damping(&mut self, settings: &SolveSettings) {
+    pub(in crate::kkt) fn settle_damping(&self, blocks: &mut [Block], settings: &SolveSettings) {
         if settings.is_within {
-            for block in &mut self.blocks {
+            for block in blocks {
                 if let Block::Rigid(block) = block {
                     block.settle_damping();
                 }
@@ -377,10 +392,30 @@ impl Island {
         let mut last = None;
         for &(block, _) in &self.holders {
             if last.replace(block) != Some(block)
-                && let Block::Rigid(block) = &mut self.blocks[block]
+                && let Block::Rigid(block) = &mut blocks[block]
             {
                 block.settle_damping();
             }
+        }
+    }
+}
+
+/// Acceleration of a grip's block, the centripetal part of the grip included.
+fn total_acceleration(block: &Block, grip: &JointGrip, wrenches: &[[f64; 3]]) -> [f64; 3] {
+    let centripetal = -block.spin() * block.spin() * grip.lever;
+    match block {
+        Block::Rigid(rigid) => {
+            let (under, turn) = block.acceleration_under(wrenches, grip.block);
+            let [x, y, own] = rigid.smooth_end;
+            [
+                x + under.x + centripetal.x,
+                y + under.y + centripetal.y,
+                own + turn,
+            ]
+        }
+        Block::Flex(_) => {
+            let sum = block.smooth_acceleration(grip.grip()) + centripetal;
+            [sum.x, sum.y, 0.0]
         }
     }
 }

@@ -7,7 +7,7 @@
 //! Whether there is such a motion is asked of joints that are closed: anchors that are apart, as they are within a step, would give the
 //! motion of their distance.
 
-use super::joint_rows::ActiveJoint;
+use super::ActiveJoint;
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, JointLaw, unit_wrench};
 use crate::math::{Vec2, cross, rounding};

@@ -17,13 +17,12 @@
 //! Joints hold in that motion. Those that the step began with apart, or that passes do not close, close as far as that costs no more than what is
 //! missing, and open no farther. What hangs straight then is held by forces without bound all the same: such rows yield to theirs.
 
-use super::consistent::SOFTNESS;
+use super::active_contact::ActiveContact;
+use super::delassus::compliance;
+use super::joints::ActiveJoint;
+use super::tolerances::{SOFTNESS, YIELDING};
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, unit_wrench};
-use crate::kkt::active_contact::ActiveContact;
-use crate::kkt::delassus::compliance;
-use crate::kkt::joint_rows::ActiveJoint;
-use crate::kkt::sparse::YIELDING;
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::complementarity::RowKind;
 use crate::linalg::cone::{
@@ -38,7 +37,7 @@ const FINENESS: f64 = 1e-4;
 
 /// The question, with its buffers.
 #[derive(Debug, Default)]
-pub(in crate::kkt) struct Parting {
+pub(super) struct Parting {
     /// First node of every block that moves.
     first: Vec<Option<u32>>,
     rows: Vec<ConeRow>,

@@ -1,0 +1,279 @@
+//! Rows of velocities and accelerations, and the impulses that solve them.
+
+use super::cones;
+use super::delassus::{RowDirection, assemble};
+use super::island::{ActiveContact, Island, KktError, SolveSettings};
+use super::jammed::are_jammed;
+use super::joints::{Among, Rows};
+use super::sparse::Asked;
+use crate::linalg::complementarity::{INDEPENDENT, RowKind, Status, give};
+use crate::math::{Vec2, perp, rounding};
+use crate::system::Response;
+
+/// States the impact law at the contacts that count and hold velocities, as velocities or masses respond.
+pub(super) fn velocity_rows(
+    island: &mut Island,
+    settings: &SolveSettings,
+    counts: impl Fn(&ActiveContact) -> bool,
+) {
+    island.problem.clear_rows();
+    for index in 0..island.contacts.len() {
+        let contact = island.contacts[index];
+        if !contact.is_closed() || contact.holds_velocity() == 0.0 || !counts(&contact) {
+            continue;
+        }
+        let law = island.candidates[contact.candidate].law;
+        let kinematics = contact.kinematics;
+        let velocity = kinematics.relative(&island.blocks, |block, grip| block.velocity(grip));
+        let rebound = law.rebound(contact.approach, settings.restitution_threshold);
+        // A resolved impact rebounds by its elasticity.
+        let rebound = if contact.is_hard {
+            rebound
+        } else {
+            contact.rigid * rebound
+        };
+        let normal = island.problem.rows.len();
+        island.contacts[index].parting = [rebound, 0.0];
+        push_row(
+            island,
+            index,
+            kinematics.normal,
+            velocity.dot(&kinematics.normal) - rebound,
+            RowKind::Unilateral,
+        );
+        if law.friction > 0.0 {
+            let tangent = kinematics.tangent();
+            let kind = RowKind::Friction {
+                normal,
+                coefficient: law.friction,
+            };
+            push_row(island, index, tangent, velocity.dot(&tangent), kind);
+        }
+    }
+    list_acted(island, settings.b1);
+}
+
+/// Begins with the forces of the position stage at contacts of rigid bodies, on which they have not acted; how long they would have to
+/// act for impulses is left to the solver.
+fn guess_impulses(island: &mut Island) {
+    island.problem.multipliers.clear();
+    island
+        .problem
+        .multipliers
+        .resize(island.problem.kinds.len(), 0.0);
+    for (row, direction) in island.problem.rows.iter().enumerate() {
+        let contact = &island.contacts[direction.contact];
+        if contact.is_hard && island.impulse_give == 0.0 {
+            let which = usize::from(direction.direction != contact.kinematics.normal);
+            island.problem.multipliers[row] = contact.multiplier[which];
+        }
+    }
+}
+
+/// Solves the rows listed, those of the contacts and those of the joints after them, for impulses (or forces, of accelerations). All rows give
+/// way a little where impulses [jam](super::jammed).
+pub(super) fn solve_impulses(island: &mut Island, of: Response, dt: f64) -> Result<(), KktError> {
+    island.problem.acted.resize(island.problem.kinds.len(), 0.0);
+    if of != Response::Acceleration {
+        island.impulse_give = 0.0;
+    }
+    solve_impulses_once(island, of, dt)?;
+    if of == Response::Velocity
+        && are_jammed(
+            &island.blocks,
+            &island.contacts,
+            (&island.problem.rows, &island.problem.free),
+            &island.problem.multipliers,
+        )
+    {
+        island.impulse_give = give(INDEPENDENT);
+        solve_impulses_once(island, of, dt)?;
+    }
+    Ok(())
+}
+
+fn solve_impulses_once(island: &mut Island, of: Response, dt: f64) -> Result<(), KktError> {
+    let n = island.problem.kinds.len();
+    if of != Response::ByMass && cones::is_sparse(island, n) {
+        guess_impulses(island);
+        let asked = Asked {
+            of,
+            which: Rows::End,
+            unit: dt,
+            give: island.impulse_give,
+        };
+        cones::solve_sparse(island, asked)?;
+        return Ok(());
+    }
+    match of {
+        Response::Velocity => hold_wedged(island, dt),
+        Response::Acceleration => hold_wedged(island, 1.0),
+        _ => {}
+    }
+    let contacts = &island.contacts;
+    assemble(
+        &island.blocks,
+        &island.problem.rows,
+        of,
+        |index| &contacts[index].kinematics,
+        &mut island.problem.delassus,
+    );
+    soften(island);
+    let among = Among {
+        blocks: &island.blocks,
+        contacts: &island.contacts,
+    };
+    island
+        .joints
+        .expand_softened(&mut island.problem, among, of);
+    for row in 0..n {
+        island.problem.delassus[row * (n + 1)] *= 1.0 + island.impulse_give;
+    }
+    solve_rows(island)?;
+    island.problem.responses.clear();
+    island.problem.diagonals.clear();
+    for row in 0..n {
+        let line = &island.problem.delassus[row * n..(row + 1) * n];
+        let moved = line
+            .iter()
+            .zip(&island.problem.multipliers)
+            .map(|(w, p)| w * p);
+        island.problem.responses.push(moved.sum());
+        island.problem.diagonals.push(line[row]);
+    }
+    Ok(())
+}
+
+/// Lets the friction of rigid bodies that began in each other, and stuck, hold with what its position stage had: forces that press overlaps apart
+/// wedge bodies with each other, and velocities know nothing of these. Such bodies would fall while they stand.
+///
+/// - `unit`: what forces act for (s), or 1 if forces are asked for.
+fn hold_wedged(island: &mut Island, unit: f64) {
+    for (row, direction) in island.problem.rows.iter().enumerate() {
+        let contact = &island.contacts[direction.contact];
+        let is_wedged = contact.is_parting() && contact.status[1] == Status::Stick;
+        if let (RowKind::Friction { coefficient, .. }, true) =
+            (island.problem.kinds[row], is_wedged)
+        {
+            let most = (coefficient * contact.multiplier[0] * unit).max(0.0);
+            island.problem.kinds[row] = RowKind::Box {
+                low: -most,
+                high: most,
+            };
+        }
+    }
+}
+
+fn push_row(island: &mut Island, contact: usize, direction: Vec2, free: f64, kind: RowKind) {
+    island
+        .problem
+        .rows
+        .push(RowDirection { contact, direction });
+    island.problem.free.push(free);
+    island.problem.kinds.push(kind);
+}
+
+/// Lists what has acted already of the soft rows' multipliers: `scale` times those of the position stage.
+pub(super) fn list_acted(island: &mut Island, scale: f64) {
+    island.problem.acted.clear();
+    for direction in &island.problem.rows {
+        let contact = &island.contacts[direction.contact];
+        let which = usize::from(direction.direction != contact.kinematics.normal);
+        let acted = if contact.is_hard {
+            0.0
+        } else {
+            scale * contact.multiplier[which]
+        };
+        island.problem.acted.push(acted);
+    }
+}
+
+/// Leaves impulses and the velocities of rows after them on the contacts.
+pub(super) fn read_impulses(island: &mut Island) {
+    for (row, direction) in island.problem.rows.iter().enumerate() {
+        let softened = island.problem.free[row] + island.problem.responses[row];
+        let contact = &mut island.contacts[direction.contact];
+        let which = usize::from(direction.direction != contact.kinematics.normal);
+        let impulse = island.problem.multipliers[row];
+        let share = if contact.is_hard {
+            1.0
+        } else {
+            contact.holds_velocity().max(rounding::SUM)
+        };
+        contact.parting[which] +=
+            softened - (1.0 - share) * island.problem.diagonals[row] * impulse;
+        contact.impulse[which] = impulse;
+    }
+}
+
+/// Weights soft rows: `W_ii (1 - φ)/φ` on the diagonal lets a resolved contact keep its velocity.
+fn soften(island: &mut Island) {
+    let n = island.problem.rows.len();
+    for row in 0..n {
+        let contact = &island.contacts[island.problem.rows[row].contact];
+        if !contact.is_hard {
+            let share = contact.holds_velocity().max(rounding::SUM);
+            island.problem.delassus[row * n + row] *= 1.0 + (1.0 - share) / share;
+        }
+    }
+}
+
+pub(super) fn solve_rows(island: &mut Island) -> Result<(), KktError> {
+    island.problem.multipliers.clear();
+    island
+        .problem
+        .multipliers
+        .resize(island.problem.kinds.len(), 0.0);
+    island.problem.statuses.clear();
+    island
+        .problem
+        .statuses
+        .resize(island.problem.kinds.len(), Status::Stick);
+    island.problem.solver.set_redundancy_tolerance(1e-6);
+    island
+        .joints
+        .tell_independence(&mut island.problem, &island.blocks);
+    if !island.problem.acted.is_empty() {
+        // Rows of joints follow those of contacts.
+        island.problem.acted.resize(island.problem.kinds.len(), 0.0);
+    }
+    island.problem.solve()?;
+    Ok(())
+}
+
+/// States the law of accelerations at the contacts that count and hold velocities.
+pub(super) fn acceleration_rows(
+    island: &mut Island,
+    settings: &SolveSettings,
+    counts: impl Fn(&ActiveContact) -> bool,
+) {
+    island.problem.clear_rows();
+    for index in 0..island.contacts.len() {
+        let contact = island.contacts[index];
+        if !contact.is_closed() || contact.holds_velocity() == 0.0 || !counts(&contact) {
+            continue;
+        }
+        let kinematics = contact.kinematics;
+        let mut acceleration = kinematics.relative(&island.blocks, |block, grip| {
+            block.smooth_acceleration(grip)
+        });
+        for a in kinematics.attachments() {
+            let answer = island.blocks[a.block].acceleration_under(&island.wrenches, a.block);
+            acceleration += a.weight * (answer.0 + answer.1 * perp(a.grip.lever));
+        }
+        let normal = island.problem.rows.len();
+        let along = acceleration.dot(&kinematics.normal) + contact.parting[0] / settings.dt;
+        push_row(island, index, kinematics.normal, along, RowKind::Unilateral);
+        let coefficient = island.candidates[contact.candidate].law.friction;
+        if coefficient > 0.0 {
+            let tangent = kinematics.tangent();
+            let kind = RowKind::Friction {
+                normal,
+                coefficient,
+            };
+            let along = acceleration.dot(&tangent) + contact.parting[1] / settings.dt;
+            push_row(island, index, tangent, along, kind);
+        }
+    }
+    list_acted(island, 1.0);
+}

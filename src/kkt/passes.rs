@@ -1,0 +1,49 @@
+//! What the passes along a feasible path go by, and the places on the way that may end the step.
+
+use super::active_contact::ActiveContact;
+use super::feasible::KeptBase;
+use super::joints::ActiveJoint;
+use super::parting::Parting;
+use crate::constraint::joint::JointGrip;
+
+/// A state on the way, with the forces that belong to it.
+#[derive(Debug, Default)]
+pub(super) struct Waypoint {
+    pub is_known: bool,
+    pub contacts: Vec<ActiveContact>,
+    pub ties: Vec<ActiveJoint>,
+    pub grips: Vec<JointGrip>,
+    pub base: KeptBase,
+    /// How far the laws are from holding, relative to the margins (-).
+    pub error: f64,
+}
+
+/// What passes go by, with their buffers.
+#[derive(Debug, Default)]
+pub(super) struct Passes {
+    /// Contacts of the list before, and the place of every candidate among them.
+    pub contacts_before: Vec<ActiveContact>,
+    pub slot_of: Vec<u32>,
+    /// Contacts that pressed in the last step.
+    pub parted: Vec<ActiveContact>,
+    /// Contacts that are new in the last list of near pairs.
+    pub fresh: Vec<usize>,
+    /// Contacts of the last list that have taken over the force of another one.
+    pub handed_over: Vec<usize>,
+    /// The first impact of a step, the best place that the whole of the step has reached, and the best with contacts that slid off.
+    pub impact: Waypoint,
+    pub arrival: Waypoint,
+    pub departure: Waypoint,
+    /// Forces before the solve at hand.
+    pub before_solve: Waypoint,
+    /// Share of its own mobility that every contact gives way by to the change of its force (-).
+    pub softness: f64,
+    /// What the laws may miss at the very most: the least margin of the ways (m).
+    pub margin: f64,
+    /// How fine the laws are to hold at the least, by what the step began with (m).
+    pub finest: f64,
+    /// Ways that a contact has slid off from.
+    pub left: Vec<usize>,
+    /// How far apart overlaps and open joints may be asked to go.
+    pub parting: Parting,
+}

@@ -1,0 +1,113 @@
+//! The step of an island, on one page: its stages, in order.
+
+use super::gentle::GAINED;
+use super::island::Island;
+use super::settings::{KktError, SolveSettings};
+use super::summary::IslandSummary;
+use super::work::{end_energy, external_work, load_energy, start_energy};
+use super::{closing, energy, gentle, momentum, position, together};
+use crate::constraint::contact::ContactMemory;
+use crate::system::Block;
+
+impl Island {
+    /// Solves the step for predicted blocks: positions, velocities and contact forces at its end.
+    ///
+    /// `reserve` is the energy that contact has taken from this island and may give back (J).
+    ///
+    /// # Errors
+    /// If a number is not finite.
+    pub fn solve(
+        &mut self,
+        settings: &SolveSettings,
+        memory: &ContactMemory,
+        reserve: &mut f64,
+    ) -> Result<IslandSummary, KktError> {
+        self.problem.n_pivots = 0;
+        self.impulse_give = 0.0;
+        let summary = solve_stages(self, settings, memory, reserve)?;
+        Ok(IslandSummary {
+            n_pivots: self.problem.n_pivots,
+            is_jammed: self.impulse_give > 0.0,
+            ..summary
+        })
+    }
+}
+
+fn solve_stages(
+    island: &mut Island,
+    settings: &SolveSettings,
+    memory: &ContactMemory,
+    reserve: &mut f64,
+) -> Result<IslandSummary, KktError> {
+    let mut summary = IslandSummary::default();
+    island.problem.solver.set_first(settings.solver);
+    if gives_up(island, settings) {
+        summary.is_stopped = true;
+        return Ok(summary);
+    }
+    position::solve_positions(island, settings, memory, &mut summary);
+    if settings.may_be_cut && summary.is_unsolved() {
+        return Ok(summary);
+    }
+    let before = start_energy(&island.blocks);
+    let loads = external_work(&island.blocks, &island.contacts);
+    let treatment = settings.treatment();
+    summary.start_energy = before;
+    let mut contacts = island.contacts.iter();
+    summary.load_energy = load_energy(&island.blocks);
+    summary.is_parting = contacts.any(|contact| contact.allowance < 0.0) || closing::closes(island);
+    let finished = treatment.finish(island, settings, &mut summary);
+    let is_unsolved = summary.is_unsolved();
+    if finished.is_err() && is_unsolved && !island.path.is_empty() {
+        // Forces that are no numbers count no more than those that are too large.
+        gentle::end_gently(island, settings, memory, &mut summary)?;
+    } else {
+        finished?;
+    }
+    island.joints.settle_damping(&mut island.blocks, settings);
+    let joint_work = island.joint_work(settings);
+    summary.end_energy = end_energy(&island.blocks);
+    let stretched = closing::stretched_by_closing(island, &summary);
+    summary.work = island.actual_work(settings) + joint_work.all + stretched;
+    let allowance = loads + joint_work.all + stretched;
+    let joints_feed = joint_work.idle > GAINED * summary.brought();
+    let is_thrown =
+        gentle::is_flung(island) || !summary.is_unsolved() && gentle::is_thrown(island, &summary);
+    if (is_thrown || joints_feed) && settings.may_be_cut {
+        summary.is_stopped = true;
+        return Ok(summary);
+    }
+    let has_path = !island.path.is_empty();
+    if has_path && (is_thrown || gentle::has_gained(island, settings, &summary)) {
+        gentle::end_gently(island, settings, memory, &mut summary)?;
+    }
+    if is_thrown && !has_path || gentle::has_gained(island, settings, &summary) {
+        together::end_together(island, settings.dt, &mut summary);
+        together::measure_ended(island, settings, &mut summary);
+    }
+    if treatment.limits_energy() {
+        let stored = reserve.max(0.0);
+        let is_unsolved = summary.is_unsolved();
+        let allowance = if is_unsolved { summary.work } else { allowance };
+        energy::limit_energy(island, settings, allowance, reserve, &mut summary);
+        if is_unsolved {
+            // What such a step has lost is lost.
+            *reserve = reserve.min(stored);
+        }
+    }
+    momentum::count_late_forces(island, settings);
+    momentum::publish_forces(island, settings.dt);
+    Ok(summary)
+}
+
+/// Whether the step is too long for one of its blocks, and may be cut.
+fn gives_up(island: &mut Island, settings: &SolveSettings) -> bool {
+    let mut is_ambiguous = false;
+    for block in &mut island.blocks {
+        if let Block::Flex(block) = block {
+            block.let_give_up(settings.may_be_cut);
+            is_ambiguous |= block.is_ambiguous();
+        }
+    }
+    settings.may_be_cut && is_ambiguous
+}
