@@ -113,3 +113,32 @@ fn two_turning_boxes_that_meet_in_free_space_do_not_end_up_inside_each_other() {
     }
     findings.report();
 }
+
+/// A stiff, damped bar of large strain that is pinned at the middle of its end swings from horizontal: what damps its vibrations does not brake its turning.
+#[test]
+fn damping_does_not_brake_a_bar_that_swings_on_its_pin() {
+    let (length, height) = (1.0, 0.1);
+    let mut scene = Scene::new(1.0 / 60.0);
+    let at_hinge = |[x, y]: [f64; 2]| x == 0.0 && (y - 0.5 * height).abs() < 1e-9;
+    let bar = FlexBodyBuilder::rectangle([length, height], [10, 2])
+        .material(elastic(1e9, 1000.0, 1e-2))
+        .large_strain()
+        .pin_where(at_hinge, Pin::both())
+        .can_sleep(false);
+    let bar = scene.flexible(bar);
+    let weight = 9.81 * scene.body(bar).mass();
+    let energy = |scene: &Scene| {
+        let body = scene.body(bar);
+        let own = body.energy();
+        own.kinetic + own.elastic + weight * body.centre_of_mass()[1]
+    };
+    let began = energy(&scene);
+    for second in 1..=10 {
+        scene.steps(60);
+        let change = (energy(&scene) - began) / (0.5 * weight * length);
+        assert!(
+            (-2e-3..1e-5).contains(&change),
+            "{change} of its energy after {second} s"
+        );
+    }
+}

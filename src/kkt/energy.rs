@@ -3,7 +3,8 @@
 //! With `E` the kinetic and elastic energy and `W` the work of applied forces and of prescribed motion, the step may end
 //! with `E' <= E + W + reserve`. The reserve is what contact has taken since it began, as far as that is the swing of the integrator about
 //! the energy and no more: the rest is heat of dampers and impacts, which gives nothing back. Beyond that the end velocity is
-//! changed along the response to the contact forces, which leaves momentum alone.
+//! changed along the response to the contact forces, which leaves momentum alone. A step gives back what it has gained itself; what it cannot is a
+//! debt, and later losses pay it before they count as taken.
 //!
 //! With joints the reserve is all that was taken, unless forces act wholly within their step: they swing in the stored accelerations by more
 //! than that, and velocities that are changed against it make it grow.
@@ -20,7 +21,8 @@ use crate::system::{Block, Response};
 
 /// Keeps contact, and turning frames, from adding energy.
 ///
-/// `reserve` is what contact has taken since it began and may give back (J); a debt is kept until it is paid.
+/// `reserve` is what contact has taken since it began and may give back (J); a debt is kept until it is paid, by what steps lose: no step gives more
+/// than it has gained.
 pub(super) fn limit_energy(
     island: &mut Island,
     settings: &SolveSettings,
@@ -46,7 +48,10 @@ pub(super) fn limit_energy(
     let band = if touches { ROUND_OFF } else { SWING.get() };
     // What is there by mistake is no measure of it.
     let had = summary.start_energy[0] + summary.start_energy[1] + allowance.abs();
-    let debt = -*reserve - band * (kinetic + elastic).min(had);
+    let owed = -*reserve - band * (kinetic + elastic).min(had);
+    // Older debts are paid by what later steps lose. Taken out of these, they are impulses that no contact of theirs has asked for: a soft disc
+    // that rolled with one was driven by them.
+    let debt = owed.min(gain);
     // At rest under load there are only rounding errors to take.
     let is_still = kinetic <= ROUND_OFF * elastic;
     if debt <= 0.0 || is_still {

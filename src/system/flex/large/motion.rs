@@ -272,7 +272,7 @@ impl LargeStrain {
 
 /// Writes the part of velocities that the step resolves, `A⁻¹ M v`: what a body of large strain tells a contact.
 ///
-/// Rigid motion, which of a pinned body is that of its pins, is all in it, of a vibration of frequency ω the share `1/(1 + ω² dt²/4)`. Vibrations that the step does not resolve change the
+/// Rigid motion, which of a pinned body is that of its pins, and what turns about a single one, is all in it, of a vibration of frequency ω the share `1/(1 + ω² dt²/4)`. Vibrations that the step does not resolve change the
 /// sign of their velocities in every step, and impulses that stopped those by what the whole body answers would throw it away. Impulses
 /// `P` that bring `G v` so measured to rest change the kinetic energy by at most `-½ v·GᵀW⁻¹G v`, `W = G A⁻¹ Gᵀ`, as `A⁻¹ M A⁻¹ <= A⁻¹`.
 ///
@@ -303,8 +303,11 @@ pub(super) fn resolve(
     }
 }
 
-/// Takes a rigid motion out of nodal velocities: of a free body the one that its masses see, of others the one that their pins give. Returns it, if
-/// there is one.
+/// Takes a rigid motion out of nodal velocities: of a free body the one that its masses see, of one that turns about a pin that of the pin with
+/// the turn that its masses see, of others the one that their pins give. Returns it, if there is one.
+///
+/// A stiffness does not know a turn for a rigid motion where there is stress: as its own motion it would count as unresolved by the square of the turn in
+/// a step.
 fn take_out_rigid(
     shape: &Shape,
     near: &FrameMotion,
@@ -312,8 +315,8 @@ fn take_out_rigid(
     velocity: &mut [f64],
 ) -> Option<RigidRates> {
     let rigid = match shape.kind {
-        Frame::Free => mean_rates(shape, near, position, velocity),
-        _ => RigidRates::of_pins(&shape.fixed_dofs, position, |dof| velocity[dof])?,
+        Frame::Free | Frame::Hinged(_) => mean_rates(shape, near, position, velocity),
+        Frame::Fixed => RigidRates::of_pins(&shape.fixed_dofs, position, |dof| velocity[dof])?,
     };
     for node in 0..shape.arms.node_mass.len() {
         add_node_vec(velocity, node, -rigid.at(node_vec(position, node)));
@@ -321,7 +324,7 @@ fn take_out_rigid(
     Some(rigid)
 }
 
-/// The rigid motion that the masses of a free body see.
+/// The rigid motion that the masses of a body see: of all of a free one, about the pin of one that turns there.
 fn mean_rates(shape: &Shape, near: &FrameMotion, position: &[f64], velocity: &[f64]) -> RigidRates {
     let centre = shape.arms.centre(shape.kind, position, near.centre);
     let drift = shape.arms.centre(shape.kind, velocity, Vec2::zeros());
