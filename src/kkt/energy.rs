@@ -7,7 +7,8 @@
 //! debt, and later losses pay it before they count as taken.
 //!
 //! With joints the reserve is all that was taken, unless forces act wholly within their step: they swing in the stored accelerations by more
-//! than that, and velocities that are changed against it make it grow.
+//! than that, and velocities that are changed against it make it grow. Their debts are taken from any step, as are those of
+//! bodies that are parted.
 
 use super::calm::remove_relative_motion;
 use super::delassus::RowDirection;
@@ -21,8 +22,7 @@ use crate::system::{Block, Response};
 
 /// Keeps contact, and turning frames, from adding energy.
 ///
-/// `reserve` is what contact has taken since it began and may give back (J); a debt is kept until it is paid, by what steps lose: no step gives more
-/// than it has gained.
+/// `reserve` is what contact has taken since it began and may give back (J); a debt is kept until it is paid.
 pub(super) fn limit_energy(
     island: &mut Island,
     settings: &SolveSettings,
@@ -50,8 +50,13 @@ pub(super) fn limit_energy(
     let had = summary.start_energy[0] + summary.start_energy[1] + allowance.abs();
     let owed = -*reserve - band * (kinetic + elastic).min(had);
     // Older debts are paid by what later steps lose. Taken out of these, they are impulses that no contact of theirs has asked for: a soft disc
-    // that rolled with one was driven by them.
-    let debt = owed.min(gain);
+    // that rolled with one was driven by them. What swings in joints comes back in the steps after, and what parts overlaps is brought by several.
+    let is_brought_back = swings || summary.is_parting;
+    let debt = if is_brought_back {
+        owed
+    } else {
+        owed.min(gain)
+    };
     // At rest under load there are only rounding errors to take.
     let is_still = kinetic <= ROUND_OFF * elastic;
     if debt <= 0.0 || is_still {

@@ -31,7 +31,8 @@ impl Group {
         self.angular += own.spin_momentum + own.mass * cross(arm, own.velocity);
     }
 
-    fn centre(&self) -> Vec2 {
+    /// Centre of mass (m).
+    pub fn centre(&self) -> Vec2 {
         self.moment / self.mass
     }
 

@@ -1,12 +1,14 @@
 //! The end of a step that nothing else ends: everybody where the step began, and what touches moves on together.
 //!
 //! The places are those of the step before, so nothing overlaps that did not. Bodies that touch or are joined get the motion of one rigid
-//! body with the momentum and the angular momentum that they have together: no motion with these has less energy. Where one of them is
-//! held by the world, they move as that one does. Where nobody else is near they go that way under their loads, as one body: what was put into
+//! body with the momentum and the angular momentum that they have together: no motion with these has less energy. Where one of them touches
+//! what is held or led, they move as that does, as the slowest if there are several; what is held joins nobody with others that touch it, and springs
+//! join nobody. Where nobody else is near they go that way under their loads, as one body: what was put into
 //! each other and finds no way out flies and falls.
 
 use super::group::Group;
 use super::island::{Island, SolveSettings};
+use super::joints::ActiveJoint;
 use super::summary::IslandSummary;
 use super::work::end_energy;
 use crate::math::Vec2;
@@ -88,21 +90,26 @@ pub(super) fn end_together(island: &mut Island, dt: f64, summary: &mut IslandSum
     // Explicit bodies wait at rest for their forces, and so does what they meet.
     let is_explicit = |block: &Block| matches!(block, Block::Flex(body) if body.is_explicit());
     let has_explicit = island.blocks.iter().any(is_explicit);
-    let leaders = touching_groups(island);
+    let leaders = linked(
+        island,
+        |block| moments_of(block).is_ok(),
+        |tie| !tie.is_spring(),
+    );
     let mut groups = vec![Group::default(); island.blocks.len()];
     for (block, &leader) in island.blocks.iter().zip(&leaders) {
         let group = &mut groups[leader];
         match moments_of(block) {
             Ok(own) => group.add(&own),
-            Err(motion) => group.anchor = group.anchor.or(Some(rates_of(&motion))),
+            Err(motion) => group.anchor = Some(rates_of(&motion)),
         }
     }
+    hold_by_anchors(island, &leaders, &mut groups);
     for (block, &leader) in island.blocks.iter().zip(&leaders) {
         if let Ok(own) = moments_of(block) {
             groups[leader].add_turning(&own);
         }
     }
-    let may_go = !has_explicit && are_alone(island, &leaders);
+    let may_go = !has_explicit && are_alone(island);
     let before = groups.clone();
     if may_go {
         for (block, &leader) in island.blocks.iter().zip(&leaders) {
@@ -150,8 +157,40 @@ pub(super) fn end_together(island: &mut Island, dt: f64, summary: &mut IslandSum
     true
 }
 
+/// Gives every group that touches what is held or led the motion of that: of several, of the one that is slowest where the group is.
+fn hold_by_anchors(island: &Island, leaders: &[usize], groups: &mut [Group]) {
+    let holds = |tie: &ActiveJoint| !tie.is_spring();
+    see_links(island, holds, |blocks| {
+        let blocks: Vec<usize> = blocks.collect();
+        for &block in &blocks {
+            let Err(motion) = moments_of(&island.blocks[block]) else {
+                continue;
+            };
+            let rates = rates_of(&motion);
+            for &other in blocks
+                .iter()
+                .filter(|&&other| leaders[other] != leaders[block])
+            {
+                let group = &mut groups[leaders[other]];
+                if group.mass == 0.0 {
+                    continue;
+                }
+                let centre = group.centre();
+                let speed = |rates: &RigidRates| rates.at(centre).norm();
+                if group
+                    .anchor
+                    .is_none_or(|known| speed(&rates) < speed(&known))
+                {
+                    group.anchor = Some(rates);
+                }
+            }
+        }
+    });
+}
+
 /// Whether no two of those that might meet in the step are of different groups.
-fn are_alone(island: &Island, leaders: &[usize]) -> bool {
+fn are_alone(island: &Island) -> bool {
+    let leaders = groups_of(island, |_| true);
     let mut pairs = island.candidates.iter().map(|one| one.pair.blocks());
     island.path.is_empty() && pairs.all(|[one, other]| leaders[one] == leaders[other])
 }
@@ -174,17 +213,21 @@ pub(super) fn measure_ended(
     summary.end_energy = end_energy(&island.blocks);
 }
 
-/// For each block the first one of those that it touches or is joined with, directly or by others.
-fn touching_groups(island: &Island) -> Vec<usize> {
-    groups_of(island, |_| true)
+/// For each block the first one of those that it touches or is joined with, directly or by others, joined only by blocks that count.
+pub(super) fn groups_of(island: &Island, counts: impl Fn(&Block) -> bool) -> Vec<usize> {
+    linked(island, counts, |_| true)
 }
 
-/// The same, joined only by blocks that count.
-pub(super) fn groups_of(island: &Island, counts: impl Fn(&Block) -> bool) -> Vec<usize> {
+/// The same, of joints only by rows that hold.
+fn linked(
+    island: &Island,
+    counts: impl Fn(&Block) -> bool,
+    holds: impl Fn(&ActiveJoint) -> bool,
+) -> Vec<usize> {
     let mut leaders: Vec<usize> = (0..island.blocks.len()).collect();
-    let mut join = |blocks: &mut dyn Iterator<Item = usize>| {
+    see_links(island, holds, |blocks| {
         let mut first = None;
-        for block in blocks {
+        for block in blocks.filter(|&block| counts(&island.blocks[block])) {
             let found = leader_of(&leaders, block);
             match first {
                 None => first = Some(found),
@@ -195,24 +238,30 @@ pub(super) fn groups_of(island: &Island, counts: impl Fn(&Block) -> bool) -> Vec
                 }
             }
         }
-    };
+    });
+    (0..island.blocks.len())
+        .map(|block| leader_of(&leaders, block))
+        .collect()
+}
+
+/// Shows the blocks of every contact that touches, and of every joint row that holds.
+fn see_links(
+    island: &Island,
+    holds: impl Fn(&ActiveJoint) -> bool,
+    mut see: impl FnMut(&mut dyn Iterator<Item = usize>),
+) {
     let margin = island.path.least_margin();
     for contact in &island.contacts {
         let touches = contact.is_closed() || contact.base.is_some_and(|base| base.gap <= margin);
         if touches {
             let attachments = contact.kinematics.attachments().iter();
-            let blocks = attachments.map(|attachment| attachment.block);
-            join(&mut blocks.filter(|&block| counts(&island.blocks[block])));
+            see(&mut attachments.map(|attachment| attachment.block));
         }
     }
-    for tie in &island.joints.ties {
+    for tie in island.joints.ties.iter().filter(|tie| holds(tie)) {
         let (from, to) = tie.row.grips;
-        let blocks = island.joints.grips[from..to].iter().map(|grip| grip.block);
-        join(&mut blocks.filter(|&block| counts(&island.blocks[block])));
+        see(&mut island.joints.grips[from..to].iter().map(|grip| grip.block));
     }
-    (0..island.blocks.len())
-        .map(|block| leader_of(&leaders, block))
-        .collect()
 }
 
 fn leader_of(leaders: &[usize], mut block: usize) -> usize {

@@ -174,6 +174,14 @@ impl ActiveJoint {
         !self.is_hard && self.has_mass
     }
 
+    /// Whether the row is a spring or damper, which leaves its ends to move by themselves.
+    pub(in crate::kkt) fn is_spring(&self) -> bool {
+        matches!(
+            self.finish,
+            Finish::Spring | Finish::Stiff(_) | Finish::Nothing
+        )
+    }
+
     /// Whether the row has held what it measures in this step.
     pub(in crate::kkt) fn holds(&self) -> bool {
         let is_law = matches!(self.finish, Finish::Hold { .. } | Finish::Limit);

@@ -231,6 +231,41 @@ fn bodies_that_touch_what_is_held_move_as_that_does() {
     }
 }
 
+/// What lies on the ground beside a body that is crushed between the ground and a paddle has nothing to do with the paddle.
+#[test]
+fn the_ground_joins_nobody_and_holds_more_than_what_is_led() {
+    let mut random = Random::new(6);
+    let led = random_motion(&mut random, Vec2::zeros());
+    let prescribed = |motion| {
+        (
+            Block::Rigid(RigidBlock::prescribed(motion, motion)),
+            [0.0; 4],
+        )
+    };
+    for order in [[2, 3], [3, 2]] {
+        let mut members = vec![
+            rigid(&mut random, Vec2::new(0.3, 0.2)),
+            flexible(&mut random, Vec2::new(2.5, 0.2), false),
+        ];
+        for slot in order {
+            members.push(prescribed(match slot {
+                2 => led,
+                _ => RigidMotion::default(),
+            }));
+        }
+        let [paddle, ground] = [0, 1].map(|which| order[which]);
+        let (mut island, _) = island_of(members);
+        press(&mut island, [0, paddle]);
+        press(&mut island, [0, ground]);
+        press(&mut island, [1, ground]);
+        ended(&mut island);
+        for slot in [0, 1] {
+            let velocity = velocity_at(&island.blocks[slot], random.point(2.0));
+            assert!(velocity.norm() < 1e-12, "block {slot}: {velocity}");
+        }
+    }
+}
+
 #[test]
 fn places_are_those_of_the_beginning_where_others_are_near_and_contacts_are_forgotten() {
     for is_near in [true, false] {
