@@ -10,7 +10,7 @@
 //! - **Cost.** See: a step takes 1 to 6 times as long as with small strain, 1.8 times in the median of 100 random scenes. Do: take `small_strain` for what is stiff and bends by a few
 //!   percent.
 //! - **Crushed flat.** What is crushed flat at tens of metres a second may turn cells inside out (`StableNeoHookean`) or need its steps cut (`NeoHookean`, Hooke's law); crushed by nine
-//!   tenths of its size, a step may take a second. See: [`Quality::Cut`](crate::pipeline::Quality::Cut), long steps. Do: take a stiffer material or shorter steps.
+//!   tenths of its size, a step may take a second, and some ten where something that is driven crushes it against a wall and a body hangs on it by a spring. See: [`Quality::Cut`](crate::pipeline::Quality::Cut), long steps. Do: take a stiffer material or shorter steps.
 //! - **Rolling.** What rolls or spins while it is pressed is braked, because contact forces act wholly within their step. See: a disc of rubber that rolls at 2 m/s loses 0.36 m/s in the first second at
 //!   1/60 s, 0.09 m/s at 1/240 s, and 0.05 m/s at 1/60 s with small strain. Do: shorten the step, or take `small_strain`.
 //! - **Plane stress** of Hooke's law: the thickness does not change as the body is stretched. Do: take `NeoHookeanSheet` or `MooneyRivlinSheet` where it matters. With Poisson's ratios from -0.5 down it
@@ -50,6 +50,10 @@
 //!   [`StepReport::slip_violation`].
 //! - **Put into each other**, bodies part by and by; where a surface passes right through another there may be no way out. See: [`StepReport::insertion_notes`] once, `gap_violation` until they are apart. Do: put them apart;
 //!   [`doctor::examine`](crate::doctor::examine) names them.
+//! - **Small things that fall.** Bodies of the size of `g dt²` (4 mm at 1/60 s, 1 to 4 cm at 1/20 s) may fall into each other by a fifth of their size and more, which is told a step late. Do: shorten the step.
+//! - **Platforms that accelerate.** What lies on a kinematic body slips on it by a part of `a dt²` in every step though friction would hold: at 3 m/s² and 1/60 s by up to 34 mm in a second with small strain, 9 mm with
+//!   large, 6 mm in rapier alone. Do: shorten the step.
+//! - **Positions of contacts** on what moves are those of the last pass's base, which may be where they were when the step began. Forces are not concerned.
 //! - **A surface that crosses itself** because its pins were put so passes through itself until it is apart. See: [`StepReport::self_crossing`]. Sensors do not meet themselves. Contacts of a body with itself are in [`StepReport::contacts`],
 //!   with the body on both sides, and make no events.
 //! - **Flung within a step.** What flies near a flexible body and is flung into it within rapier's own step, by a motor or a joint, is not foreseen. See: [`Quality::Unfinished`](crate::pipeline::Quality::Unfinished) in that step; it
@@ -78,6 +82,8 @@
 //! - **In contradiction**, joints and attachments are left open, and pins and welds hold their island as long as that lasts. See: [`StepReport::joint_violation`], `Quality::Cut`. Do: leave one of them out.
 //! - **Inside each other.** Rigid bodies that an impulse joint welds to each other, or pins at a point inside both by a millimetre or more, do not press each other where they are solved with flexible ones: contact would pull the joint open, as it does in rapier alone. Do: let links end at their joints, or say `contacts_enabled(false)`.
 //! - **Taut chains** sag by a hundredth of their length where they would have to be straight. See: [`StepReport::joint_violation`].
+//! - **Welded to a hub that turns.** A body of large strain that is welded, or pinned at two nodes, to a rigid body on a hinge gains energy as it turns: a bar that swings gains .3 % of what it swings with in a second
+//!   at 1/60 s, and one that spins freely at 3 rad/s .2 %. Do: pin it at one node, or in the builder.
 //! - **Sleep.** Attached bodies do not sleep.
 //! - **Carriers.** A joint to the rigid body that carries a flexible one is refused ([`StepError::CarrierJoint`](crate::pipeline::StepError::CarrierJoint)). Do: attach nodes, [`FlexBodySet::attach`](crate::body::FlexBodySet::attach).
 //!
@@ -87,6 +93,7 @@
 //!   Links rest on the ground as softly as rapier lets them; their islands allocate in every step. A stiff body of small strain that is heavier than the link whose motor holds it may tremble, and arms of several such links swing.
 //!   Do: take impulse joints, which are solved with the rest, where you can.
 //! - **Dominance.** A rigid body of positive dominance is met as one that is moved: it goes through what is pinned. See: unfinished steps. Do: leave dominance out.
+//! - **Fast spin.** Rapier turns a rigid body by no more than an eighth of a turn in a step, and takes what is more out of its spin: at 1/60 s beyond 47 rad/s. Do: shorten the step.
 //! - **Seams.** Boxes laid flush have seams by rapier's rounding, on which what slides may trip, as in rapier. Do: take a polyline, a height field or one box.
 //! - **Piles of rigid boxes** that spin fast into each other at 1/60 s may overlap by up to 2 mm where they jam, by 0.1 mm on a flexible slab.
 //! - **Continuous collision detection.** Off the feasible path, rapier may stop a rigid body short of where it was solved to be, at a fixed collider that it jams against: 5e-5 m of overlap at 1/30 s.

@@ -12,7 +12,7 @@ use super::joints::{Among, Rows};
 use super::sparse::Asked;
 use super::summary::IslandSummary;
 use super::{cones, gathered, impulses};
-use crate::constraint::joint::unit_wrench;
+use crate::constraint::joint::{JointGrip, unit_wrench};
 use crate::linalg::complementarity::RowKind;
 use crate::system::{Block, Point, Response};
 
@@ -30,29 +30,26 @@ pub(super) fn take_out_closings(
     gather_partings(island);
     island.problem.clear_rows();
     island.problem.acted.clear();
-    island.joints.listed.clear();
-    island.joints.gives.clear();
-    for (index, tie) in island.joints.ties.iter().enumerate() {
-        if tie.holds() {
-            island.joints.listed.push(index);
-            island.joints.gives.push(0.0);
+    let (blocks, wrenches) = (&island.blocks[..], &island.wrenches[..]);
+    island.joints.list(&mut island.problem, |joints, tie| {
+        let law = || {
             let achieved = if tie.closing == 0.0 {
                 0.0
             } else {
                 tie.closing + tie.gap
             };
-            let parted = parted(island, tie);
-            island.problem.free.push(parted - achieved / settings.b0);
-            island.problem.kinds.push(RowKind::Bilateral);
-        }
-    }
+            let parted = parted((blocks, wrenches), &joints.grips, tie);
+            (parted - achieved / settings.b0, RowKind::Bilateral, 0.0)
+        };
+        tie.holds().then(law)
+    });
     solve_closings(island, settings)?;
-    for slot in 0..island.joints.listed.len() {
-        island.joints.ties[island.joints.listed[slot]].closer = island.problem.multipliers[slot];
+    let found = island.problem.of_joints();
+    for (&index, closer) in island.joints.listed.iter().zip(found) {
+        island.joints.ties[index].closer = *closer;
     }
     gathered::clear_impulses(island);
-    island.wrenches.clear();
-    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    gathered::clear_wrenches(island);
     for at in 0..island.joints.ties.len() {
         let tie = island.joints.ties[at];
         if !tie.is_hard && tie.closer != 0.0 {
@@ -78,8 +75,7 @@ fn parts_joined(island: &Island) -> bool {
 
 /// Gathers the wrenches of the contacts that part rigid bodies.
 fn gather_partings(island: &mut Island) {
-    island.wrenches.clear();
-    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    gathered::clear_wrenches(island);
     for contact in island
         .contacts
         .iter()
@@ -92,13 +88,17 @@ fn gather_partings(island: &mut Island) {
 }
 
 /// How contacts that part move a joint row, over `b0` (N/kg, or N m/(kg m²) of what keeps an angle).
-fn parted(island: &Island, tie: &ActiveJoint) -> f64 {
+fn parted(
+    (blocks, wrenches): (&[Block], &[[f64; 3]]),
+    grips: &[JointGrip],
+    tie: &ActiveJoint,
+) -> f64 {
     let is_turn = tie.row.measure.is_turn();
-    let grips = island.joints.grips[tie.row.grips.0..tie.row.grips.1].iter();
-    let moved = grips.map(|grip| match &island.blocks[grip.block] {
+    let grips = grips[tie.row.grips.0..tie.row.grips.1].iter();
+    let moved = grips.map(|grip| match &blocks[grip.block] {
         Block::Rigid(block) => {
             let wrench = unit_wrench(grip, tie.direction, is_turn);
-            block.mobility_between(wrench, island.wrenches[grip.block], Response::Velocity)
+            block.mobility_between(wrench, wrenches[grip.block], Response::Velocity)
         }
         Block::Flex(_) => 0.0,
     });

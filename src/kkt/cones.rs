@@ -32,7 +32,7 @@ pub(super) fn is_sparse(island: &Island, n_rows: usize) -> bool {
     let presses_joined = island
         .contacts
         .iter()
-        .any(|contact| island.joints.join(contact));
+        .any(|contact| island.joints.joins(contact));
     if island.path.is_empty() || n_rows <= ALWAYS_DENSE && !presses_joined {
         return false;
     }
@@ -165,7 +165,7 @@ fn state_sparse(island: &Island, sparse: &mut Sparse, asked: Asked) -> Result<()
                 )
             }
             _ => {
-                let joined = f64::from(island.joints.join(contact)) * JOINED.get();
+                let joined = f64::from(island.joints.joins(contact)) * JOINED.get();
                 let share = asked.give.max(joined);
                 ([0, 1].map(|k| give[k] + share * scale[k]), [0.0; 2])
             }

@@ -9,6 +9,8 @@ use crate::system::{Block, Response};
 pub(super) struct RowDirection {
     /// Index of the contact.
     pub contact: usize,
+    /// 0 along its normal, 1 along its tangent.
+    pub axis: usize,
     /// Unit vector along which the relative motion is measured.
     pub direction: Vec2,
 }

@@ -92,6 +92,7 @@ fn remove_along_contacts(island: &mut Island, excess: f64, settings: &SolveSetti
         if force > 0.0 && !contact.is_hard {
             island.problem.rows.push(RowDirection {
                 contact: index,
+                axis: 0,
                 direction: contact.kinematics.normal,
             });
             island.problem.multipliers.push(force * settings.dt);

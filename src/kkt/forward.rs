@@ -12,7 +12,7 @@
 //! node that touches without adding energy, and the force of a quasi-static contact that opens or closes is weighed so that the
 //! energy of the leapfrog stays what it is.
 
-use super::delassus::{RowDirection, assemble};
+use super::delassus::assemble;
 use super::impulses;
 use super::island::{ActiveContact, Island, KktError, SolveSettings};
 use super::partner::check_partners;
@@ -20,7 +20,6 @@ use super::summary::IslandSummary;
 use super::work::{end_energy, kinetic_energy, start_energy};
 use super::{gathered, momentum, velocity};
 use crate::constraint::contact::Kinematics;
-use crate::linalg::complementarity::RowKind;
 use crate::math::Vec2;
 use crate::system::{Block, Response};
 
@@ -98,8 +97,7 @@ fn weigh_switches(island: &mut Island, settings: &SolveSettings) {
 
 /// Gathers what contacts that have opened or closed gave to the velocities; returns whether there are any.
 fn gather_switches(island: &mut Island, settings: &SolveSettings) -> bool {
-    island.wrenches.clear();
-    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    gathered::clear_wrenches(island);
     gathered::clear_impulses(island);
     let mut has_switched = false;
     for contact in &island.contacts {
@@ -163,8 +161,7 @@ fn shadow_gain(island: &mut Island, settings: &SolveSettings) -> f64 {
 }
 
 fn gather_wrenches(island: &mut Island, counts: impl Fn(&ActiveContact) -> bool) {
-    island.wrenches.clear();
-    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    gathered::clear_wrenches(island);
     for contact in island.contacts.iter().filter(|contact| counts(contact)) {
         gathered::spread(
             &mut island.blocks,
@@ -190,24 +187,9 @@ fn pending_energy(island: &mut Island, settings: &SolveSettings) -> Result<f64, 
         let kinematics = &contact.kinematics;
         let free = (foreseen(kinematics, &island.blocks, dt) + kinematics.gap * kinematics.normal)
             / (dt * dt);
-        let normal = island.problem.rows.len();
-        let mut push = |direction: Vec2, kind| {
-            island.problem.rows.push(RowDirection {
-                contact: index,
-                direction,
-            });
-            island.problem.free.push(free.dot(&direction));
-            island.problem.kinds.push(kind);
-        };
-        push(kinematics.normal, RowKind::Unilateral);
-        let coefficient = island.candidates[contact.candidate].law.friction;
-        if coefficient > 0.0 {
-            let kind = RowKind::Friction {
-                normal,
-                coefficient,
-            };
-            push(kinematics.tangent(), kind);
-        }
+        let friction = island.candidates[contact.candidate].law.friction;
+        let free = [kinematics.normal, kinematics.tangent()].map(|along| free.dot(&along));
+        island.problem.push(index, kinematics, friction, free);
     }
     if island.problem.rows.is_empty() {
         return Ok(0.0);

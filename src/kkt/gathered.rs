@@ -5,22 +5,23 @@ use crate::constraint::contact::Kinematics;
 use crate::math::{Vec2, cross};
 use crate::system::{Block, FlexBlock, Grip, Point, Response};
 
-/// Gathers the current row multipliers as impulses on the flexible blocks, and as wrenches on the rigid ones.
-pub(super) fn gather_rows(island: &mut Island, of: Response) {
+/// Begins to gather wrenches anew.
+pub(super) fn clear_wrenches(island: &mut Island) {
     island.wrenches.clear();
     island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+}
+
+/// Gathers the current row multipliers as impulses on the flexible blocks, and as wrenches on the rigid ones.
+pub(super) fn gather_rows(island: &mut Island, of: Response) {
+    clear_wrenches(island);
     for (row, direction) in island.problem.rows.iter().enumerate() {
         let value = island.problem.multipliers[row];
         if value == 0.0 {
             continue;
         }
         let kinematics = &island.contacts[direction.contact].kinematics;
-        let is_normal = direction.direction == kinematics.normal;
-        let force = if is_normal {
-            [value, 0.0]
-        } else {
-            [0.0, value]
-        };
+        let mut force = [0.0; 2];
+        force[direction.axis] = value;
         spread(
             &mut island.blocks,
             kinematics,

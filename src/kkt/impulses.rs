@@ -1,13 +1,13 @@
 //! Rows of velocities and accelerations, and the impulses that solve them.
 
 use super::cones;
-use super::delassus::{RowDirection, assemble};
+use super::delassus::assemble;
 use super::island::{ActiveContact, Island, KktError, SolveSettings};
 use super::jammed::are_jammed;
 use super::joints::{Among, Rows};
 use super::sparse::Asked;
 use crate::linalg::complementarity::{INDEPENDENT, RowKind, Status, give};
-use crate::math::{Vec2, perp, rounding};
+use crate::math::{perp, rounding};
 use crate::system::Response;
 
 /// States the impact law at the contacts that count and hold velocities, as velocities or masses respond.
@@ -16,15 +16,9 @@ pub(super) fn velocity_rows(
     settings: &SolveSettings,
     counts: impl Fn(&ActiveContact) -> bool,
 ) {
-    island.problem.clear_rows();
-    for index in 0..island.contacts.len() {
-        let contact = island.contacts[index];
-        if !contact.is_closed() || contact.holds_velocity() == 0.0 || !counts(&contact) {
-            continue;
-        }
+    state_rows(island, counts, |island, index| {
+        let contact = &mut island.contacts[index];
         let law = island.candidates[contact.candidate].law;
-        let kinematics = contact.kinematics;
-        let velocity = kinematics.relative(&island.blocks, |block, grip| block.velocity(grip));
         let rebound = law.rebound(contact.approach, settings.restitution_threshold);
         // A resolved impact rebounds by its elasticity.
         let rebound = if contact.is_hard {
@@ -32,25 +26,37 @@ pub(super) fn velocity_rows(
         } else {
             contact.rigid * rebound
         };
-        let normal = island.problem.rows.len();
-        island.contacts[index].parting = [rebound, 0.0];
-        push_row(
-            island,
-            index,
-            kinematics.normal,
-            velocity.dot(&kinematics.normal) - rebound,
-            RowKind::Unilateral,
-        );
-        if law.friction > 0.0 {
-            let tangent = kinematics.tangent();
-            let kind = RowKind::Friction {
-                normal,
-                coefficient: law.friction,
-            };
-            push_row(island, index, tangent, velocity.dot(&tangent), kind);
+        contact.parting = [rebound, 0.0];
+        let row = &contact.kinematics;
+        let velocity = row.relative(&island.blocks, |block, grip| block.velocity(grip));
+        [
+            velocity.dot(&row.normal) - rebound,
+            velocity.dot(&row.tangent()),
+        ]
+    });
+    list_acted(island, settings.b1);
+}
+
+/// States rows at the contacts that count and hold velocities.
+///
+/// - `free`: what the rows of a contact are without forces, along its normal and its tangent.
+fn state_rows(
+    island: &mut Island,
+    counts: impl Fn(&ActiveContact) -> bool,
+    free: impl Fn(&mut Island, usize) -> [f64; 2],
+) {
+    island.problem.clear_rows();
+    for index in 0..island.contacts.len() {
+        let contact = &island.contacts[index];
+        if contact.is_closed() && contact.holds_velocity() != 0.0 && counts(contact) {
+            let free = free(island, index);
+            let contact = &island.contacts[index];
+            let friction = island.candidates[contact.candidate].law.friction;
+            island
+                .problem
+                .push(index, &contact.kinematics, friction, free);
         }
     }
-    list_acted(island, settings.b1);
 }
 
 /// Begins with the forces of the position stage at contacts of rigid bodies, on which they have not acted; how long they would have to
@@ -63,9 +69,8 @@ fn guess_impulses(island: &mut Island) {
         .resize(island.problem.kinds.len(), 0.0);
     for (row, direction) in island.problem.rows.iter().enumerate() {
         let contact = &island.contacts[direction.contact];
-        if contact.is_hard && island.impulse_give == 0.0 {
-            let which = usize::from(direction.direction != contact.kinematics.normal);
-            island.problem.multipliers[row] = contact.multiplier[which];
+        if contact.is_hard && island.problem.impulse_give == 0.0 {
+            island.problem.multipliers[row] = contact.multiplier[direction.axis];
         }
     }
 }
@@ -75,18 +80,18 @@ fn guess_impulses(island: &mut Island) {
 pub(super) fn solve_impulses(island: &mut Island, of: Response, dt: f64) -> Result<(), KktError> {
     island.problem.acted.resize(island.problem.kinds.len(), 0.0);
     if of != Response::Acceleration {
-        island.impulse_give = 0.0;
+        island.problem.impulse_give = 0.0;
     }
     solve_impulses_once(island, of, dt)?;
     if of == Response::Velocity
         && are_jammed(
             &island.blocks,
             &island.contacts,
-            (&island.problem.rows, &island.problem.free),
-            &island.problem.multipliers,
+            [&island.problem.free, &island.problem.multipliers]
+                .map(|values| &values[..island.problem.rows.len()]),
         )
     {
-        island.impulse_give = give(INDEPENDENT);
+        island.problem.impulse_give = give(INDEPENDENT);
         solve_impulses_once(island, of, dt)?;
     }
     Ok(())
@@ -100,7 +105,7 @@ fn solve_impulses_once(island: &mut Island, of: Response, dt: f64) -> Result<(),
             of,
             which: Rows::End,
             unit: dt,
-            give: island.impulse_give,
+            give: island.problem.impulse_give,
         };
         cones::solve_sparse(island, asked)?;
         return Ok(());
@@ -127,7 +132,7 @@ fn solve_impulses_once(island: &mut Island, of: Response, dt: f64) -> Result<(),
         .joints
         .expand_softened(&mut island.problem, among, of);
     for row in 0..n {
-        island.problem.delassus[row * (n + 1)] *= 1.0 + island.impulse_give;
+        island.problem.delassus[row * (n + 1)] *= 1.0 + island.problem.impulse_give;
     }
     solve_rows(island)?;
     island.problem.responses.clear();
@@ -164,25 +169,15 @@ fn hold_wedged(island: &mut Island, unit: f64) {
     }
 }
 
-fn push_row(island: &mut Island, contact: usize, direction: Vec2, free: f64, kind: RowKind) {
-    island
-        .problem
-        .rows
-        .push(RowDirection { contact, direction });
-    island.problem.free.push(free);
-    island.problem.kinds.push(kind);
-}
-
 /// Lists what has acted already of the soft rows' multipliers: `scale` times those of the position stage.
 pub(super) fn list_acted(island: &mut Island, scale: f64) {
     island.problem.acted.clear();
     for direction in &island.problem.rows {
         let contact = &island.contacts[direction.contact];
-        let which = usize::from(direction.direction != contact.kinematics.normal);
         let acted = if contact.is_hard {
             0.0
         } else {
-            scale * contact.multiplier[which]
+            scale * contact.multiplier[direction.axis]
         };
         island.problem.acted.push(acted);
     }
@@ -193,16 +188,15 @@ pub(super) fn read_impulses(island: &mut Island) {
     for (row, direction) in island.problem.rows.iter().enumerate() {
         let softened = island.problem.free[row] + island.problem.responses[row];
         let contact = &mut island.contacts[direction.contact];
-        let which = usize::from(direction.direction != contact.kinematics.normal);
         let impulse = island.problem.multipliers[row];
         let share = if contact.is_hard {
             1.0
         } else {
             contact.holds_velocity().max(rounding::SUM)
         };
-        contact.parting[which] +=
+        contact.parting[direction.axis] +=
             softened - (1.0 - share) * island.problem.diagonals[row] * impulse;
-        contact.impulse[which] = impulse;
+        contact.impulse[direction.axis] = impulse;
     }
 }
 
@@ -247,33 +241,21 @@ pub(super) fn acceleration_rows(
     settings: &SolveSettings,
     counts: impl Fn(&ActiveContact) -> bool,
 ) {
-    island.problem.clear_rows();
-    for index in 0..island.contacts.len() {
-        let contact = island.contacts[index];
-        if !contact.is_closed() || contact.holds_velocity() == 0.0 || !counts(&contact) {
-            continue;
-        }
-        let kinematics = contact.kinematics;
-        let mut acceleration = kinematics.relative(&island.blocks, |block, grip| {
+    state_rows(island, counts, |island, index| {
+        let contact = &island.contacts[index];
+        let row = &contact.kinematics;
+        let mut acceleration = row.relative(&island.blocks, |block, grip| {
             block.smooth_acceleration(grip)
         });
-        for a in kinematics.attachments() {
+        for a in row.attachments() {
             let answer = island.blocks[a.block].acceleration_under(&island.wrenches, a.block);
             acceleration += a.weight * (answer.0 + answer.1 * perp(a.grip.lever));
         }
-        let normal = island.problem.rows.len();
-        let along = acceleration.dot(&kinematics.normal) + contact.parting[0] / settings.dt;
-        push_row(island, index, kinematics.normal, along, RowKind::Unilateral);
-        let coefficient = island.candidates[contact.candidate].law.friction;
-        if coefficient > 0.0 {
-            let tangent = kinematics.tangent();
-            let kind = RowKind::Friction {
-                normal,
-                coefficient,
-            };
-            let along = acceleration.dot(&tangent) + contact.parting[1] / settings.dt;
-            push_row(island, index, tangent, along, kind);
-        }
-    }
+        let [parting, sliding] = contact.parting.map(|velocity| velocity / settings.dt);
+        [
+            acceleration.dot(&row.normal) + parting,
+            acceleration.dot(&row.tangent()) + sliding,
+        ]
+    });
     list_acted(island, 1.0);
 }

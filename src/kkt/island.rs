@@ -42,8 +42,6 @@ pub struct Island {
     /// The problem at hand.
     pub(super) problem: RowProblem,
     pub(super) sparse: Sparse,
-    /// Share of its own mobility that every row gives way by to its impulse, and to the forces that accelerations follow from (-).
-    pub(super) impulse_give: f64,
     /// Wrenches gathered on rigid blocks, by block (N, N, N m, or their impulses).
     pub(super) wrenches: Vec<[f64; 3]>,
     /// For each block the first of those that touch it, directly or by others.

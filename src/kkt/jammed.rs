@@ -5,7 +5,6 @@
 //! rows give way by a thousandth of their mobility, impulses bring no energy, and what is driven goes into what does not get out.
 
 use super::active_contact::ActiveContact;
-use super::delassus::RowDirection;
 use super::work::{kinetic_energy, mass_and_energy};
 use crate::linalg::complementarity::{INDEPENDENT, give};
 use crate::system::Block;
@@ -16,17 +15,14 @@ use crate::system::Block;
 /// there would be if each body came against all others with the largest velocity of these; what gets out of a wedge takes more, as far as the wedge is
 /// wider than what rows give way by.
 ///
-/// - `rows`, `free`: the rows, of which those of contacts come first, and their motions without impulses.
+/// - `free`, `impulses`: what the rows of contacts are without impulses (m/s), and these (N s).
 pub(super) fn are_jammed(
     blocks: &[Block],
     contacts: &[ActiveContact],
-    (rows, free): (&[RowDirection], &[f64]),
-    impulses: &[f64],
+    [free, impulses]: [&[f64]; 2],
 ) -> bool {
-    let taken = rows.iter().zip(free).zip(impulses);
-    let taken: f64 = taken
-        .map(|((_, motion), impulse)| -0.5 * motion * impulse)
-        .sum();
+    let taken = free.iter().zip(impulses);
+    let taken: f64 = taken.map(|(motion, impulse)| -0.5 * motion * impulse).sum();
     if taken * give(INDEPENDENT) <= kinetic_energy(blocks) {
         return false;
     }
@@ -70,12 +66,8 @@ mod tests {
                 panic!("it is rigid");
             };
             let (mass, velocity) = (one.mass()[0], one.current().velocity.x);
-            let row = RowDirection {
-                contact: 0,
-                direction: ALONG,
-            };
             let blocks = [body];
-            let jams = |impulse| are_jammed(&blocks, &[], (&[row], &[velocity]), &[impulse]);
+            let jams = |impulse| are_jammed(&blocks, &[], [&[velocity], &[impulse]]);
             let stops = -mass * velocity;
             let [before, taken] = [kinetic_energy(&blocks), 0.5 * mass * velocity.powi(2)];
             assert!(taken <= before);
@@ -106,11 +98,7 @@ mod tests {
             [(0, 1.0), (1, -1.0)].map(|(block, weight)| (block, arm, weight, Vec2::zeros()));
         let row = Kinematics::with_levers(0.0, ALONG, Vec2::zeros(), &grips);
         let contact = ActiveContact::new(0, row, Remembered::default(), 0.5, &blocks);
-        let row = RowDirection {
-            contact: 0,
-            direction: ALONG,
-        };
-        let jams = |impulse| are_jammed(&blocks, &[contact], (&[row], &[-3.0]), &[impulse]);
+        let jams = |impulse| are_jammed(&blocks, &[contact], [&[-3.0], &[impulse]]);
         assert!(!jams(2.0 * 3.0));
         assert!(!jams(0.9e3 * 2.0 * 3.0));
         assert!(jams(1.1e3 * 2.0 * 3.0));

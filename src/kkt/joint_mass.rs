@@ -51,23 +51,16 @@ pub(super) fn settle_joined_velocities(
 /// `A⁻¹ Gᵀ W⁻¹ J`, would not.
 fn take_jumps(island: &mut Island, settings: &SolveSettings) -> Result<(), KktError> {
     island.problem.clear_rows();
-    island.joints.listed.clear();
-    island.joints.gives.clear();
-    let mut jumps = false;
-    for (index, tie) in island.joints.ties.iter().enumerate() {
+    island.joints.list(&mut island.problem, |_, tie| {
         let is_held = matches!(tie.finish, Finish::Hold { .. }) && tie.is_movable && !tie.is_left;
-        if !is_held || !tie.holds_masses() {
-            continue;
-        }
-        let last = tie.row.remembered;
-        let jump = last.map_or(0.0, |last| tie.driven - last.driven);
-        jumps |= jump != 0.0;
-        island.joints.listed.push(index);
-        island.joints.gives.push(0.0);
-        island.problem.free.push(jump);
-        island.problem.kinds.push(RowKind::Bilateral);
-    }
-    if !jumps {
+        let law = || {
+            let last = tie.row.remembered;
+            let jump = last.map_or(0.0, |last| tie.driven - last.driven);
+            (jump, RowKind::Bilateral, 0.0)
+        };
+        (is_held && tie.holds_masses()).then(law)
+    });
+    if island.problem.free.iter().all(|jump| *jump == 0.0) {
         return Ok(());
     }
     island.problem.acted.clear();

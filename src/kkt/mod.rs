@@ -5,6 +5,18 @@
 //! 2. velocity stage: contacts between masses get an impulse, so that no force of an impact lingers in the stored
 //!    acceleration; contacts through massless surfaces need it only where the impact is shorter than the step;
 //! 3. energy stage: velocities give back the energy that contact would add.
+//!
+//! An [`Island`] is data; the stages are functions over it, in the order of [`Island::solve`].
+//!
+//! | what | where |
+//! |---|---|
+//! | data of an island | `island`, `active_contact`, `joints`, `problem`, `sparse`, `passes`, `feasible` (the path) |
+//! | positions | `position`; passes along the path in `follow`, or signed gaps; where blocks are and how laws hold in `working_set`; overlaps asked apart in `parting` |
+//! | forces of positions | `multipliers`, dense through `delassus` or sparse through `cones`; `smooth` for `constraint_function` |
+//! | velocities | `impact` chooses; `velocity`, `impulses`, `unresolved`, `jammed`; of joints `joint_mass`, `closing`; of explicit steps `forward`, `partner` |
+//! | after both | `energy`, `calm`, `work`; `momentum` |
+//! | ends of what is not solved | `gentle`, `together`, `group` |
+//! | shared | `settings`, `summary`, `tolerances`, `gathered` (multipliers as impulses on blocks) |
 
 mod active_contact;
 mod calm;

@@ -1,7 +1,7 @@
 //! Multipliers of the working set: rows of `G`, the Delassus matrix and one complementarity problem `w = W p + b`.
 
 use super::cones;
-use super::delassus::{RowDirection, assemble, compliance};
+use super::delassus::{assemble, compliance};
 use super::island::{Island, KktError, SolveSettings};
 use super::joints::{Among, Rows};
 use super::sparse::Asked;
@@ -88,12 +88,8 @@ pub(super) fn solve_multipliers(
 fn read_multipliers(island: &mut Island) {
     for (row, direction) in island.problem.rows.iter().enumerate() {
         let contact = &mut island.contacts[direction.contact];
-        let which = usize::from(matches!(
-            island.problem.kinds[row],
-            RowKind::Friction { .. }
-        ));
-        contact.multiplier[which] = island.problem.multipliers[row];
-        contact.status[which] = island.problem.statuses[row];
+        contact.multiplier[direction.axis] = island.problem.multipliers[row];
+        contact.status[direction.axis] = island.problem.statuses[row];
     }
     island.joints.take_multipliers(&island.problem);
 }
@@ -104,34 +100,18 @@ pub(super) fn position_rows(island: &mut Island, b0: f64) {
     island.problem.multipliers.clear();
     island.problem.statuses.clear();
     for (index, contact) in island.contacts.iter().enumerate() {
-        let kinematics = &contact.kinematics;
-        let normal_row = island.problem.rows.len();
-        island.problem.rows.push(RowDirection {
-            contact: index,
-            direction: kinematics.normal,
-        });
-        island.problem.kinds.push(RowKind::Unilateral);
-        island.problem.free.push(kinematics.gap / b0);
-        island.problem.multipliers.push(contact.multiplier[0]);
-        island.problem.statuses.push(contact.status[0]);
-        let coefficient = island.candidates[contact.candidate].law.friction;
-        if coefficient > 0.0 {
-            island.problem.rows.push(RowDirection {
-                contact: index,
-                direction: kinematics.tangent(),
-            });
-            island.problem.kinds.push(RowKind::Friction {
-                normal: normal_row,
-                coefficient,
-            });
-            let slip = match contact.base {
-                Some(_) => contact.slip,
-                None => slip(kinematics, &island.blocks) - contact.aside,
-            };
-            island.problem.free.push(slip / b0);
-            island.problem.multipliers.push(contact.multiplier[1]);
-            island.problem.statuses.push(contact.status[1]);
-        }
+        let row = &contact.kinematics;
+        let friction = island.candidates[contact.candidate].law.friction;
+        let slip = match contact.base {
+            Some(_) => contact.slip,
+            None => slip(row, &island.blocks) - contact.aside,
+        };
+        let free = [row.gap, slip].map(|way| way / b0);
+        island.problem.push(index, row, friction, free);
+        let n_rows = 1 + usize::from(friction > 0.0);
+        let (known, statuses) = (&contact.multiplier[..n_rows], &contact.status[..n_rows]);
+        island.problem.multipliers.extend_from_slice(known);
+        island.problem.statuses.extend_from_slice(statuses);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::delassus::RowDirection;
 use super::settings::KktError;
+use crate::constraint::contact::Kinematics;
 use crate::linalg::complementarity::{Outcome, Problem, RowKind, Solver, Status};
 
 /// Rows, their Delassus matrix if they are solved as a dense problem, and their multipliers.
@@ -24,11 +25,36 @@ pub(super) struct RowProblem {
     pub acted: Vec<f64>,
     pub statuses: Vec<Status>,
     pub solver: Solver,
+    /// Share of its own mobility that every row gives way by to its impulse, and to the forces that accelerations follow from (-).
+    pub impulse_give: f64,
     /// Pivots and factorizations of contact problems since the step was begun.
     pub n_pivots: usize,
 }
 
 impl RowProblem {
+    /// Adds the rows of a contact: along its normal, and along its tangent if it has friction, with what they are without forces.
+    pub fn push(&mut self, contact: usize, row: &Kinematics, friction: f64, free: [f64; 2]) {
+        let normal = self.rows.len();
+        let laws = [
+            RowKind::Unilateral,
+            RowKind::Friction {
+                normal,
+                coefficient: friction,
+            },
+        ];
+        let directions = [row.normal, row.tangent()];
+        let n_rows = 1 + usize::from(friction > 0.0);
+        for axis in 0..n_rows {
+            self.rows.push(RowDirection {
+                contact,
+                axis,
+                direction: directions[axis],
+            });
+            self.kinds.push(laws[axis]);
+            self.free.push(free[axis]);
+        }
+    }
+
     /// Takes all rows out.
     pub fn clear_rows(&mut self) {
         self.rows.clear();

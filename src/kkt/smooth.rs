@@ -185,11 +185,7 @@ fn function_step(
             .advance(&problem, &scale, searches, &mut island.problem.multipliers);
     for (row, direction) in island.problem.rows.iter().enumerate() {
         let contact = &mut island.contacts[direction.contact];
-        let which = usize::from(matches!(
-            island.problem.kinds[row],
-            RowKind::Friction { .. }
-        ));
-        contact.multiplier[which] = island.problem.multipliers[row];
+        contact.multiplier[direction.axis] = island.problem.multipliers[row];
     }
     is_regular.then_some(scale)
 }

@@ -23,11 +23,11 @@ impl Island {
         reserve: &mut f64,
     ) -> Result<IslandSummary, KktError> {
         self.problem.n_pivots = 0;
-        self.impulse_give = 0.0;
+        self.problem.impulse_give = 0.0;
         let summary = solve_stages(self, settings, memory, reserve)?;
         Ok(IslandSummary {
             n_pivots: self.problem.n_pivots,
-            is_jammed: self.impulse_give > 0.0,
+            is_jammed: self.problem.impulse_give > 0.0,
             ..summary
         })
     }

@@ -71,8 +71,7 @@ pub(super) fn impact_rows(island: &mut Island, settings: &SolveSettings) -> Resu
 
 /// Velocities and accelerations feel soft multipliers as (C.5) says, hard ones not at all.
 pub(super) fn take_out_hard_forces(island: &mut Island) {
-    island.wrenches.clear();
-    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    gathered::clear_wrenches(island);
     for contact in &island.contacts {
         let (blocks, kinematics) = (&mut island.blocks, &contact.kinematics);
         let force = contact.multiplier;
@@ -89,8 +88,7 @@ pub(super) fn take_out_hard_forces(island: &mut Island) {
 
 /// (C.5) as printed: every multiplier acts on velocity and acceleration.
 pub(super) fn keep_plain_forces(island: &mut Island) {
-    island.wrenches.clear();
-    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    gathered::clear_wrenches(island);
     for contact in &mut island.contacts {
         contact.is_hard = false;
         gathered::spread(
@@ -113,8 +111,7 @@ pub(super) fn keep_plain_forces(island: &mut Island) {
 /// accelerations that no pose allows, and its multipliers, at the levers of its end, would turn them back too far: a tower on a
 /// soft block rocks itself up by `p h dt / I` a second.
 fn settle_accelerations(island: &mut Island, settings: &SolveSettings) -> Result<(), KktError> {
-    island.wrenches.clear();
-    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    gathered::clear_wrenches(island);
     island
         .joints
         .add_spring_forces(&mut island.wrenches, settings.dt);
@@ -133,9 +130,9 @@ fn settle_accelerations(island: &mut Island, settings: &SolveSettings) -> Result
     let late = settings.dt - settings.b1;
     for (row, direction) in island.problem.rows.iter().enumerate() {
         let contact = &mut island.contacts[direction.contact];
-        let which = usize::from(direction.direction != contact.kinematics.normal);
-        contact.impulse[which] += late * island.problem.multipliers[row];
-        contact.settled[which] = island.problem.multipliers[row];
+        let force = island.problem.multipliers[row];
+        contact.impulse[direction.axis] += late * force;
+        contact.settled[direction.axis] = force;
     }
     gathered::gather_rows(island, Response::Acceleration);
     gathered::add_to_rigid(island, Response::Acceleration, 1.0);

@@ -90,7 +90,7 @@ fn remember_contacts(island: &mut Island, slop: f64, kept: f64, memory: &Contact
             let blocks = &island.blocks;
             let mut contact = ActiveContact::new(index, kinematics, remembered, friction, blocks);
             contact.allow_overlap(kept, slop, candidate, &scene);
-            if island.joints.hold_fast(&island.blocks, &kinematics) {
+            if island.joints.holds_fast(&island.blocks, &kinematics) {
                 continue;
             }
             island.is_working[index] = true;
@@ -101,8 +101,7 @@ fn remember_contacts(island: &mut Island, slop: f64, kept: f64, memory: &Contact
 
 /// Moves all blocks by the multipliers; returns how far the frames have turned.
 pub(super) fn correct(island: &mut Island) -> Turned {
-    island.wrenches.clear();
-    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    gathered::clear_wrenches(island);
     for block in &mut island.blocks {
         if let Block::Flex(block) = block {
             block.clear_contact_force();
@@ -216,7 +215,7 @@ pub(super) fn add_violated(
             ActiveContact::new(index, kinematics, remembered, friction, &island.blocks);
         let slop = OVERLAPPED * tolerance;
         contact.allow_overlap(kept, slop, candidate, &scene);
-        let is_left_alone = island.joints.hold_fast(&island.blocks, &kinematics);
+        let is_left_alone = island.joints.holds_fast(&island.blocks, &kinematics);
         if !is_left_alone && contact.kinematics.gap < -tolerance {
             island.is_working[index] = true;
             island.contacts.push(contact);

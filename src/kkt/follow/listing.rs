@@ -260,7 +260,7 @@ fn list(island: &mut Island, listed: &Listed, listing: &Listing<'_>) {
             ..before
         },
         // What is at work stays at work until the step ends.
-        None if island.joints.hold_fast(&island.blocks, &kinematics) => return,
+        None if island.joints.holds_fast(&island.blocks, &kinematics) => return,
         None => {
             let remembered = listing
                 .memory

@@ -49,8 +49,7 @@ fn is_implicit(contact: &ActiveContact) -> bool {
 fn take_from_acceleration(island: &mut Island, settings: &SolveSettings) {
     let beta0 = 2.0 * settings.b0 / (settings.dt * settings.dt);
     gathered::clear_impulses(island);
-    island.wrenches.clear();
-    island.wrenches.resize(island.blocks.len(), [0.0; 3]);
+    gathered::clear_wrenches(island);
     for contact in island
         .contacts
         .iter_mut()

@@ -1,7 +1,7 @@
 //! Joint rows in the velocity and acceleration problems, and what joints do to the energy.
 
 use super::law::bounded;
-use super::{ActiveJoint, Among, Finish, Joints, Rows, add_wrench};
+use super::{ActiveJoint, Among, Finish, Joints, Rows};
 use crate::constraint::joint::{JointGrip, Spring, When, unit_wrench};
 use crate::kkt::problem::RowProblem;
 use crate::kkt::settings::{KktError, SolveSettings};
@@ -153,21 +153,10 @@ impl Joints {
         (blocks, settings): (&[Block], &SolveSettings),
         takes_part: impl Fn(&ActiveJoint) -> bool,
     ) {
-        self.listed.clear();
-        self.gives.clear();
-        for index in 0..self.ties.len() {
-            let tie = &self.ties[index];
-            if !takes_part(tie) {
-                continue;
-            }
-            let Some((free, kind, give)) = self.velocity_law(blocks, tie, settings) else {
-                continue;
-            };
-            self.listed.push(index);
-            self.gives.push(give);
-            problem.free.push(free);
-            problem.kinds.push(kind);
-        }
+        self.list(problem, |joints, tie| {
+            let law = || joints.velocity_law(blocks, tie, settings);
+            takes_part(tie).then(law).flatten()
+        });
     }
 
     /// Adds the joint rows listed to the Delassus matrix of the contacts' rows, softened by their shares.
@@ -218,36 +207,6 @@ impl Joints {
         }
     }
 
-    /// Gathers the joints' part of a solution as impulses on flexible blocks and wrenches on rigid ones; of accelerations only
-    /// that of soft rows, as hard ones leave none.
-    pub(in crate::kkt) fn gather(
-        &self,
-        problem: &RowProblem,
-        (blocks, wrenches): (&mut [Block], &mut [[f64; 3]]),
-        of: Response,
-    ) {
-        for (&index, &value) in self.listed.iter().zip(problem.of_joints()) {
-            let tie = self.ties[index];
-            if value == 0.0 || (of == Response::Acceleration && tie.is_hard) {
-                continue;
-            }
-            let is_turn = tie.row.measure.is_turn();
-            for grip in &self.end_grips[tie.row.grips.0..tie.row.grips.1] {
-                match (&mut blocks[grip.block], grip.point) {
-                    (Block::Flex(block), Point::Node(node)) => {
-                        let impulse = value * grip.weight * tie.end;
-                        block.gather_impulse(of, node, impulse, grip.lever);
-                    }
-                    _ => add_wrench(
-                        &mut wrenches[grip.block],
-                        value,
-                        unit_wrench(grip, tie.end, is_turn),
-                    ),
-                }
-            }
-        }
-    }
-
     /// Notes the impulses of a solved velocity problem.
     pub(in crate::kkt) fn take_impulses(&mut self, problem: &RowProblem) {
         for (&row, impulse) in self.listed.iter().zip(problem.of_joints()) {
@@ -255,35 +214,9 @@ impl Joints {
         }
     }
 
-    /// Adds the forces of soft joints to the wrenches of rigid blocks.
-    pub(in crate::kkt) fn add_soft_forces(&self, blocks: &[Block], wrenches: &mut [[f64; 3]]) {
-        for tie in self.ties.iter().filter(|tie| !tie.is_hard) {
-            for grip in &self.grips[tie.row.grips.0..tie.row.grips.1] {
-                if let Block::Rigid(_) = &blocks[grip.block] {
-                    let wrench = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
-                    add_wrench(&mut wrenches[grip.block], tie.multiplier, wrench);
-                }
-            }
-        }
-    }
-
     /// Whether some joint holds a flexible block, so that accelerations are settled.
     pub(in crate::kkt) fn has_soft(&self) -> bool {
         self.ties.iter().any(|tie| !tie.is_hard)
-    }
-
-    /// Adds the mean forces of hard springs to the wrenches: in the acceleration problem they are known.
-    pub(in crate::kkt) fn add_spring_forces(&self, wrenches: &mut [[f64; 3]], dt: f64) {
-        for tie in self.ties.iter().filter(|tie| tie.is_hard) {
-            if !matches!(tie.finish, Finish::Spring | Finish::Stiff(_)) {
-                continue;
-            }
-            let force = (tie.kick + tie.impulse) / dt;
-            for grip in &self.end_grips[tie.row.grips.0..tie.row.grips.1] {
-                let wrench = unit_wrench(grip, tie.end, tie.row.measure.is_turn());
-                add_wrench(&mut wrenches[grip.block], force, wrench);
-            }
-        }
     }
 
     /// Lists the joint rows of the acceleration problem that take part, `G'a' = ` what turning asks for.
@@ -293,27 +226,19 @@ impl Joints {
         (blocks, wrenches): (&[Block], &[[f64; 3]]),
         takes_part: impl Fn(&ActiveJoint) -> bool,
     ) {
-        self.listed.clear();
-        self.gives.clear();
-        for index in 0..self.ties.len() {
-            let tie = &self.ties[index];
-            if !takes_part(tie) {
-                continue;
-            }
+        self.list(problem, |joints, tie| {
             let holds = matches!(tie.finish, Finish::Hold { .. } | Finish::Limit);
             let holds = holds && tie.is_movable && tie.is_closed() && tie.share >= LEFT_ALONE;
             // A motor at its bound does not hold.
-            if !holds || matches!(tie.status, Status::SlipPositive | Status::SlipNegative) {
-                continue;
-            }
-            let acceleration = self.along(blocks, tie, |block, grip| {
-                total_acceleration(block, grip, wrenches)
-            });
-            self.listed.push(index);
-            self.gives.push(0.0);
-            problem.free.push(acceleration);
-            problem.kinds.push(RowKind::Bilateral);
-        }
+            let gives_in = matches!(tie.status, Status::SlipPositive | Status::SlipNegative);
+            let law = || {
+                let acceleration = joints.along(blocks, tie, |block, grip| {
+                    total_acceleration(block, grip, wrenches)
+                });
+                (acceleration, RowKind::Bilateral, 0.0)
+            };
+            (takes_part(tie) && holds && !gives_in).then(law)
+        });
     }
 
     /// Finds what the joints answer to the impulses of contact rows, so that velocities stay those the joints allow.

@@ -9,10 +9,11 @@
 
 use super::held::JointHold;
 use super::law::resolve;
-use super::{ActiveJoint, Joints};
+use super::{ActiveJoint, Finish, Joints};
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, JointRow, When, unit_wrench};
 use crate::kkt::active_contact::ActiveContact;
+use crate::kkt::problem::RowProblem;
 use crate::kkt::settings::SolveSettings;
 use crate::linalg::complementarity::{RowKind, Status};
 use crate::math::{Vec2, perp, rounding};
@@ -123,12 +124,12 @@ impl Joints {
     }
 
     /// Whether joints leave the two rigid bodies of a contact no motion against each other.
-    pub(in crate::kkt) fn hold_fast(&self, blocks: &[Block], row: &Kinematics) -> bool {
+    pub(in crate::kkt) fn holds_fast(&self, blocks: &[Block], row: &Kinematics) -> bool {
         self.hold(blocks).holds(row)
     }
 
     /// Whether a contact is between blocks that a joint holds.
-    pub(in crate::kkt) fn join(&self, contact: &ActiveContact) -> bool {
+    pub(in crate::kkt) fn joins(&self, contact: &ActiveContact) -> bool {
         self.joined.has(contact)
     }
 
@@ -151,6 +152,26 @@ impl Joints {
             }
         }
         is_hard
+    }
+
+    /// Lists the rows of a problem, after those of contacts.
+    ///
+    /// - `law`: what a row that takes part is without forces, its law, and by how much a unit multiplier lets it give way.
+    pub(in crate::kkt) fn list(
+        &mut self,
+        problem: &mut RowProblem,
+        law: impl Fn(&Self, &ActiveJoint) -> Option<(f64, RowKind, f64)>,
+    ) {
+        self.listed.clear();
+        self.gives.clear();
+        for index in 0..self.ties.len() {
+            if let Some((free, kind, give)) = law(self, &self.ties[index]) {
+                self.listed.push(index);
+                self.gives.push(give);
+                problem.free.push(free);
+                problem.kinds.push(kind);
+            }
+        }
     }
 
     /// Lists which rows hold which block, so that only rows that couple are ever combined.
@@ -189,6 +210,62 @@ impl Joints {
                         unit_wrench(grip, tie.direction, is_turn),
                     ),
                 }
+            }
+        }
+    }
+
+    /// Gathers the joints' part of a solution as impulses on flexible blocks and wrenches on rigid ones; of accelerations only
+    /// that of soft rows, as hard ones leave none.
+    pub(in crate::kkt) fn gather(
+        &self,
+        problem: &RowProblem,
+        (blocks, wrenches): (&mut [Block], &mut [[f64; 3]]),
+        of: Response,
+    ) {
+        for (&index, &value) in self.listed.iter().zip(problem.of_joints()) {
+            let tie = self.ties[index];
+            if value == 0.0 || (of == Response::Acceleration && tie.is_hard) {
+                continue;
+            }
+            let is_turn = tie.row.measure.is_turn();
+            for grip in &self.end_grips[tie.row.grips.0..tie.row.grips.1] {
+                match (&mut blocks[grip.block], grip.point) {
+                    (Block::Flex(block), Point::Node(node)) => {
+                        let impulse = value * grip.weight * tie.end;
+                        block.gather_impulse(of, node, impulse, grip.lever);
+                    }
+                    _ => add_wrench(
+                        &mut wrenches[grip.block],
+                        value,
+                        unit_wrench(grip, tie.end, is_turn),
+                    ),
+                }
+            }
+        }
+    }
+
+    /// Adds the forces of soft joints to the wrenches of rigid blocks.
+    pub(in crate::kkt) fn add_soft_forces(&self, blocks: &[Block], wrenches: &mut [[f64; 3]]) {
+        for tie in self.ties.iter().filter(|tie| !tie.is_hard) {
+            for grip in &self.grips[tie.row.grips.0..tie.row.grips.1] {
+                if let Block::Rigid(_) = &blocks[grip.block] {
+                    let wrench = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
+                    add_wrench(&mut wrenches[grip.block], tie.multiplier, wrench);
+                }
+            }
+        }
+    }
+
+    /// Adds the mean forces of hard springs to the wrenches: in the acceleration problem they are known.
+    pub(in crate::kkt) fn add_spring_forces(&self, wrenches: &mut [[f64; 3]], dt: f64) {
+        for tie in self.ties.iter().filter(|tie| tie.is_hard) {
+            if !matches!(tie.finish, Finish::Spring | Finish::Stiff(_)) {
+                continue;
+            }
+            let force = (tie.kick + tie.impulse) / dt;
+            for grip in &self.end_grips[tie.row.grips.0..tie.row.grips.1] {
+                let wrench = unit_wrench(grip, tie.end, tie.row.measure.is_turn());
+                add_wrench(&mut wrenches[grip.block], force, wrench);
             }
         }
     }

@@ -6,6 +6,8 @@ use crate::constraint::contact::{
 use crate::fe::material::LinearElastic;
 use crate::integrator::Beta2;
 use crate::kkt::ActiveContact;
+use crate::kkt::calm::tests::join;
+use crate::kkt::joints::Finish;
 use crate::kkt::together;
 use crate::math::{cross, perp};
 use crate::path::samples::Random;
@@ -262,6 +264,33 @@ fn the_ground_joins_nobody_and_holds_more_than_what_is_led() {
         for slot in [0, 1] {
             let velocity = velocity_at(&island.blocks[slot], random.point(2.0));
             assert!(velocity.norm() < 1e-12, "block {slot}: {velocity}");
+        }
+    }
+}
+
+/// What holds makes two bodies one; a spring between them leaves each what it has.
+#[test]
+fn springs_join_nobody() {
+    let finishes = [
+        (Finish::Hold { rate: 0.0 }, true),
+        (Finish::Limit, true),
+        (Finish::Spring, false),
+        (Finish::Nothing, false),
+    ];
+    for (finish, is_joined) in finishes {
+        let mut random = Random::new(7);
+        let members = vec![
+            rigid(&mut random, Vec2::new(0.0, 0.3)),
+            flexible(&mut random, Vec2::new(3.0, -0.2), false),
+        ];
+        let (mut island, start) = island_of(members);
+        join(&mut island, [0, 1]);
+        island.joints.ties[0].finish = finish;
+        let end = ended(&mut island);
+        for (before, after) in start.iter().zip(&end) {
+            let off = (0..3).map(|k| (after[k] - before[k]).abs());
+            let is_kept = off.fold(0.0, f64::max) < 1e-11 * (1.0 + before[3]);
+            assert_eq!(is_kept, !is_joined, "{finish:?}: {before:?}, {after:?}");
         }
     }
 }
