@@ -310,3 +310,42 @@ fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
     // What gives way is told, and is little.
     assert!(slipped > 0.0 && slipped < 1e-3, "{slipped:e} m of slip");
 }
+
+/// A turning paddle crushes a soft block against a wall, between its own end and the ground. That has no answer, and is told; what is tried for one has
+/// an end.
+#[test]
+fn what_is_crushed_costs_no_more_pivots_than_may_be_spent() {
+    let crush = |most: usize| {
+        let mut scene = Scene::new(1.0 / 30.0);
+        scene.flex.parameters.max_pivots = most;
+        scene.ground(0.5);
+        let wall = ColliderBuilder::cuboid(0.1, 1.0).translation(vec2(-3.3, 1.0));
+        scene.fixed(wall.friction(0.5));
+        let block = FlexBodyBuilder::rectangle([0.6, 0.2], [8, 3])
+            .material(elastic(5e4, 1000.0, 2e-3))
+            .friction(0.5)
+            .translation([-3.19, 0.0]);
+        scene.flexible(block);
+        let paddle = RigidBodyBuilder::kinematic_velocity_based()
+            .translation(vec2(-2.2, 0.62))
+            .angvel(0.5)
+            .linvel(vec2(-0.1, -0.05));
+        scene.rigid(paddle, ColliderBuilder::cuboid(0.5, 0.1).friction(0.5));
+        let (mut worst, mut n_unfinished) = (0, 0);
+        for _ in 0..240 {
+            let report = scene.try_step().expect("nothing is wrong with it");
+            worst = worst.max(report.n_pivots());
+            n_unfinished += usize::from(report.quality() == Quality::Unfinished);
+        }
+        (worst, n_unfinished)
+    };
+    let most = FlexPipeline::new().parameters.max_pivots;
+    let (worst, n_unfinished) = crush(most);
+    println!("{worst} pivots in the worst step, {n_unfinished} not finished");
+    assert!(n_unfinished > 0, "what is crushed is told");
+    // Parts that are left when the budget is spent end after a few passes each.
+    assert!(worst <= 2 * most, "{worst} pivots of {most}");
+    let (less, _) = crush(most / 10);
+    println!("{less} pivots with a tenth of the budget");
+    assert!(less < worst, "{less} pivots with a tenth of the budget");
+}

@@ -4,6 +4,8 @@
 mod common;
 #[path = "fast/crossing.rs"]
 mod crossing;
+#[path = "fast/falls.rs"]
+mod falls;
 #[path = "fast/range.rs"]
 mod range;
 #[path = "fast/shots.rs"]

@@ -256,3 +256,45 @@ fn friction_of_an_impact_acts_once_and_the_contact_forces_account_for_it() {
     }
     findings.report();
 }
+
+/// A spinning disc, or a capsule, and one that rests meet head-on in what is solved with a flexible body, and rub until they roll on each other: friction
+/// acts where they touch, on the surfaces of both.
+#[test]
+fn rigid_bodies_that_rub_on_each_other_turn_each_other_alike() {
+    let radius = 0.1;
+    let ball = || ColliderBuilder::ball(real(radius));
+    // Rounded, and as wide and as high as the ball, so that it touches at the same place.
+    let rounded = || ColliderBuilder::capsule_y(0.0, real(radius));
+    let shapes = [(ball(), ball()), (rounded(), ball()), (ball(), rounded())];
+    for (one, other) in shapes {
+        let mut scene = Scene::in_free_space(1.0 / 240.0);
+        // Whatever is within the box of a flexible ring is solved with it.
+        scene.flexible(FlexBodyBuilder::annulus(3.0, 3.3, 0.3).material(elastic(1e8, 1000.0, 0.0)));
+        let spin = 5.0;
+        let mut put = |shape: ColliderBuilder, side: f64, spin: f64| {
+            let body = RigidBodyBuilder::dynamic()
+                .translation(vec2(0.15 * side, 0.0))
+                .linvel(vec2(-side, 0.0))
+                .angvel(real(spin));
+            scene.rigid(body, shape.density(100.0).friction(10.0)).0
+        };
+        let bodies = [put(one, -1.0, spin), put(other, 1.0, 0.0)];
+        scene.steps(60);
+        let [first, second] = bodies.map(|body| {
+            let body = &scene.world.bodies[body];
+            [f64::from(body.linvel().y), f64::from(body.angvel())]
+        });
+        // No slip: `v₁ + r ω₁ = v₂ - r ω₂`, and the impulse `J` that does it gives each `J/m` and `r J/I = 2 J/(m r)`, one way: `J/m = r ω/6`.
+        let exact = [
+            [-radius * spin / 6.0, 2.0 / 3.0 * spin],
+            [radius * spin / 6.0, -spin / 3.0],
+        ];
+        for (found, exact) in [first, second].iter().zip(exact) {
+            let off = [0, 1].map(|i| (found[i] - exact[i]).abs());
+            assert!(
+                off[0] < 1e-3 * radius * spin && off[1] < 1e-3 * spin,
+                "{found:?} for {exact:?}"
+            );
+        }
+    }
+}

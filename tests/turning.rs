@@ -142,3 +142,48 @@ fn damping_does_not_brake_a_bar_that_swings_on_its_pin() {
         );
     }
 }
+
+/// A bar of large strain is welded to a hub that turns on a joint, far from gravity. A weld has more in it than what it carries: forces of its nodes
+/// that hold each other. They turn the hub as much as they turn the bar back where they act at the same places of it.
+#[test]
+fn a_weld_to_a_hub_neither_drives_nor_brakes_it() {
+    let (length, height, spin) = (1.0, 0.05, 3.0);
+    let mut scene = Scene::in_free_space(1.0 / 60.0);
+    let bar = FlexBodyBuilder::rectangle([length, height], [12, 2])
+        .material(elastic(1e9, 1000.0, 0.0))
+        .large_strain()
+        .translation([0.0, -0.5 * height])
+        .linvel([0.0, 0.5 * spin * length])
+        .angvel(spin);
+    let bar = scene.flexible(bar);
+    let inertia = MassProperties::new(vec2(0.0, 0.0), 0.1, 1e-3);
+    let hub = RigidBodyBuilder::dynamic()
+        .angvel(real(spin))
+        .additional_mass_properties(inertia);
+    let hub = scene.world.insert_body(hub);
+    let ground = scene.world.insert_body(RigidBodyBuilder::fixed());
+    let axle = RevoluteJointBuilder::new();
+    scene.world.insert_impulse_joint(ground, hub, axle);
+    let weld = AttachmentBuilder::weld(bar)
+        .where_(|[x, _]| x == 0.0)
+        .to_rigid_body(hub);
+    let weld = scene.bodies.attach(weld, &scene.world.bodies);
+    weld.expect("the hub is there");
+    let energy = |scene: &Scene| {
+        let own = scene.body(bar).energy();
+        own.kinetic + own.elastic + kinetic_of(&scene.world.bodies[hub])
+    };
+    let began = energy(&scene);
+    scene.step();
+    let turned = scene.report().angular_momentum();
+    for second in 1..=10 {
+        scene.steps(60);
+        let gained = energy(&scene) / began - 1.0;
+        let driven = scene.report().angular_momentum() / turned - 1.0;
+        // The hub's own pose is in rapier's precision.
+        assert!(
+            gained.abs() < 1e-4 && driven.abs() < 1e-4,
+            "{second} s: energy by {gained:.1e}, angular momentum by {driven:.1e}"
+        );
+    }
+}

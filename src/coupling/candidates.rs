@@ -93,7 +93,10 @@ pub(super) fn part_bounds(rigid: &RigidBlock, part: &PlacedPart) -> Bounds {
         let [low, high] = part.part.aabb(&world_pose(motion, part));
         Bounds { low, high }
     };
-    bounds(rigid.start()).merged(bounds(&rigid.drift()))
+    let [start, drift, pulled] = rigid.places();
+    bounds(&start)
+        .merged(bounds(&drift))
+        .merged(bounds(&pulled))
 }
 
 /// Adds the parts of a collider to the island; `offset` is the collider's pose about its body's centre of mass.
@@ -147,7 +150,7 @@ pub(super) fn flex_rigid(
         let Some(surface) = surface else {
             continue;
         };
-        let ends = [*motion.start(), motion.drift()];
+        let ends = motion.places();
         let part_name = (part - first_part) as u32;
         let boundary = body.model().mesh().boundary();
         let first_node = boundary.segments()[island.segments[segments.0] as usize][0];

@@ -104,7 +104,6 @@ impl Changes {
 
     /// Wakes sleepers beside which something was put or altered.
     pub fn wake_beside(&self, sets: &mut RapierSets<'_>, flex: &Roster, flex_bodies: &FlexBodySet) {
-        let dt = sets.integration_parameters.dt;
         let margin = sets.integration_parameters.prediction_distance();
         for (_, body) in flex_bodies.iter() {
             let surface = body.collider_handle();
@@ -116,7 +115,7 @@ impl Changes {
                 let other = sets.colliders.get(handle);
                 let other = other.filter(|other| !other.is_sensor());
                 other.is_some_and(|other| {
-                    let near = loosened(swept_box(sets.bodies, other, dt), margin);
+                    let near = loosened(swept_box(sets, other), margin);
                     near.intersects(&own)
                         && is_altered(sets, flex, handle)
                         && reaches(sets, surface, &near)

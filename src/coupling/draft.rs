@@ -56,6 +56,8 @@ pub(super) struct Draft {
     edges: Vec<[u32; 2]>,
     /// Radius by which a core with sharp corners is rounded (m).
     round: f64,
+    /// How deep what is drawn is under the surface that it stands for (m).
+    depth: f64,
     sharp: Vec<Vec2>,
     inset: Vec<Vec2>,
     place: Vec<u32>,
@@ -84,6 +86,7 @@ impl Draft {
             self.round = draw_inwards(&self.sharp, inwards, &mut self.inset);
             self.round
         };
+        self.depth = closing;
         let pairs = self.inset.iter().zip(&self.sharp).enumerate();
         let named = pairs.map(|(name, (arm, sharp))| (name as u32, *arm, sharp - arm));
         self.points.extend(named);
@@ -127,6 +130,7 @@ impl Draft {
                 let seen = motion.start().arm(guest.centre);
                 let along = perp(normal);
                 let foot = seen - normal * normal.dot(&(seen - origin)) - offset * normal;
+                self.depth = offset;
                 // Its material is on the left of the edge.
                 let far = FAR * guest.size * along;
                 self.points
@@ -170,7 +174,7 @@ impl Draft {
             block,
             &island.blocks,
             name,
-            self.round,
+            [self.round, self.depth],
             &self.points,
             &self.edges,
         )
@@ -180,12 +184,13 @@ impl Draft {
         self.points.clear();
         self.edges.clear();
         self.round = 0.0;
+        self.depth = 0.0;
     }
 }
 
 /// Box of arms of a block over the step.
 pub(super) fn swept(arms: impl Iterator<Item = Vec2>, motion: &RigidBlock) -> Option<Bounds> {
-    let ends = [*motion.start(), motion.drift()];
+    let ends = motion.places();
     let places = arms.flat_map(|arm| ends.map(|end| end.point(arm)));
     places
         .map(|place| Bounds::of(&[place]))

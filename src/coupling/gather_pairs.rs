@@ -101,7 +101,7 @@ impl PairGatherer {
                     placed.parts.clone(),
                     names,
                     law,
-                    own.edge + 2.0 * law.skin,
+                    own.edge + 2.0 * (own.fall + law.skin),
                 );
                 hook(
                     [own.collider, collider],
@@ -126,7 +126,8 @@ impl PairGatherer {
                     other: Owner::Flex(surface_of.index),
                 };
                 let mut law = law_of(sets.colliders, points_of.collider, surface_of.collider)?;
-                let edge = points_of.edge.max(surface_of.edge) + 2.0 * law.skin;
+                let edge = points_of.edge.max(surface_of.edge);
+                let edge = edge + 2.0 * (points_of.fall.max(surface_of.fall) + law.skin);
                 let colliders = [points_of.collider, surface_of.collider];
                 if settings.uses_path && !HookBook::asks(colliders, sets) {
                     match ways::flex_flex(

@@ -96,15 +96,26 @@ pub(super) fn travel_of(body: &RigidBody, dt: Real) -> Real {
     travel_vector(body, dt).length()
 }
 
-/// How far some point of a body goes in the step at most, by its turn as well (m).
-pub(super) fn reach_of(body: &RigidBody, colliders: &ColliderSet, dt: Real) -> Real {
+/// How far gravity takes a body in the step (m), from the velocity that it has.
+fn fall_of(body: &RigidBody, sets: &RapierSets<'_>) -> Vector {
+    if !body.is_dynamic() || body.is_sleeping() {
+        return Vector::ZERO;
+    }
+    let dt = sets.integration_parameters.dt;
+    sets.gravity * body.gravity_scale() * dt * dt
+}
+
+/// How far some point of a body goes in the step at most, by its turn and by gravity as well (m).
+pub(super) fn reach_of(body: &RigidBody, sets: &RapierSets<'_>) -> Real {
+    let dt = sets.integration_parameters.dt;
     let turn = turn_of(body, dt);
+    let goes = (travel_vector(body, dt) + fall_of(body, sets)).length();
     if turn == 0.0 {
-        return travel_of(body, dt);
+        return goes;
     }
     let own = body.colliders().iter();
     let swings = own
-        .filter_map(|&handle| colliders.get(handle))
+        .filter_map(|&handle| sets.colliders.get(handle))
         .map(|collider| {
             swing_of(
                 body,
@@ -112,7 +123,7 @@ pub(super) fn reach_of(body: &RigidBody, colliders: &ColliderSet, dt: Real) -> R
                 turn,
             )
         });
-    travel_of(body, dt) + swings.fold(0.0, Real::max)
+    goes + swings.fold(0.0, Real::max)
 }
 
 /// How far a body turns in the step (rad).
@@ -131,9 +142,10 @@ fn swing_of(body: &RigidBody, aabb: &Aabb, turn: Real) -> Real {
 }
 
 /// Box of a collider from where it is to where its body will be.
-pub(super) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) -> Aabb {
+pub(super) fn swept_box(sets: &RapierSets<'_>, collider: &Collider) -> Aabb {
     let skin = collider.contact_skin();
-    let Some(body) = collider.parent().and_then(|parent| bodies.get(parent)) else {
+    let parent = collider.parent();
+    let Some(body) = parent.and_then(|parent| sets.bodies.get(parent)) else {
         return loosened(collider.compute_aabb(), skin);
     };
     let aabb = collider.shape().compute_aabb(&placed_on(body, collider));
@@ -141,7 +153,9 @@ pub(super) fn swept_box(bodies: &RigidBodySet, collider: &Collider, dt: Real) ->
     if body.is_fixed() {
         return aabb;
     }
-    let to = foreseen(body, dt);
+    let dt = sets.integration_parameters.dt;
+    let mut to = foreseen(body, dt);
+    to.translation += fall_of(body, sets);
     let swing = swing_of(body, &aabb, turn_of(body, dt));
     let offset = collider.position_wrt_parent().copied().unwrap_or_default();
     let moved = loosened(collider.shape().compute_aabb(&(to * offset)), skin);

@@ -243,7 +243,9 @@ fn is_flat(found: &PairContacts, slope: f64) -> bool {
 
 /// How far a point of a block may move in the step (m).
 fn approach(block: &RigidBlock) -> f64 {
-    (block.drift().centre - block.start().centre).norm()
+    let [start, drift, pulled] = block.places();
+    let ways = [drift, pulled].map(|end| (end.centre - start.centre).norm());
+    ways[0].max(ways[1])
 }
 
 fn turn_of(block: &RigidBlock) -> f64 {

@@ -25,6 +25,8 @@ pub(crate) struct ClaimedFlex {
     pub travel: Real,
     /// Size of a boundary segment (m).
     pub edge: f64,
+    /// How far gravity takes it in the step (m), from the velocity that it has.
+    pub fall: f64,
     /// By how much the box is larger than where its velocity takes it (m).
     pub slack: Real,
     /// What it pushes; its surface in rapier pushes nothing.
@@ -47,6 +49,7 @@ impl ClaimedFlex {
             swept: loosened(swept, slack),
             travel: travel + recoil as Real,
             edge,
+            fall,
             slack,
             solver_groups: body.contact_settings().solver_groups,
         }
@@ -54,7 +57,7 @@ impl ClaimedFlex {
 
     /// How far around where its velocity takes it the body may get in the step (m).
     pub fn reach(&self) -> f64 {
-        self.edge + f64::from(self.travel)
+        self.edge + self.fall + f64::from(self.travel)
     }
 }
 

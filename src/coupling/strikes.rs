@@ -84,7 +84,7 @@ impl Strikes {
             if !moves || !collider.is_enabled() || collider.is_sensor() || flex.is_surface(handle) {
                 continue;
             }
-            let swept = swept_box(sets.bodies, collider, dt);
+            let swept = swept_box(sets, collider);
             let (way, turn) = (travel_vector(body, dt), turn_of(body, &swept, dt));
             // What is no number rapier takes out.
             if !(way.length() + turn).is_finite() || !swept.mins.is_finite() {
@@ -121,7 +121,6 @@ impl Strikes {
         let farthest = THROWN * self.hardest;
         if farthest > sets.integration_parameters.prediction_distance() {
             self.list_beside(&loosened(*around, farthest), sets, flex);
-            let dt = sets.integration_parameters.dt;
             for slot in 0..self.beside.len() {
                 let handle = self.beside[slot];
                 let Some(collider) = sets.colliders.get(handle) else {
@@ -130,7 +129,7 @@ impl Strikes {
                 let Some(body) = claimable_parent(sets, collider) else {
                     continue;
                 };
-                let away = apart(&swept_box(sets.bodies, collider, dt), around);
+                let away = apart(&swept_box(sets, collider), around);
                 // What moves into the box by itself is found without this; what sleeps there does not move before it is struck.
                 let sleeps = sets.bodies.get(body).is_some_and(RigidBody::is_sleeping);
                 let is_beside = away > 0.0 || sleeps;
@@ -228,7 +227,7 @@ impl Strikes {
         else {
             return 0.0;
         };
-        let swept = swept_box(sets.bodies, collider, dt);
+        let swept = swept_box(sets, collider);
         let way = travel_vector(struck, dt);
         let turn = turn_of(struck, &swept, dt);
         let mut blow: Real = 0.0;

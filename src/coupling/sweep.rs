@@ -55,7 +55,6 @@ impl Sweep {
         strikes: &mut Strikes,
     ) {
         self.hits.clear();
-        let dt = sets.integration_parameters.dt;
         self.farthest = farthest_travel(sets, flex);
         let dispatcher = sets.narrow_phase.query_dispatcher();
         let query = sets.broad_phase.as_query_pipeline(
@@ -71,7 +70,7 @@ impl Sweep {
             let mut visit = |handle: ColliderHandle, collider: &Collider| {
                 let other = match flex.slot_of(handle) {
                     Some(other) => flex[other].swept,
-                    None => swept_box(sets.bodies, collider, dt),
+                    None => swept_box(sets, collider),
                 };
                 if handle != own.collider && other.intersects(&own.swept) {
                     hits.push((index, handle));
@@ -122,7 +121,6 @@ impl Sweep {
 
     /// Lists what rapier's tree has near the flexible bodies; returns whether that is more than fixed colliders.
     fn meets_settled(&mut self, sets: &RapierSets<'_>, flex: &Roster) -> bool {
-        let dt = sets.integration_parameters.dt;
         let query = sets.broad_phase.as_query_pipeline(
             sets.narrow_phase.query_dispatcher(),
             sets.bodies,
@@ -133,9 +131,7 @@ impl Sweep {
         for (index, own) in flex.iter().enumerate() {
             let (mut meets_itself, mut needs) = (false, false);
             let mut visit = |handle: ColliderHandle, collider: &Collider| {
-                if !flex.is_surface(handle)
-                    && swept_box(sets.bodies, collider, dt).intersects(&own.swept)
-                {
+                if !flex.is_surface(handle) && swept_box(sets, collider).intersects(&own.swept) {
                     needs |= !is_fixed_and_settled(sets, collider);
                     hits.push((index, handle));
                 }
@@ -204,12 +200,11 @@ fn meets_unsettled(sets: &RapierSets<'_>, flex: &Roster, changes: &Changes) -> b
     let Some(around) = boxes.reduce(|one, other| one.merged(&other)) else {
         return false;
     };
-    let dt = sets.integration_parameters.dt;
     changes.unsettled(sets).any(|(handle, collider)| {
         if flex.is_surface(handle) {
             return false;
         }
-        let swept = swept_box(sets.bodies, collider, dt);
+        let swept = swept_box(sets, collider);
         // A box that is no number may be anywhere, and rapier must take it out first.
         let is_somewhere = swept.mins.is_finite() && swept.maxs.is_finite();
         let meets = |own: &ClaimedFlex| swept.intersects(&own.swept);
@@ -222,12 +217,11 @@ fn meets_unsettled(sets: &RapierSets<'_>, flex: &Roster, changes: &Changes) -> b
 
 /// How far the fastest body that is awake goes in the step (m), after the detection step.
 pub(super) fn farthest_travel(sets: &RapierSets<'_>, flex: &Roster) -> Real {
-    let dt = sets.integration_parameters.dt;
     let awake = sets.islands.active_bodies();
     awake
         .filter_map(|handle| sets.bodies.get(handle))
         .filter(|body| !body.is_fixed() && !body.is_sleeping())
-        .map(|body| reach_of(body, sets.colliders, dt))
+        .map(|body| reach_of(body, sets))
         .chain(flex.iter().map(|flex| flex.travel))
         .fold(0.0, Real::max)
 }

@@ -83,6 +83,10 @@ pub(crate) struct UnderWay {
     /// Multipliers of the last part.
     pub contacts: ContactMemory,
     pub joints: JointMemory,
+    /// Pivots of all that has been tried of the island's step.
+    n_pivots: usize,
+    /// Parts on end that were not finished, up to the last.
+    n_unfinished: usize,
 }
 
 impl UnderWay {
@@ -97,6 +101,30 @@ impl UnderWay {
         self.rigid.clear();
         self.contacts = ContactMemory::default();
         self.joints = JointMemory::default();
+        (self.n_pivots, self.n_unfinished) = (0, 0);
+    }
+
+    /// Pivots of all that has been tried of the island's step.
+    pub fn n_pivots(&self) -> usize {
+        self.n_pivots
+    }
+
+    /// Notes the pivots of what has been tried.
+    pub fn note_pivots(&mut self, n_pivots: usize) {
+        self.n_pivots += n_pivots;
+    }
+
+    /// Parts on end that were not finished, up to the last.
+    pub fn n_unfinished(&self) -> usize {
+        self.n_unfinished
+    }
+
+    /// Notes whether a part that is over was finished.
+    pub fn note_end(&mut self, is_finished: bool) {
+        self.n_unfinished = match is_finished {
+            true => 0,
+            false => self.n_unfinished + 1,
+        };
     }
 
     /// Keeps the motions that the step of the island begins with.

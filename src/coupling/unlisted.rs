@@ -97,7 +97,7 @@ impl Listed<'_> {
         (landing, out): (&Landing, Real),
         sets: &RapierSets<'_>,
     ) -> Aabb {
-        let swept = swept_box(sets.bodies, collider, sets.integration_parameters.dt);
+        let swept = swept_box(sets, collider);
         let skin = collider.contact_skin();
         let offset = collider.position_wrt_parent().copied().unwrap_or_default();
         let end = collider
@@ -146,7 +146,6 @@ impl Listed<'_> {
         answers: &mut Answers,
     ) -> bool {
         let is_member = |handle| travellers.iter().any(|one| one.collider == handle);
-        let dt = sets.integration_parameters.dt;
         let mut meets = |handle: ColliderHandle, other: &Collider| {
             if is_member(handle) {
                 return false;
@@ -156,7 +155,7 @@ impl Listed<'_> {
                     && answers.may_touch(sets, own.collider, handle);
             }
             let names = [own.collider, handle];
-            swept_box(sets.bodies, other, dt).intersects(&own.way)
+            swept_box(sets, other).intersects(&own.way)
                 && may_reach(&own.way, other, sets)
                 && !self.is_listed(names, own.out, sets)
                 && self.may_press(names, sets, answers)
@@ -241,8 +240,8 @@ impl Listed<'_> {
         out: Real,
         sets: &RapierSets<'_>,
     ) -> bool {
-        // Its box is where it was, grown by travel and slack; pieces are led that are as near as travel and edge.
-        let is_within = own.slack + out + known(self.excess, sets) <= own.edge as Real;
+        // Its box is where it was, grown by travel and slack; pieces are led that are as near as travel, edge and fall.
+        let is_within = own.slack + out + known(self.excess, sets) <= (own.edge + own.fall) as Real;
         let near = own.reach() as Real - known(self.excess, sets);
         is_within || self.were_near([own.collider, collider], near, sets)
     }

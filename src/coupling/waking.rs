@@ -32,7 +32,7 @@ pub(super) fn wake_met(
     }
     for (handle, collider) in changes.unsettled(sets) {
         if is_awake(sets, collider) && flex.slot_of(handle).is_none() {
-            let swept = swept_box(sets.bodies, collider, dt);
+            let swept = swept_box(sets, collider);
             let around = margin + excess;
             list_met(flex, sets, &loosened(swept, around), &mut woken);
         }

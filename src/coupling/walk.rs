@@ -149,7 +149,7 @@ impl Walk {
         let Some(collider) = sets.colliders.get(other) else {
             return;
         };
-        let swept = swept_box(sets.bodies, collider, sets.integration_parameters.dt);
+        let swept = swept_box(sets, collider);
         let swept = loosened(swept, map.sweep.driven(other));
         if !swept.intersects(&own.swept) || !own.solver_groups.test(collider.solver_groups()) {
             return;
@@ -210,8 +210,7 @@ fn list_near_rigid(
     let Some(collider) = sets.colliders.get(own) else {
         return;
     };
-    let dt = sets.integration_parameters.dt;
-    let swept = loosened(swept_box(sets.bodies, collider, dt), map.excess);
+    let swept = loosened(swept_box(sets, collider), map.excess);
     for (other, pair) in listed_with(sets, own) {
         let touches = pair
             .manifolds()
@@ -220,7 +219,7 @@ fn list_near_rigid(
         let is_near = sets
             .colliders
             .get(other)
-            .is_some_and(|collider| swept_box(sets.bodies, collider, dt).intersects(&swept));
+            .is_some_and(|collider| swept_box(sets, collider).intersects(&swept));
         if (touches || is_near) && !map.flex.is_surface(other) {
             near.push(other);
         }
@@ -245,7 +244,7 @@ fn list_sleepers(
     };
     let parameters = sets.integration_parameters;
     let around = map.excess + parameters.prediction_distance();
-    let swept = loosened(swept_box(sets.bodies, collider, parameters.dt), around);
+    let swept = loosened(swept_box(sets, collider), around);
     let listed = listed_with(sets, own).map(|(other, _)| other);
     touched.extend(
         listed.filter(|&other| map.flex.is_sleeping_surface(other) && reaches(sets, other, &swept)),
@@ -280,10 +279,9 @@ fn look_around(
     let Some(collider) = sets.colliders.get(own) else {
         return;
     };
-    let dt = sets.integration_parameters.dt;
     let farthest = map.sweep.farthest();
-    let swept = loosened(swept_box(sets.bodies, collider, dt), map.excess);
-    if reach_of(body, sets.colliders, dt) + farthest + map.excess
+    let swept = loosened(swept_box(sets, collider), map.excess);
+    if reach_of(body, sets) + farthest + map.excess
         <= sets.integration_parameters.prediction_distance()
     {
         return;
@@ -293,7 +291,7 @@ fn look_around(
         if handle != own
             && !map.flex.is_surface(handle)
             && other.parent() != collider.parent()
-            && swept_box(sets.bodies, other, dt).intersects(&swept)
+            && swept_box(sets, other).intersects(&swept)
         {
             near.push(handle);
         }

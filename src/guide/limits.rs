@@ -10,7 +10,8 @@
 //! - **Cost.** See: a step takes 1 to 6 times as long as with small strain, 1.8 times in the median of 100 random scenes. Do: take `small_strain` for what is stiff and bends by a few
 //!   percent.
 //! - **Crushed flat.** What is crushed flat at tens of metres a second may turn cells inside out (`StableNeoHookean`) or need its steps cut (`NeoHookean`, Hooke's law); crushed by nine
-//!   tenths of its size, a step may take a second, and some ten where something that is driven crushes it against a wall and a body hangs on it by a spring. See: [`Quality::Cut`](crate::pipeline::Quality::Cut), long steps. Do: take a stiffer material or shorter steps.
+//!   tenths of its size, or by something driven against a wall, a step may take half a second. See: [`Quality::Cut`](crate::pipeline::Quality::Cut), `Quality::Unfinished`, long steps. Do: take a stiffer material or shorter steps; a smaller
+//!   [`FlexParameters::max_pivots`] ends what cannot be solved sooner.
 //! - **Rolling.** What rolls or spins while it is pressed is braked, because contact forces act wholly within their step. See: a disc of rubber that rolls at 2 m/s loses 0.36 m/s in the first second at
 //!   1/60 s, 0.09 m/s at 1/240 s, and 0.05 m/s at 1/60 s with small strain. Do: shorten the step, or take `small_strain`.
 //! - **Plane stress** of Hooke's law: the thickness does not change as the body is stretched. Do: take `NeoHookeanSheet` or `MooneyRivlinSheet` where it matters. With Poisson's ratios from -0.5 down it
@@ -50,10 +51,8 @@
 //!   [`StepReport::slip_violation`].
 //! - **Put into each other**, bodies part by and by; where a surface passes right through another there may be no way out. See: [`StepReport::insertion_notes`] once, `gap_violation` until they are apart. Do: put them apart;
 //!   [`doctor::examine`](crate::doctor::examine) names them.
-//! - **Small things that fall.** Bodies of the size of `g dt²` (4 mm at 1/60 s, 1 to 4 cm at 1/20 s) may fall into each other by a fifth of their size and more, which is told a step late. Do: shorten the step.
 //! - **Platforms that accelerate.** What lies on a kinematic body slips on it by a part of `a dt²` in every step though friction would hold: at 3 m/s² and 1/60 s by up to 34 mm in a second with small strain, 9 mm with
 //!   large, 6 mm in rapier alone. Do: shorten the step.
-//! - **Positions of contacts** on what moves are those of the last pass's base, which may be where they were when the step began. Forces are not concerned.
 //! - **A surface that crosses itself** because its pins were put so passes through itself until it is apart. See: [`StepReport::self_crossing`]. Sensors do not meet themselves. Contacts of a body with itself are in [`StepReport::contacts`],
 //!   with the body on both sides, and make no events.
 //! - **Flung within a step.** What flies near a flexible body and is flung into it within rapier's own step, by a motor or a joint, is not foreseen. See: [`Quality::Unfinished`](crate::pipeline::Quality::Unfinished) in that step; it
@@ -82,8 +81,6 @@
 //! - **In contradiction**, joints and attachments are left open, and pins and welds hold their island as long as that lasts. See: [`StepReport::joint_violation`], `Quality::Cut`. Do: leave one of them out.
 //! - **Inside each other.** Rigid bodies that an impulse joint welds to each other, or pins at a point inside both by a millimetre or more, do not press each other where they are solved with flexible ones: contact would pull the joint open, as it does in rapier alone. Do: let links end at their joints, or say `contacts_enabled(false)`.
 //! - **Taut chains** sag by a hundredth of their length where they would have to be straight. See: [`StepReport::joint_violation`].
-//! - **Welded to a hub that turns.** A body of large strain that is welded, or pinned at two nodes, to a rigid body on a hinge gains energy as it turns: a bar that swings gains .3 % of what it swings with in a second
-//!   at 1/60 s, and one that spins freely at 3 rad/s .2 %. Do: pin it at one node, or in the builder.
 //! - **Sleep.** Attached bodies do not sleep.
 //! - **Carriers.** A joint to the rigid body that carries a flexible one is refused ([`StepError::CarrierJoint`](crate::pipeline::StepError::CarrierJoint)). Do: attach nodes, [`FlexBodySet::attach`](crate::body::FlexBodySet::attach).
 //!

@@ -126,6 +126,7 @@ impl FeasiblePath {
         self.carriers.push(Carrier {
             block,
             is_flex: true,
+            depth: round,
         });
         let edges = self.edges.iter().copied();
         self.surfaces
@@ -135,7 +136,7 @@ impl FeasiblePath {
     /// Adds a piece of a rigid block.
     ///
     /// - `name`: what its points' names are counted from.
-    /// - `round`: radius by which its core is rounded (m).
+    /// - `round`, `depth`: radius by which the corners of its core are rounded, and how deep that is under the surface (m).
     /// - `points`: names, arms from the centre of mass, and ways to the sharp corners that they stand for, in body axes (m).
     /// - `edges`: their ends among the points.
     pub(crate) fn rigid_member(
@@ -143,7 +144,7 @@ impl FeasiblePath {
         block: usize,
         blocks: &[Block],
         name: u32,
-        round: f64,
+        [round, depth]: [f64; 2],
         points: &[(u32, Vec2, Vec2)],
         edges: &[[u32; 2]],
     ) -> usize {
@@ -168,6 +169,7 @@ impl FeasiblePath {
         self.carriers.push(Carrier {
             block,
             is_flex: false,
+            depth,
         });
         let is_solid = edges.len() > 2 && edges.len() == points.len();
         let edges = edges.iter().copied();

@@ -156,7 +156,7 @@ mod tests {
             let blocks = &island.blocks;
             island
                 .path
-                .rigid_member(block, blocks, 0, 0.1, &centre, &[[0, 0]])
+                .rigid_member(block, blocks, 0, [0.1; 2], &centre, &[[0, 0]])
         });
         let way = Way {
             members,

@@ -11,7 +11,7 @@ pub use super::settings::{KktError, SolveSettings};
 use super::sparse::Sparse;
 use super::work::{self, JointWork, WorkGrips};
 use crate::constraint::contact::{Candidate, ContactKey, PlacedPart, Scene};
-use crate::math::HashMap;
+use crate::math::{HashMap, Vec2};
 use crate::system::Block;
 
 /// A set of blocks and candidates, and the buffers to solve them.
@@ -96,6 +96,14 @@ impl Island {
             end: &self.joints.end_grips,
         };
         work::joint_work(&self.blocks, &self.joints.ties, grips, settings.dt)
+    }
+
+    /// Where a contact is at the end of the step (m).
+    pub fn place_of(&self, contact: &ActiveContact) -> Vec2 {
+        match &contact.base {
+            Some(base) => self.path.place(&base.near, contact.gap(), &self.blocks),
+            None => contact.measured.position,
+        }
     }
 
     /// What plastic flow dissipates in the step, which is in the elastic energy of its end (J).

@@ -65,3 +65,4 @@ pub use momentum::LateForce;
 pub(crate) use momentum::late_forces;
 pub use settings::ImpactTreatment;
 pub use summary::IslandSummary;
+pub(crate) use tolerances::FEW_PASSES;

@@ -14,8 +14,8 @@ pub(super) const ANGLE_TOLERANCE: f64 = 1e-11;
 /// Share of the margin within which the laws hold where the contacts are many (-): a thousandth moves no force that counts.
 pub(super) const LARGE_TOLERANCE: f64 = 1e-3;
 
-/// Passes after which laws of many contacts need only hold to [`CLOSE_ENOUGH`].
-pub(super) const FEW_PASSES: usize = 6;
+/// Passes after which laws of many contacts need only hold to [`CLOSE_ENOUGH`], and passes of what has used up its budget.
+pub(crate) const FEW_PASSES: usize = 6;
 
 /// Share of its way's margin by which a true gap or slip may miss what the law asks for (-).
 pub(super) const CLOSE_ENOUGH: f64 = 0.05;

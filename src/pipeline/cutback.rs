@@ -43,7 +43,8 @@ impl Solver {
 
     /// Whether a part of the step of the island that was gathered, which has been cut `n_cuts` times, may be solved in halves. Links of
     /// multibodies move as rapier moves them, in one piece. What could not be finished in the steps before, as bodies that were put into each other
-    /// for good, is cut once less for each: it would not be finished in all the parts either, and cost their number.
+    /// for good, is cut once less for each, and for each of the last parts of this one: it would not be finished in all the parts either, and cost their
+    /// number. What has used up its pivots is not cut any more.
     pub(super) fn may_be_cut(
         &self,
         step: Step,
@@ -55,7 +56,7 @@ impl Solver {
         let most = most.saturating_sub(self.n_unfinished(flex_bodies));
         let is_long = 0.5 * step.dt >= SHORTEST;
         let has_links = !self.gatherer.seats.links().is_empty();
-        n_cuts < most && is_long && !step.is_explicit() && !has_links
+        n_cuts < most && !self.is_spent(parameters) && is_long && !step.is_explicit() && !has_links
     }
 
     /// Solves a part of the step, in halves if it is not solved in one piece.
@@ -116,6 +117,8 @@ impl Solver {
             }
             return Ok(Progress::Done);
         }
+        let is_finished = summary.quality() != Quality::Unfinished;
+        self.under_way.note_end(is_finished);
         let names = Names { sets, flex_bodies };
         self.enter_part((part, step), (&summary, reserve), (names, entry), books);
         if !part.span.is_last() {

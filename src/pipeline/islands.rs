@@ -11,7 +11,7 @@ use crate::body::{FlexBody, FlexBodySet};
 use crate::coupling::{
     Claims, FlexPool, GatherSettings, Gatherer, RapierSets, Sources, Span, UnderWay,
 };
-use crate::kkt::{Island, IslandSummary, SolveSettings};
+use crate::kkt::{FEW_PASSES, Island, IslandSummary, SolveSettings};
 use crate::system::{FlexBlock, Step};
 
 /// What the islands of a step are solved from.
@@ -172,7 +172,7 @@ impl Solver {
             .gather(sources, books.memory, flex_bodies, &mut self.island)?;
         books.clock.lap(&mut books.report.times.gather);
         let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters, flex_bodies);
-        let settings = settings_of(task, may_be_cut);
+        let settings = settings_of(task, [may_be_cut, self.is_spent(parameters)]);
         let before = self.reserve(flex_bodies);
         if may_be_cut && self.known_cuts.has(self.first_body(), part.span) {
             return Ok((IslandSummary::stopped(), [before; 2]));
@@ -198,6 +198,7 @@ impl Solver {
         if !(settings.may_be_cut && summary.is_unsolved()) {
             check_finite(&self.island, seats, flex_bodies)?;
         }
+        self.under_way.note_pivots(summary.n_pivots);
         books.clock.lap(&mut books.report.times.solve);
         Ok((summary, [before, reserve]))
     }
@@ -238,10 +239,16 @@ impl Solver {
         bodies.map(FlexBody::energy_reserve).sum()
     }
 
-    /// Steps on end that were not finished for any of the island's bodies.
+    /// Steps on end that were not finished for any of the island's bodies, and parts of this one.
     pub(super) fn n_unfinished(&self, flex_bodies: &FlexBodySet) -> usize {
         let bodies = self.flexible(flex_bodies);
-        bodies.map(FlexBody::n_unfinished).min().unwrap_or(0) as usize
+        let steps = bodies.map(FlexBody::n_unfinished).min().unwrap_or(0) as usize;
+        steps + self.under_way.n_unfinished()
+    }
+
+    /// Whether the step of the island has used up its pivots.
+    pub(super) fn is_spent(&self, parameters: &FlexParameters) -> bool {
+        self.under_way.n_pivots() > parameters.max_pivots
     }
 
     fn flexible<'a>(&self, flex_bodies: &'a FlexBodySet) -> impl Iterator<Item = &'a FlexBody> {
@@ -263,7 +270,7 @@ impl Solver {
     }
 }
 
-fn settings_of(task: Task<'_, '_>, may_be_cut: bool) -> SolveSettings {
+fn settings_of(task: Task<'_, '_>, [may_be_cut, is_spent]: [bool; 2]) -> SolveSettings {
     let Task {
         parameters,
         step,
@@ -286,7 +293,11 @@ fn settings_of(task: Task<'_, '_>, may_be_cut: bool) -> SolveSettings {
         contact: parameters.contact_method,
         solver: parameters.contact_solver,
         restitution_threshold: parameters.restitution_threshold,
-        max_newton: parameters.max_newton,
+        // What has used up its pivots goes on after a few passes.
+        max_newton: match is_spent {
+            true => parameters.max_newton.min(FEW_PASSES),
+            false => parameters.max_newton,
+        },
         may_be_cut,
         length_unit: f64::from(sets.integration_parameters.length_unit).abs(),
     }

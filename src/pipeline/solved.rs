@@ -58,7 +58,7 @@ impl SolvedPart<'_> {
         Some(PressedPoint {
             contactor: names.collider(key.contactor)?,
             target: names.collider(key.target)?,
-            position: contact.kinematics.position,
+            position: self.island.place_of(contact),
             normal: contact.kinematics.normal,
             gap: contact.gap(),
             force,
@@ -76,7 +76,7 @@ impl SolvedPart<'_> {
         let key = self.island.candidates[contact.candidate].key;
         let [normal_force, tangential_force] = self.force(contact);
         Some(ContactReport {
-            position: contact.kinematics.position.into(),
+            position: self.island.place_of(contact).into(),
             normal: contact.kinematics.normal.into(),
             gap: contact.gap(),
             normal_force,

@@ -179,6 +179,17 @@ impl RigidBlock {
         }
     }
 
+    /// Where the body may be within the step if nothing holds it: where it begins, where its velocity takes it, and where its load does besides.
+    pub fn places(&self) -> [RigidMotion; 3] {
+        let drift = self.drift();
+        let pull = |i: usize| self.dt * self.dt * self.inverse_mass[i] * self.force[i];
+        let pulled = RigidMotion {
+            centre: drift.centre + Vec2::new(pull(0), pull(1)),
+            ..drift
+        };
+        [self.start, drift, pulled]
+    }
+
     /// Whether the motion is given.
     pub fn is_prescribed(&self) -> bool {
         matches!(self.kind, Kind::Prescribed)

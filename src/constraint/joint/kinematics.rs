@@ -19,12 +19,16 @@ pub enum Measure {
 }
 
 /// When a row is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum When {
     /// At the beginning of the step.
     Start,
     /// At the current iterate of its end.
+    #[default]
     Now,
+    /// The mean of both: what acts there over the whole step exchanges angular momentum and, as the measured number changes by `G·(x' - x)`, no
+    /// energy. A flexible body knows its own middle; it is grasped where it is now.
+    Halfway,
 }
 
 /// One grip of a joint row.
@@ -64,6 +68,7 @@ impl JointGrip {
         match when {
             When::Start => block.start_position(self.point),
             When::Now => block.position(self.point),
+            When::Halfway => 0.5 * (block.start_position(self.point) + block.position(self.point)),
         }
     }
 
@@ -71,6 +76,9 @@ impl JointGrip {
         match (&blocks[self.block], when) {
             (Block::Rigid(block), When::Start) => block.start().angle,
             (Block::Rigid(block), When::Now) => block.current().angle,
+            (Block::Rigid(block), When::Halfway) => {
+                0.5 * (block.start().angle + block.current().angle)
+            }
             (Block::Flex(_), _) => 0.0,
         }
     }
@@ -78,6 +86,9 @@ impl JointGrip {
     fn centre(&self, blocks: &[Block], when: When) -> Vec2 {
         match (&blocks[self.block], when) {
             (Block::Rigid(block), When::Start) => block.start().centre,
+            (Block::Rigid(block), When::Halfway) => {
+                0.5 * (block.start().centre + block.current().centre)
+            }
             (block, _) => block.centre(),
         }
     }
@@ -132,6 +143,10 @@ impl Measure {
         };
         if !self.is_turn() {
             for grip in grips {
+                let when = match &blocks[grip.block] {
+                    Block::Rigid(_) => when,
+                    Block::Flex(_) => When::Now,
+                };
                 let point = common.unwrap_or_else(|| grip.position(blocks, when));
                 grip.lever = point - grip.centre(blocks, when);
             }

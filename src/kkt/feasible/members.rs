@@ -21,11 +21,12 @@ pub(crate) struct Way {
     pub reach: f64,
 }
 
-/// A member: its block, and whether that is flexible.
+/// A member: its block, whether that is flexible, and how deep its core is under its surface at most (m).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Carrier {
     pub block: usize,
     pub is_flex: bool,
+    pub depth: f64,
 }
 
 /// A point of a surface.

@@ -133,7 +133,7 @@ mod tests {
         let mut path = FeasiblePath::default();
         let none = Vec2::zeros();
         for block in 0..N_BODIES {
-            path.rigid_member(block, &blocks, 0, 0.0, &[(0, none, none)], &[]);
+            path.rigid_member(block, &blocks, 0, [0.0; 2], &[(0, none, none)], &[]);
         }
         path.rest(&blocks);
         (path, blocks)

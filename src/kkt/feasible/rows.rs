@@ -131,7 +131,7 @@ impl FeasiblePath {
         let position = if own.is_flex {
             self.at_base(own.block, self.points[near.point].point)
         } else {
-            point - (near.distance - self.rounding(near)) * near.normal + self.aside(near)
+            point - (near.distance - self.depth(near)) * near.normal + self.aside(near)
         };
         let lever = |carrier: Carrier| position - self.base[carrier.block].centre;
         let held = |carrier: Carrier, at: usize| {
@@ -163,18 +163,20 @@ impl FeasiblePath {
         }
     }
 
-    /// By how much the flexible surface that a rigid body meets has been drawn inwards (m).
-    fn rounding(&self, near: &NearPair) -> f64 {
-        let met = self.carriers[self.members_of(near)[1]];
-        let target = match near.target {
-            Target::Edge(edge) => self.surfaces.edges()[edge][0] as usize,
-            Target::Vertex(vertex) => vertex,
-        };
-        if met.is_flex {
-            self.points[target].round
-        } else {
-            0.0
+    /// Where a near pair of this gap (m) is, on its row at the base, with the blocks where they are now (m).
+    pub(in crate::kkt) fn place(&self, near: &NearPair, gap: f64, blocks: &[Block]) -> Vec2 {
+        let own = self.carriers[self.members_of(near)[0]];
+        let point = blocks[own.block].position(self.points[near.point].point);
+        if own.is_flex {
+            return point;
         }
+        let distance = gap + self.ways[near.pair].closing + self.corner(near);
+        point - (distance - self.depth(near)) * near.normal + self.aside(near)
+    }
+
+    /// How deep the target's core is under the surface that the point meets (m).
+    fn depth(&self, near: &NearPair) -> f64 {
+        self.carriers[self.members_of(near)[1]].depth
     }
 
     /// How much farther than their faces sharp corners reach along the normal (m), where the vertices of cores stand for them.

@@ -20,7 +20,7 @@ pub(super) use self::rows::add_wrench;
 use self::joined::Joined;
 use self::twist::Twists;
 use super::active_contact::ActiveContact;
-use crate::constraint::joint::{JointGrip, JointRow};
+use crate::constraint::joint::{JointGrip, JointRow, When};
 use crate::system::Block;
 
 /// The joints of an island.
@@ -44,6 +44,8 @@ pub struct Joints {
     answer: Vec<f64>,
     twists: Twists,
     joined: Joined,
+    /// Where in the step the forces of soft rows act.
+    acting: When,
 }
 
 /// Which rows the forces act along.

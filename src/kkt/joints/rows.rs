@@ -37,6 +37,11 @@ impl Joints {
             self.twists.relax(blocks);
         }
         self.ties.clear();
+        self.acting = if settings.is_within {
+            When::Halfway
+        } else {
+            When::Now
+        };
         self.joined.list(&[], &[]);
         if self.rows.is_empty() {
             return;
@@ -312,7 +317,7 @@ impl Joints {
             self.applied_grips[first..last].copy_from_slice(&self.grips[first..last]);
             tie.applied = tie.direction;
             let grips = &mut self.grips[first..last];
-            tie.direction = tie.row.sign * tie.row.measure.aim(blocks, grips, When::Now);
+            tie.direction = tie.row.sign * tie.row.measure.aim(blocks, grips, self.acting);
         }
     }
 }

@@ -48,7 +48,7 @@ impl Ridge {
             let points: Vec<_> = points.collect();
             let n = points.len() as u32;
             let edges: Vec<_> = (0..n).map(|a| [a, (a + 1) % n]).collect();
-            path.rigid_member(block, &blocks, 0, 0.0, &points, &edges)
+            path.rigid_member(block, &blocks, 0, [0.0; 2], &points, &edges)
         });
         let [wedge, roof] = members;
         let is_apart = path.add_way(Way {

@@ -27,8 +27,8 @@ fn over_valley(tip: Vec2, corner: Vec2, slopes: [f64; 2]) -> Option<FeasiblePath
     let ends = [-1.0, 0.0, 1.0].map(|x: f64| Vec2::new(x, x.abs() * slopes[usize::from(x > 0.0)]));
     let valley = [0, 1, 2].map(|name| (name, ends[name as usize], none));
     let mut path = FeasiblePath::default();
-    let one = path.rigid_member(0, &blocks, 0, ROUND, &spike, &[[0, 1]]);
-    let other = path.rigid_member(1, &blocks, 0, 0.0, &valley, &[[0, 1], [1, 2]]);
+    let one = path.rigid_member(0, &blocks, 0, [ROUND; 2], &spike, &[[0, 1]]);
+    let other = path.rigid_member(1, &blocks, 0, [0.0; 2], &valley, &[[0, 1], [1, 2]]);
     let is_added = path.add_way(Way {
         members: [one, other],
         owners: [Owner::Collider(0), Owner::Collider(1)],

@@ -41,7 +41,7 @@ fn wedge_on_roof(is_wedge_first: bool) -> Island {
             .collect();
         let n = points.len() as u32;
         let edges: Vec<_> = (0..n).map(|a| [a, (a + 1) % n]).collect();
-        path.rigid_member(block, &blocks, 0, 0.0, &points, &edges)
+        path.rigid_member(block, &blocks, 0, [0.0; 2], &points, &edges)
     });
     assert!(path.add_way(Way {
         members: if is_wedge_first {
