@@ -499,3 +499,132 @@ fn a_change_of_type_counts_from_the_next_step_on() {
     let y = f64::from(scene.world.bodies[body].translation().y);
     assert!((y - 0.25).abs() < 1e-3, "{y}");
 }
+
+/// A world with a flexible ring, pinned below, around everything: whatever is within its box is solved with it.
+fn within_a_ring(rate: f64, gravity: bool) -> Scene {
+    let mut scene = match gravity {
+        true => Scene::new(1.0 / rate),
+        false => Scene::in_free_space(1.0 / rate),
+    };
+    let ring = FlexBodyBuilder::annulus(8.0, 8.5, 0.8)
+        .material(elastic(1e8, 20.0, 0.0))
+        .pin_where(|[_, y]| y < 0.0, Pin::both())
+        .can_sleep(false);
+    scene.flexible(ring);
+    scene
+}
+
+/// What is round touches a sharp corner along the line to its centre. Without friction nothing turns it there, and between a corner at 30° from upright and
+/// a wall the forces are those of a wedge.
+#[test]
+fn a_round_body_between_a_corner_and_a_wall_rests_without_turning() {
+    let radius = 0.1;
+    let shapes = [
+        ColliderBuilder::ball(radius as _),
+        ColliderBuilder::capsule_y(0.1, radius as _),
+    ];
+    for (shape, up) in shapes.into_iter().zip([0.0, 0.1]) {
+        for half in [0.02, 0.1, 1.0] {
+            let mut scene = within_a_ring(60.0, true);
+            let corner = ColliderBuilder::cuboid(real(half), real(half))
+                .translation(vec2(0.0, -half * std::f64::consts::SQRT_2))
+                .rotation(real(std::f64::consts::FRAC_PI_4))
+                .friction(0.0);
+            let corner = scene.fixed(corner);
+            let wall = ColliderBuilder::cuboid(0.1, 1.0).translation(vec2(0.25, 0.0));
+            let wall = scene.fixed(wall.friction(0.0));
+            let at = [0.5 * radius, 0.75f64.sqrt() * radius];
+            let body = RigidBodyBuilder::dynamic().translation(vec2(at[0], at[1] + up));
+            let (ball, _) = scene.rigid(body, shape.clone().density(100.0).friction(0.0));
+            scene.steps(60);
+            let weight = scene.mass(ball) * G;
+            let body = &scene.world.bodies[ball];
+            let (spin, turn) = (f64::from(body.angvel()), turn_of(body));
+            assert!(
+                spin.abs() < 1e-3 && turn.abs() < 1e-3,
+                "{half} m: {spin} rad/s, {turn} rad"
+            );
+            let forces = [corner, wall].map(|collider| {
+                let [x, y] = scene.force_on_collider(collider);
+                x.hypot(y) / weight
+            });
+            let exact = [2.0 / 3f64.sqrt(), 1.0 / 3f64.sqrt()];
+            for (force, exact) in forces.into_iter().zip(exact) {
+                assert!((force - exact).abs() < 1e-3, "{half} m: {force} of {exact}");
+            }
+        }
+    }
+}
+
+/// A ball that rolls or slides to the edge of a box goes over it, and keeps its energy to the first order of the step.
+#[test]
+fn a_ball_rolls_over_an_edge() {
+    let radius = 0.1;
+    for (friction, speed) in [(0.0, 0.2), (0.0, 0.5), (1.0, 0.2), (1.0, 0.5)] {
+        let mut scene = within_a_ring(240.0, true);
+        let table = ColliderBuilder::cuboid(1.0, 1.0).translation(vec2(-1.0, -1.0));
+        scene.fixed(table.friction(real(friction)));
+        let spin = if friction > 0.0 { -speed / radius } else { 0.0 };
+        let body = RigidBodyBuilder::dynamic()
+            .translation(vec2(-0.05, radius))
+            .linvel(vec2(speed, 0.0))
+            .angvel(real(spin));
+        let shape = ColliderBuilder::ball(real(radius)).density(100.0);
+        let (ball, _) = scene.rigid(body, shape.friction(real(friction)));
+        let mass = scene.mass(ball);
+        let energy = |scene: &Scene| {
+            let body = &scene.world.bodies[ball];
+            kinetic_of(body) + mass * G * place_of(body)[1]
+        };
+        let began =
+            0.5 * mass * (speed * speed + 0.5 * (radius * spin).powi(2)) + mass * G * radius;
+        scene.steps(192);
+        let body = &scene.world.bodies[ball];
+        let (vx, spin) = (velocity_of(body)[0], f64::from(body.angvel()));
+        assert!(vx > speed, "{vx} m/s after {speed} m/s to the edge");
+        assert!(
+            friction > 0.0 || spin.abs() < 1e-3,
+            "{spin} rad/s without friction"
+        );
+        let gained = (energy(&scene) - began) / (mass * G * radius);
+        assert!(gained.abs() < 1e-2, "{gained} of m g r");
+    }
+}
+
+/// Compact bodies on long arms turn about their hinges, where they have all the inertia that a step needs: nothing is damped.
+#[test]
+fn a_body_on_a_hinge_keeps_its_energy() {
+    // A ball that whirls without gravity, and a box that swings from horizontal.
+    let whirl = (false, 1.0, 6.0, ColliderBuilder::ball(0.1));
+    let swing = (true, 3.0, 0.0, ColliderBuilder::cuboid(0.1, 0.1));
+    for (gravity, arm, spin, shape) in [whirl, swing] {
+        let mut scene = within_a_ring(60.0, gravity);
+        let ground = scene.world.insert_body(RigidBodyBuilder::fixed());
+        let body = RigidBodyBuilder::dynamic()
+            .translation(vec2(arm, 0.0))
+            .linvel(vec2(0.0, arm * spin))
+            .angvel(real(spin));
+        let (body, _) = scene.rigid(body, shape.density(100.0));
+        let hinge = RevoluteJointBuilder::new().local_anchor2(vec2(-arm, 0.0));
+        scene.world.insert_impulse_joint(ground, body, hinge);
+        let mass = scene.mass(body);
+        let whole = match gravity {
+            true => mass * G * arm,
+            false => 0.5 * mass * (arm * spin).powi(2),
+        };
+        let energy = |scene: &Scene| {
+            let body = &scene.world.bodies[body];
+            let potential = if gravity {
+                mass * G * place_of(body)[1]
+            } else {
+                0.0
+            };
+            kinetic_of(body) + potential
+        };
+        scene.step();
+        let began = energy(&scene);
+        scene.steps(360);
+        let change = (energy(&scene) - began) / whole;
+        assert!(change.abs() < 1e-4, "{change} of {whole} J");
+    }
+}

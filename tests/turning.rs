@@ -187,3 +187,50 @@ fn a_weld_to_a_hub_neither_drives_nor_brakes_it() {
         );
     }
 }
+
+/// A bar of small strain flies around on a spring from a hub that turns on a joint, in and out. What the spring gives and takes is no error of the joint:
+/// taken for one, it was taken out of the turning.
+#[test]
+fn a_spring_on_a_hub_does_not_brake_what_flies_around_on_it() {
+    let (length, height, spin) = (0.6, 0.05, 3.0);
+    let mut scene = Scene::in_free_space(1.0 / 60.0).with_integrator(Beta2::trapezoidal());
+    let inertia = MassProperties::new(vec2(0.0, 0.0), 5.0, 0.5);
+    let hub = RigidBodyBuilder::dynamic()
+        .angvel(real(spin))
+        .additional_mass_properties(inertia);
+    let hub = scene.world.insert_body(hub);
+    let ground = scene.world.insert_body(RigidBodyBuilder::fixed());
+    scene
+        .world
+        .insert_impulse_joint(ground, hub, RevoluteJointBuilder::new());
+    let bar = FlexBodyBuilder::rectangle([length, height], [8, 2])
+        .material(elastic(1e9, 1000.0, 0.0))
+        .small_strain()
+        .translation([0.3, -0.5 * height])
+        .linvel([0.0, spin * (0.3 + 0.5 * length)])
+        .angvel(spin);
+    let bar = scene.flexible(bar);
+    let at_end = move |[x, y]: [f64; 2]| x == 0.0 && (y - 0.5 * height).abs() < 1e-9;
+    let spring = AttachmentBuilder::spring_damper(bar, 2000.0, 0.0)
+        .where_(at_end)
+        .at_point([0.25, 0.0])
+        .to_rigid_body(hub);
+    let spring = scene.bodies.attach(spring, &scene.world.bodies);
+    spring.expect("the hub is there");
+    scene.step();
+    let began = scene.report().angular_momentum();
+    let mut farthest = 0.0f64;
+    for second in 1..=5 {
+        for _ in 0..60 {
+            scene.step();
+            let [x, y] = scene.body(bar).centre_of_mass();
+            farthest = farthest.max(x.hypot(y));
+        }
+        let left = scene.report().angular_momentum() / began;
+        assert!(
+            (left - 1.0).abs() < 2e-3,
+            "{left} of its angular momentum after {second} s"
+        );
+    }
+    assert!(farthest > 0.7, "it swings out to {farthest} m");
+}

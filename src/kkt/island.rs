@@ -95,7 +95,12 @@ impl Island {
             start: &self.joints.grips,
             end: &self.joints.end_grips,
         };
-        work::joint_work(&self.blocks, &self.joints.ties, grips, settings.dt)
+        work::joint_work(
+            &self.blocks,
+            &self.joints.ties,
+            grips,
+            [settings.dt, settings.b1],
+        )
     }
 
     /// Where a contact is at the end of the step (m).

@@ -2,7 +2,7 @@
 
 use super::active_contact::ActiveContact;
 use super::joints::{ActiveJoint, add_wrench};
-use crate::constraint::joint::{JointGrip, JointLaw, unit_wrench};
+use crate::constraint::joint::{JointGrip, JointLaw, When, unit_wrench};
 use crate::math::Vec2;
 use crate::system::{Balance, Block, FlexBlock, RigidBlock, RigidMotion};
 
@@ -99,17 +99,19 @@ pub(super) struct JointWork {
 }
 
 /// Sums up the work of the joint rows over the step, from their grips at its beginning and at its end.
+///
+/// - `weights`: the length of the step, and the Beta-2 weight `b1` (s).
 pub(super) fn joint_work(
     blocks: &[Block],
     ties: &[ActiveJoint],
     grips: WorkGrips<'_>,
-    dt: f64,
+    weights: [f64; 2],
 ) -> JointWork {
     let is_driven =
         |grip: &JointGrip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_driven());
     let mut sum = JointWork::default();
     for tie in ties {
-        let work = work_of(blocks, tie, grips, dt);
+        let work = work_of(blocks, tie, grips, weights);
         sum.all += work;
         let own = &grips.start[tie.row.grips.0..tie.row.grips.1];
         if tie.is_hard && !tie.moves_apart() && !own.iter().any(is_driven) {
@@ -124,13 +126,18 @@ pub(super) fn joint_work(
 }
 
 /// Work of a joint row on what is not driven from outside (J).
-fn work_of(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, dt: f64) -> f64 {
+fn work_of(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, [dt, b1]: [f64; 2]) -> f64 {
     if tie.moves_apart() {
         // Ends that are drawn together, or left apart, move against each other: work is what the driven ones do.
         return -driven_work(blocks, tie, grips.start, dt);
     }
     let is_turn = tie.row.measure.is_turn();
     let (first, last) = tie.row.grips;
+    // The part of the last step's force that acts on in this one, for the part of this one's that acts in the next.
+    let began =
+        tie.row.sign * (tie.row.measure).direction(blocks, &grips.start[first..last], When::Start);
+    let [before, after] = [tie.row.last_multiplier(), tie.left_behind().multiplier];
+    let late = (1.0 - b1 / dt) * (before * began - after * tie.direction);
     let works = (first..last).map(|at| {
         let grip = &grips.start[at];
         match &blocks[grip.block] {
@@ -145,8 +152,8 @@ fn work_of(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, dt: f64) -
             }
             block => {
                 let moved = block.position(grip.point) - block.start_position(grip.point);
-                let force = tie.force(dt) * tie.row.sign;
-                force * grip.weight * tie.direction.dot(&moved)
+                let acts = tie.force(dt) * tie.row.sign * tie.direction + late;
+                grip.weight * acts.dot(&moved)
             }
         }
     });

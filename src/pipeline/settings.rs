@@ -45,7 +45,7 @@ pub struct FlexParameters {
     /// The same of an island with bodies of large strain, whose equations get easier with every cut; 5 by default. A step after which such a
     /// body might be in more places than one is cut at once.
     pub max_cutbacks_large: usize,
-    /// Pivots of dense problems after which the step of an island is not cut any more, and its parts go on after a few passes each; 2000 by
+    /// Pivots of dense problems after which the step of an island is not cut any more, and its parts go on after a few passes each; 5000 by
     /// default. What can be solved takes some hundreds ([`StepReport::n_pivots`](super::StepReport::n_pivots)); what is crushed between driven bodies would take tens of thousands,
     /// and not be solved.
     pub max_pivots: usize,
@@ -72,7 +72,7 @@ impl Default for FlexParameters {
             max_newton: 20,
             max_cutbacks: 3,
             max_cutbacks_large: 5,
-            max_pivots: 2000,
+            max_pivots: 5000,
             feasible_path: true,
             insists: false,
             refuses_unsolved: false,

@@ -121,13 +121,9 @@ impl Measure {
         }
     }
 
-    /// The direction of the row's forces; its levers are written to the grips. A turn has `[1, 0]`, of which only the sign counts.
-    pub fn aim(&self, blocks: &[Block], grips: &mut [JointGrip], when: When) -> Vec2 {
-        let common = match self {
-            Self::Axis(_) => grips.last().map(|last| last.position(blocks, when)),
-            _ => None,
-        };
-        let direction = match *self {
+    /// The direction of the row's forces. A turn has `[1, 0]`, of which only the sign counts.
+    pub fn direction(&self, blocks: &[Block], grips: &[JointGrip], when: When) -> Vec2 {
+        match *self {
             Self::Along(direction) => direction,
             Self::Axis(axis) => turned(axis, blocks, grips, when),
             Self::Distance => {
@@ -140,6 +136,15 @@ impl Measure {
                 }
             }
             Self::Turn(_) => Vec2::new(1.0, 0.0),
+        }
+    }
+
+    /// The direction of the row's forces; its levers are written to the grips.
+    pub fn aim(&self, blocks: &[Block], grips: &mut [JointGrip], when: When) -> Vec2 {
+        let direction = self.direction(blocks, grips, when);
+        let common = match self {
+            Self::Axis(_) => grips.last().map(|last| last.position(blocks, when)),
+            _ => None,
         };
         if !self.is_turn() {
             for grip in grips {

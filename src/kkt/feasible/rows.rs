@@ -2,7 +2,7 @@
 
 use super::{Carrier, FeasiblePath};
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
-use crate::math::{Vec2, node_vec, perp};
+use crate::math::{Vec2, cross, node_vec, perp};
 use crate::path::{NearPair, Target, add_beyond};
 use crate::system::{Block, Grip, Point};
 
@@ -11,6 +11,16 @@ use crate::system::{Block, Grip, Point};
 /// Names of points are counted through a body or a collider: with the bit that tells edges from vertices they stay below this mark and that of
 /// meetings until one has 2^29 points.
 const PATH_NAMES: u32 = 1 << 31;
+
+/// How what is round meets a sharp corner.
+struct Around {
+    /// Gap beyond the distance at which they close (m).
+    gap: f64,
+    /// Normal from the target to the point.
+    normal: Vec2,
+    /// Where they touch, on the target's surface (m).
+    position: Vec2,
+}
 
 impl FeasiblePath {
     /// Lists what is near at the base, a sharp corner from its tip on.
@@ -127,9 +137,12 @@ impl FeasiblePath {
         let way = &self.ways[near.pair];
         let [own, met] = self.members_of(near).map(|member| self.carriers[member]);
         let point = self.surfaces.points()[near.point];
+        let around = self.around_corner(near, |at| self.surfaces.points()[at]);
         // Forces act on the surface of a flexible body: at the point's own, or where the target's is met.
         let position = if own.is_flex {
             self.at_base(own.block, self.points[near.point].point)
+        } else if let Some(around) = &around {
+            around.position
         } else {
             point - (near.distance - self.depth(near)) * near.normal + self.aside(near)
         };
@@ -142,9 +155,12 @@ impl FeasiblePath {
             }
         };
         let first = (own.block, held(own, near.point), 1.0, lever(own));
-        let gap = near.distance - way.closing - self.corner(near);
+        let (gap, normal) = match &around {
+            Some(around) => (around.gap, around.normal),
+            None => (near.distance - way.closing - self.corner(near), near.normal),
+        };
         let target = |at: usize, weight: f64| (met.block, held(met, at), weight, lever(met));
-        let row = |grips: &[_]| Kinematics::with_levers(gap, near.normal, position, grips);
+        let row = |grips: &[_]| Kinematics::with_levers(gap, normal, position, grips);
         match near.target {
             Target::Edge(edge) if met.is_flex => {
                 let [from, to] = self.surfaces.edges()[edge].map(|end| end as usize);
@@ -165,13 +181,64 @@ impl FeasiblePath {
 
     /// Where a near pair of this gap (m) is, on its row at the base, with the blocks where they are now (m).
     pub(in crate::kkt) fn place(&self, near: &NearPair, gap: f64, blocks: &[Block]) -> Vec2 {
-        let own = self.carriers[self.members_of(near)[0]];
+        let members = self.members_of(near).map(|member| self.carriers[member]);
+        let own = members[0];
         let point = blocks[own.block].position(self.points[near.point].point);
         if own.is_flex {
             return point;
         }
+        let now = |at: usize| {
+            let side = usize::from(at != near.point);
+            blocks[members[side].block].position(self.points[at].point)
+        };
+        if let Some(around) = self.around_corner(near, now) {
+            return around.position;
+        }
         let distance = gap + self.ways[near.pair].closing + self.corner(near);
         point - (distance - self.depth(near)) * near.normal + self.aside(near)
+    }
+
+    /// What is round and a sharp corner of rigid bodies, whose cores' vertices are near at these places (m); `None` of other pairs.
+    ///
+    /// What is round touches the corner along the line to its centre, which is not the one to the core's vertex; beside the corner it touches the faces,
+    /// whose normals are those on which the corner stands out by the rounding.
+    fn around_corner(&self, near: &NearPair, place: impl Fn(usize) -> Vec2) -> Option<Around> {
+        let Target::Vertex(vertex) = near.target else {
+            return None;
+        };
+        let members = self.members_of(near).map(|member| self.carriers[member]);
+        let ends = [near.point, vertex];
+        let rounds = ends.map(|end| self.points[end].round);
+        let sharp = match rounds.map(|round| round > 0.0) {
+            [true, false] => 0,
+            [false, true] => 1,
+            _ => return None,
+        };
+        if members.iter().any(|member| member.is_flex) {
+            return None;
+        }
+        let corner = self.base[members[sharp].block].axes() * self.points[ends[sharp]].corner;
+        let outward = corner / corner.norm();
+        let centre = place(ends[1 - sharp]);
+        let away = centre - (place(ends[sharp]) + corner);
+        let cos = (rounds[sharp] / corner.norm()).min(1.0);
+        let along = outward.dot(&away);
+        if along.is_nan() || along <= 0.0 {
+            return None;
+        }
+        let normal = if along >= cos * away.norm() {
+            away.normalize()
+        } else {
+            let side = cross(outward, away).signum();
+            cos * outward + side * (1.0 - cos * cos).sqrt() * perp(outward)
+        };
+        let span = normal.dot(&away);
+        let of_round = if sharp == 0 { members[1].depth } else { span };
+        Some(Around {
+            gap: span + rounds[sharp] - self.ways[near.pair].closing,
+            normal: if sharp == 0 { -normal } else { normal },
+            position: centre - of_round * normal,
+        })
     }
 
     /// How deep the target's core is under the surface that the point meets (m).

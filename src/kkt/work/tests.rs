@@ -57,7 +57,12 @@ impl Joined {
             start: &self.island.joints.grips,
             end: &self.ends,
         };
-        joint_work(&self.island.blocks, &self.island.joints.ties, grips, DT)
+        joint_work(
+            &self.island.blocks,
+            &self.island.joints.ties,
+            grips,
+            [DT; 2],
+        )
     }
 
     fn gained(&self) -> f64 {
