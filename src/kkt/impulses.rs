@@ -149,14 +149,14 @@ fn solve_impulses_once(island: &mut Island, of: Response, dt: f64) -> Result<(),
     Ok(())
 }
 
-/// Lets the friction of rigid bodies that began in each other, and stuck, hold with what its position stage had: forces that press overlaps apart
+/// Lets the friction of rigid bodies that began in each other hold with what its position stage had: forces that press overlaps apart
 /// wedge bodies with each other, and velocities know nothing of these. Such bodies would fall while they stand.
 ///
 /// - `unit`: what forces act for (s), or 1 if forces are asked for.
 fn hold_wedged(island: &mut Island, unit: f64) {
     for (row, direction) in island.problem.rows.iter().enumerate() {
         let contact = &island.contacts[direction.contact];
-        let is_wedged = contact.is_parting() && contact.status[1] == Status::Stick;
+        let is_wedged = contact.is_parting() && contact.status[1] != Status::Open;
         if let (RowKind::Friction { coefficient, .. }, true) =
             (island.problem.kinds[row], is_wedged)
         {

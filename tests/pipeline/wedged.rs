@@ -38,6 +38,11 @@ fn a_box_that_is_wedged_between_two_walls_rests_there() {
         (0.004, 0.2),
         (0.001, 0.1),
         (0.01, -0.03),
+        (0.006, 0.02),
+        (0.007, 0.03),
+        (0.004, 0.015),
+        (0.009, 0.01),
+        (0.012, 0.04),
     ];
     for (overlap, tilt) in cases {
         let (mut scene, block) = bin(0.2 - overlap, [0.3, 0.2], 0.47);
@@ -47,7 +52,7 @@ fn a_box_that_is_wedged_between_two_walls_rests_there() {
         let shape = ColliderBuilder::cuboid(0.2, 0.2).density(500.0);
         let (wedged, _) = scene.world.insert(wedged, shape.friction(0.5));
         let name = format!("{overlap} m, {tilt} rad");
-        let (mut n_passes, mut n_moving) = (0, 0);
+        let mut n_passes = 0;
         for step in 0..120 {
             scene.step();
             assert_eq!(scene.report().quality(), Quality::Solved, "{name}, {step}");
@@ -59,19 +64,8 @@ fn a_box_that_is_wedged_between_two_walls_rests_there() {
                 place.x.abs() < 0.02 && (0.19..0.23).contains(&place.y),
                 "{name}, {step}: {place:?}"
             );
-            // One case gives way in a step or two, by what it falls in one.
-            assert!(
-                step < 60 || f64::from(speed) < 1.1 * G / 60.0,
-                "{name}, {step}: {speed} m/s"
-            );
-            n_moving += usize::from(step >= 60 && speed > 0.05);
+            assert!(step < 60 || speed < 0.05, "{name}, {step}: {speed} m/s");
         }
-        let most = if (overlap, tilt) == (0.008, 0.01) {
-            2
-        } else {
-            0
-        };
-        assert!(n_moving <= most, "{name}: moves in {n_moving} of 60 steps");
         assert!(n_passes < 120 * 4, "{name}: {n_passes} passes");
         let top = f64::from(scene.world.bodies[wedged].translation().y) + 0.2;
         let carried = scene.body(block).total_contact_force()[1];
