@@ -106,6 +106,7 @@
 //!
 //! [`FlexBody::contact_offset`]: crate::body::FlexBody::contact_offset
 //! [`FlexParameters::feasible_path`]: crate::pipeline::FlexParameters::feasible_path
+//! [`FlexParameters::max_pivots`]: crate::pipeline::FlexParameters::max_pivots
 //! [`StepReport::contacts`]: crate::pipeline::StepReport::contacts
 //! [`StepReport::gap_violation`]: crate::pipeline::StepReport::gap_violation
 //! [`StepReport::insertion_notes`]: crate::pipeline::StepReport::insertion_notes
