@@ -66,7 +66,7 @@ fn a_box_that_is_wedged_between_two_walls_rests_there() {
             );
             assert!(step < 60 || speed < 0.05, "{name}, {step}: {speed} m/s");
         }
-        // Three or four a step; 507 in one case of the f64 build.
+        // Two to four a step, 507 in the case of .01 m and .1 rad.
         assert!(n_passes < 120 * 5, "{name}: {n_passes} passes");
         let top = f64::from(scene.world.bodies[wedged].translation().y) + 0.2;
         let carried = scene.body(block).total_contact_force()[1];
