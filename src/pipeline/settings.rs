@@ -46,7 +46,7 @@ pub struct FlexParameters {
     /// body might be in more places than one is cut at once.
     pub max_cutbacks_large: usize,
     /// Pivots of dense problems after which the step of an island is not cut any more, and its parts go on after a few passes each; 5000 by
-    /// default. What can be solved takes some hundreds ([`StepReport::n_pivots`](super::StepReport::n_pivots)); what is crushed between driven bodies would take tens of thousands,
+    /// default. What can be solved takes some hundreds, seldom thousands ([`StepReport::n_pivots`](super::StepReport::n_pivots)); what is crushed between driven bodies would take tens of thousands,
     /// and not be solved.
     pub max_pivots: usize,
     /// Whether implicit steps with Lagrange multipliers lead the surfaces of bodies along a *feasible path*; yes by default.

@@ -121,14 +121,22 @@ impl Measure {
         }
     }
 
-    /// The direction of the row's forces. A turn has `[1, 0]`, of which only the sign counts.
+    /// The direction of the row's forces: of length one but for a distance over the whole step, whose change it gives,
+    /// `|d'| - |d| = (d' + d)·(d' - d) / (|d'| + |d|)`. A turn has `[1, 0]`, of which only the sign counts.
     pub fn direction(&self, blocks: &[Block], grips: &[JointGrip], when: When) -> Vec2 {
         match *self {
             Self::Along(direction) => direction,
             Self::Axis(axis) => turned(axis, blocks, grips, when),
             Self::Distance => {
                 let apart = separation(blocks, grips, when);
-                let length = apart.norm();
+                let length = match when {
+                    When::Start | When::Now => apart.norm(),
+                    When::Halfway => {
+                        let ends = [When::Start, When::Now];
+                        let lengths = ends.map(|end| separation(blocks, grips, end).norm());
+                        0.5 * (lengths[0] + lengths[1])
+                    }
+                };
                 if length > NO_LENGTH {
                     apart / length
                 } else {

@@ -19,7 +19,8 @@ const RESOLVED: f64 = 1.0;
 pub(super) struct Twists {
     /// Stiffness by the joints' forces, by block (N m/rad), then the torque that it made (N m).
     twists: Vec<f64>,
-    /// Square of the distance to the farthest hinge that does not give way, by block (m²).
+    /// Inertia per mass that a block has besides its own where rows hold it to what does not give way: how far its centre goes by its turn, squared
+    /// and summed up over the rows (m²).
     arms: Vec<f64>,
 }
 
@@ -56,11 +57,11 @@ impl Twists {
                 let holds = matches!(tie.row.law, JointLaw::Rigid { .. });
                 let stays = holds && own.iter().any(is_given);
                 for grip in own {
-                    let [x, y, _] = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
+                    let is_turn = tie.row.measure.is_turn();
+                    let [x, y, couple] = unit_wrench(grip, tie.direction, is_turn);
                     self.twists[grip.block] += force * (grip.lever.x * x + grip.lever.y * y);
-                    if stays {
-                        let arm = &mut self.arms[grip.block];
-                        *arm = arm.max(grip.lever.norm_squared());
+                    if stays && !is_turn {
+                        self.arms[grip.block] += couple * couple;
                     }
                 }
             }
