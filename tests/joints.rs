@@ -59,3 +59,6 @@ mod inside;
 
 #[path = "joints/sandwich.rs"]
 mod sandwich;
+
+#[path = "joints/jumps.rs"]
+mod jumps;

@@ -2,6 +2,9 @@
 
 mod common;
 
+#[path = "restitution/hits.rs"]
+mod hits;
+
 use CoefficientCombineRule::{Average, Max, Min, Multiply};
 use common::*;
 

@@ -26,6 +26,8 @@ pub struct ActiveContact {
     pub(super) settled: [f64; 2],
     /// Relative velocity along the normal and the tangent after the velocity stage (m/s).
     pub(super) parting: [f64; 2],
+    /// Velocity at the end of the step of a hit that goes on within it (m/s).
+    pub(super) rebound: Option<f64>,
     /// Status of the normal and of the friction row.
     pub status: [Status; 2],
     /// Whether it is one of rigid bodies only.

@@ -110,12 +110,15 @@ pub(super) fn closes(island: &Island) -> bool {
     island.joints.ties.iter().any(|tie| tie.closing != 0.0)
 }
 
-/// Elastic energy that closing has stored: who has put ends apart has brought it (J).
+/// Elastic energy that closing has stored, no more than its forces have done on their way: who has put ends apart has brought it (J).
 pub(super) fn stretched_by_closing(island: &Island, summary: &IslandSummary) -> f64 {
-    match closes(island) {
-        true => (summary.end_energy[1] - summary.start_energy[1]).max(0.0),
-        false => 0.0,
-    }
+    let ties = island.joints.ties.iter().filter(|tie| tie.closing != 0.0);
+    let works = ties.map(|tie| {
+        let force = tie.multiplier.abs().max(tie.row.last_multiplier().abs());
+        force * tie.closing.abs()
+    });
+    let stored = summary.end_energy[1] - summary.start_energy[1];
+    stored.min(works.sum()).max(0.0)
 }
 
 fn solve_closings(island: &mut Island, settings: &SolveSettings) -> Result<(), KktError> {

@@ -21,10 +21,10 @@ pub(super) fn velocity_rows(
         let law = island.candidates[contact.candidate].law;
         let rebound = law.rebound(contact.approach, settings.restitution_threshold);
         // A resolved impact rebounds by its elasticity.
-        let rebound = if contact.is_hard {
-            rebound
-        } else {
-            contact.rigid * rebound
+        let rebound = match contact.rebound {
+            Some(at_end) => at_end,
+            None if contact.is_hard => rebound,
+            None => contact.rigid * rebound,
         };
         contact.parting = [rebound, 0.0];
         let row = &contact.kinematics;
@@ -186,18 +186,23 @@ pub(super) fn list_acted(island: &mut Island, scale: f64) {
 /// Leaves impulses and the velocities of rows after them on the contacts.
 pub(super) fn read_impulses(island: &mut Island) {
     for (row, direction) in island.problem.rows.iter().enumerate() {
-        let softened = island.problem.free[row] + island.problem.responses[row];
+        let change = change_of(island, row);
         let contact = &mut island.contacts[direction.contact];
-        let impulse = island.problem.multipliers[row];
-        let share = if contact.is_hard {
-            1.0
-        } else {
-            contact.holds_velocity().max(rounding::SUM)
-        };
-        contact.parting[direction.axis] +=
-            softened - (1.0 - share) * island.problem.diagonals[row] * impulse;
-        contact.impulse[direction.axis] = impulse;
+        contact.parting[direction.axis] += island.problem.free[row] + change;
+        contact.impulse[direction.axis] = island.problem.multipliers[row];
     }
+}
+
+/// What impulses have changed the velocity of a row by (m/s).
+pub(super) fn change_of(island: &Island, row: usize) -> f64 {
+    let contact = &island.contacts[island.problem.rows[row].contact];
+    let share = if contact.is_hard {
+        1.0
+    } else {
+        contact.holds_velocity().max(rounding::SUM)
+    };
+    let impulse = island.problem.multipliers[row];
+    island.problem.responses[row] - (1.0 - share) * island.problem.diagonals[row] * impulse
 }
 
 /// Weights soft rows: `W_ii (1 - φ)/φ` on the diagonal lets a resolved contact keep its velocity.

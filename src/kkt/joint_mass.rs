@@ -5,9 +5,9 @@
 //! leaves the others alone is that of the masses, `Δv = M⁻¹ Gᵀ P`, and it can only take energy. With `A⁻¹ = (M + b0 K + ..)⁻¹` in its place
 //! the whole body would answer for what its node alone does too fast, and a vibration that the step does not resolve would grow by it.
 //!
-//! Two things are shorter than the step, and are answered by all of the body, `A⁻¹`: jumps of the motion that drives a joint, and impacts of rigid bodies in
-//! islands where forces act wholly within the step. There impulses bring what the step resolves, `A⁻¹ M v`, to rest, which takes energy from whatever
-//! moves; held so for ever, a clamped beam would be damped four times as fast as one on pins.
+//! What is shorter than the step is answered by all of the body, `A⁻¹`: jumps of the motion that drives a joint, joints that take hold of masses of
+//! another velocity, and impacts of rigid bodies. A node that stops alone leaves the rest of a stiff body as fast as it was, the other way round, and
+//! damping `β K Δv` that its stored accelerations do not know of. Held so for ever, a clamped beam would be damped four times as fast as one on pins.
 //!
 //! Hard contacts and joints take part with what they will do, but only these joints act here: the velocity stage finds the others
 //! again, and nothing left to do for these. Nodes without mass follow what holds them as springs do, and need none of this.
@@ -33,7 +33,7 @@ pub(super) fn settle_joined_velocities(
         return Ok(());
     }
     take_jumps(island, settings)?;
-    if settings.is_within && is_struck(island) {
+    if is_struck(island) {
         return Ok(());
     }
     impulses::velocity_rows(island, settings, |contact| contact.is_hard);
@@ -44,7 +44,7 @@ pub(super) fn settle_joined_velocities(
     push_joined_masses(island, Response::Velocity, settings.dt)
 }
 
-/// Takes out of the velocities what a jump of the motion that drives a joint has left there.
+/// Takes out of the velocities what a jump of the motion that drives a joint has left there, or of one that has taken hold.
 ///
 /// Displacements that are given, `Δx = d`, end with `v' = 2 d/dt - v`: where what drives a stiff body jumps from rest to `ḋ`, the body would end
 /// with `2 ḋ`, and swing about `ḋ` from step to step. Velocities that had jumped as well, by what the body answers to that within a step,
@@ -55,8 +55,8 @@ fn take_jumps(island: &mut Island, settings: &SolveSettings) -> Result<(), KktEr
         let is_held = matches!(tie.finish, Finish::Hold { .. }) && tie.is_movable && !tie.is_left;
         let law = || {
             let last = tie.row.remembered;
-            let jump = last.map_or(0.0, |last| tie.driven - last.driven);
-            (jump, RowKind::Bilateral, 0.0)
+            let before = last.map_or(tie.began, |last| last.driven);
+            (tie.driven - before, RowKind::Bilateral, 0.0)
         };
         (is_held && tie.holds_masses()).then(law)
     });
@@ -83,7 +83,7 @@ pub(super) fn settle_joined_accelerations(
     island: &mut Island,
     settings: &SolveSettings,
 ) -> Result<(), KktError> {
-    if !has_joined_masses(island, settings) {
+    if !has_joined_masses(island, settings) || is_struck(island) {
         return Ok(());
     }
     // Impulses gathered for velocities act first: there is one place for what blocks answer.
@@ -99,12 +99,13 @@ pub(super) fn settle_joined_accelerations(
     push_joined_masses(island, Response::Acceleration, settings.dt)
 }
 
-/// Whether rigid bodies have met in this step that did not press in the last.
+/// Whether rigid bodies have met in this step that did not press in the last, or a joint has taken hold of masses.
 fn is_struck(island: &Island) -> bool {
-    island
-        .contacts
-        .iter()
+    let mut contacts = island.contacts.iter();
+    let mut ties = island.joints.ties.iter();
+    contacts
         .any(|contact| contact.is_hard && contact.is_closed() && contact.remembered.normal == 0.0)
+        || ties.any(|tie| tie.holds_masses() && tie.row.remembered.is_none())
 }
 
 fn has_joined_masses(island: &Island, settings: &SolveSettings) -> bool {

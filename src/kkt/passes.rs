@@ -4,6 +4,7 @@ use super::active_contact::ActiveContact;
 use super::feasible::KeptBase;
 use super::joints::ActiveJoint;
 use super::parting::Parting;
+use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::JointGrip;
 
 /// A state on the way, with the forces that belong to it.
@@ -16,6 +17,17 @@ pub(super) struct Waypoint {
     pub base: KeptBase,
     /// How far the laws are from holding, relative to the margins (-).
     pub error: f64,
+}
+
+/// An impact of rigid bodies within the step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    /// Index of the contact.
+    pub contact: usize,
+    /// Its row where the bodies met, or that of the end of the step meanwhile.
+    pub other: Kinematics,
+    /// For how long the impulse moves the bodies (s).
+    pub since: f64,
 }
 
 /// What passes go by, with their buffers.
@@ -42,6 +54,10 @@ pub(super) struct Passes {
     pub margin: f64,
     /// How fine the laws are to hold at the least, by what the step began with (m).
     pub finest: f64,
+    /// Impacts of rigid bodies within the step, and the blocks that may go on from there.
+    pub hits: Vec<Hit>,
+    pub carried: Vec<bool>,
+    pub touching: KeptBase,
     /// Ways that a contact has slid off from.
     pub left: Vec<usize>,
     /// How far apart overlaps and open joints may be asked to go.

@@ -15,7 +15,7 @@ use super::impulses;
 use super::island::{Island, KktError, SolveSettings};
 use super::multipliers::prepare;
 use super::unresolved::unresolved_shares;
-use super::{closing, gathered, joint_mass};
+use super::{closing, gathered, hits, joint_mass, restitution};
 use crate::system::Response;
 
 pub(super) fn solve_velocities(
@@ -53,6 +53,13 @@ pub(super) fn impact_rows(island: &mut Island, settings: &SolveSettings) -> Resu
     closing::take_out_closings(island, settings)?;
     island.joints.kick(&mut island.blocks, settings);
     joint_mass::settle_joined_velocities(island, settings)?;
+    hits::meet(island, settings);
+    let has_rows = solve_velocity_rows(island, settings);
+    hits::end_rows(island);
+    has_rows
+}
+
+fn solve_velocity_rows(island: &mut Island, settings: &SolveSettings) -> Result<bool, KktError> {
     impulses::velocity_rows(island, settings, |_| true);
     island
         .joints
@@ -61,6 +68,7 @@ pub(super) fn impact_rows(island: &mut Island, settings: &SolveSettings) -> Resu
         return Ok(false);
     }
     impulses::solve_impulses(island, Response::Velocity, settings.dt)?;
+    restitution::keep_energy(island, settings.dt)?;
     island.joints.take_impulses(&island.problem);
     impulses::read_impulses(island);
     gathered::clear_impulses(island);

@@ -251,6 +251,21 @@ impl RigidBlock {
         self.current.shift(moved);
     }
 
+    /// What forces of position have moved the iterate by, from the free motion (m, m, rad).
+    pub fn pushed(&self) -> [f64; 3] {
+        let shift = self.current.centre - self.free.centre;
+        [shift.x, shift.y, self.current.angle - self.free.angle]
+    }
+
+    /// Ends the step where the free motion leads with impulses that have acted for some time: the sum of their products (N s², N m s²).
+    pub fn let_go_on(&mut self, moments: [f64; 3]) {
+        let moved = self.answer(moments);
+        let end = self.current;
+        self.current = self.free;
+        self.current.shift(moved);
+        (self.current.velocity, self.current.spin) = (end.velocity, end.spin);
+    }
+
     /// Motion of the centre and turn over the step (m, m, rad).
     pub fn moved(&self) -> [f64; 3] {
         let shift = self.current.centre - self.start.centre;

@@ -147,6 +147,34 @@ impl Measure {
         }
     }
 
+    /// Rate of the measured number at the beginning of the step by the blocks that count (m/s or rad/s).
+    pub fn start_rate(
+        &self,
+        blocks: &[Block],
+        grips: &[JointGrip],
+        counts: impl Fn(&Block) -> bool,
+    ) -> f64 {
+        let when = When::Start;
+        let direction = self.direction(blocks, grips, when);
+        let common = match self {
+            Self::Axis(_) => grips.last().map(|last| last.position(blocks, when)),
+            _ => None,
+        };
+        let counted = grips.iter().filter(|grip| counts(&blocks[grip.block]));
+        let rates = counted.map(|grip| match &blocks[grip.block] {
+            Block::Rigid(block) => {
+                let start = block.start();
+                let point = common.unwrap_or_else(|| grip.position(blocks, when));
+                let lever = point - start.centre;
+                let wrench = unit_wrench(&JointGrip { lever, ..*grip }, direction, self.is_turn());
+                let along = wrench[0] * start.velocity.x + wrench[1] * start.velocity.y;
+                along + wrench[2] * start.spin
+            }
+            block => grip.weight * direction.dot(&block.start_velocity(grip.grip())),
+        });
+        rates.sum()
+    }
+
     /// The direction of the row's forces; its levers are written to the grips.
     pub fn aim(&self, blocks: &[Block], grips: &mut [JointGrip], when: When) -> Vec2 {
         let direction = self.direction(blocks, grips, when);

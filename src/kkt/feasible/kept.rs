@@ -23,6 +23,17 @@ impl FeasiblePath {
         self.nodes.clone_from(&kept.nodes);
     }
 
+    /// Leaves these rigid blocks at the base.
+    pub(in crate::kkt) fn stop_rigid(&self, blocks: &mut [Block], which: &[bool]) {
+        let stopped = which.iter().enumerate().filter(|(_, stops)| **stops);
+        for (index, _) in stopped {
+            if let Block::Rigid(body) = &mut blocks[index] {
+                let base = &self.base[index];
+                body.stop_at(base.centre, base.angle());
+            }
+        }
+    }
+
     /// Leaves the blocks at the base, with what else the iterate found.
     pub(in crate::kkt) fn stop(&self, blocks: &mut [Block]) {
         for (base, block) in self.base.iter().zip(blocks) {

@@ -75,6 +75,14 @@ impl FeasiblePath {
         (0.0..=1.0).contains(&xi)
     }
 
+    /// Whether no near pair of these blocks overlaps at the base.
+    pub(in crate::kkt) fn are_apart(&self, blocks: &[bool]) -> bool {
+        self.near.iter().all(|near| {
+            let is_one = self.blocks_of(near).iter().any(|&block| blocks[block]);
+            !is_one || self.kinematics(near).gap >= 0.0
+        })
+    }
+
     /// What is near at the base.
     pub(in crate::kkt) fn near(&self) -> &[NearPair] {
         &self.near
@@ -134,10 +142,71 @@ impl FeasiblePath {
 
     /// The row of a near pair at the base.
     pub(in crate::kkt) fn kinematics(&self, near: &NearPair) -> Kinematics {
+        self.row(near, |at| self.surfaces.points()[at])
+    }
+
+    /// The row of a near pair of rigid bodies as if these, the point's and the target's, had their centres (m) and angles (rad) elsewhere.
+    pub(in crate::kkt) fn kinematics_at(
+        &mut self,
+        near: &NearPair,
+        places: [(Vec2, f64); 2],
+    ) -> Kinematics {
+        let blocks = self.blocks_of(near);
+        let kept = blocks.map(|block| self.base[block]);
+        for (block, (centre, angle)) in blocks.into_iter().zip(places) {
+            self.base[block].place(centre, angle);
+        }
+        let place = |at: usize| {
+            let base = &self.base[blocks[usize::from(at != near.point)]];
+            match self.points[at].point {
+                Point::Arm(arm) => base.point(arm),
+                Point::Node(_) => base.centre,
+            }
+        };
+        let row = self.row(&self.seen(near, place), place);
+        for (block, base) in blocks.into_iter().zip(kept) {
+            self.base[block] = base;
+        }
+        row
+    }
+
+    /// A near pair with its points elsewhere (m).
+    fn seen(&self, near: &NearPair, place: impl Fn(usize) -> Vec2) -> NearPair {
+        let point = place(near.point);
+        match near.target {
+            Target::Vertex(vertex) => {
+                let away = point - place(vertex);
+                let normal = away.try_normalize(0.0).unwrap_or(near.normal);
+                let distance = away.norm();
+                NearPair {
+                    normal,
+                    distance,
+                    ..*near
+                }
+            }
+            Target::Edge(edge) => {
+                let [from, to] = self.surfaces.ends(edge);
+                let side = cross(to - from, near.normal).signum();
+                let [from, to] = self.surfaces.edges()[edge].map(|end| place(end as usize));
+                let (along, away) = (to - from, point - from);
+                let normal = side * perp(along) / along.norm();
+                let xi = along.dot(&away) / along.norm_squared();
+                NearPair {
+                    normal,
+                    distance: normal.dot(&away),
+                    xi: xi.clamp(0.0, 1.0),
+                    ..*near
+                }
+            }
+        }
+    }
+
+    /// The row of a near pair whose points are here (m), with the base that they belong to.
+    fn row(&self, near: &NearPair, place: impl Fn(usize) -> Vec2) -> Kinematics {
         let way = &self.ways[near.pair];
         let [own, met] = self.members_of(near).map(|member| self.carriers[member]);
-        let point = self.surfaces.points()[near.point];
-        let around = self.around_corner(near, |at| self.surfaces.points()[at]);
+        let point = place(near.point);
+        let around = self.around_corner(near, &place);
         // Forces act on the surface of a flexible body: at the point's own, or where the target's is met.
         let position = if own.is_flex {
             self.at_base(own.block, self.points[near.point].point)

@@ -270,7 +270,7 @@ fn list(island: &mut Island, listed: &Listed, listing: &Listing<'_>) {
                 ActiveContact::new(candidate, kinematics, remembered, friction, &island.blocks);
             if listing.memory.is_some() && base.gap < -listing.slop {
                 contact.allowance = listing.kept * base.gap;
-            } else if listing.memory.is_none() && contact.is_hard {
+            } else if listing.memory.is_none() {
                 contact.allowance = late_allowance(island, &kinematics, &base, listing);
             }
             contact.asked = contact.allowance;

@@ -4,7 +4,7 @@
 use super::Treatment;
 use crate::kkt::island::{Island, KktError, SolveSettings};
 use crate::kkt::summary::IslandSummary;
-use crate::kkt::{momentum, velocity};
+use crate::kkt::{hits, momentum, velocity};
 
 /// See [`ImpactTreatment::Projected`](crate::kkt::ImpactTreatment::Projected).
 #[derive(Debug)]
@@ -15,9 +15,12 @@ impl Treatment for Projected {
         &self,
         island: &mut Island,
         settings: &SolveSettings,
-        _summary: &mut IslandSummary,
+        summary: &mut IslandSummary,
     ) -> Result<(), KktError> {
         velocity::solve_velocities(island, settings)?;
+        if !summary.is_unsolved() {
+            hits::carry_on(island);
+        }
         momentum::balance_angular_momentum(island);
         Ok(())
     }

@@ -43,7 +43,8 @@ pub struct ActiveJoint {
     /// Impulses along the rows of the beginning and of the end (N s or N m s).
     pub(in crate::kkt) kick: f64,
     pub(in crate::kkt) impulse: f64,
-    /// Rate at which it is driven from outside when the step ends (m/s or rad/s).
+    /// Rate of what is not driven from outside when the step begins, and the rate at which that is driven when it ends (m/s or rad/s).
+    pub(in crate::kkt) began: f64,
     pub(in crate::kkt) driven: f64,
     /// Whether something can move the row at all.
     pub(in crate::kkt) is_movable: bool,

@@ -62,6 +62,11 @@ impl Joints {
                 let tie = self.ties[index];
                 self.ties[index].share = self.unresolved_share(blocks, &tie);
                 self.ties[index].driven = rate - self.driven_rate(blocks, &tie);
+                let moves =
+                    |block: &Block| !matches!(block, Block::Rigid(block) if block.is_prescribed());
+                let grips = &self.grips[tie.row.grips.0..tie.row.grips.1];
+                let began = tie.row.measure.start_rate(blocks, grips, moves);
+                self.ties[index].began = tie.row.sign * began;
             }
         }
     }

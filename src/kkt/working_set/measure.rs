@@ -92,6 +92,7 @@ impl ActiveContact {
             late: [0.0; 2],
             settled: [0.0; 2],
             parting: [0.0; 2],
+            rebound: None,
             status: [normal, tangential],
             allowance: 0.0,
             asked: 0.0,
