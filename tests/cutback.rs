@@ -307,8 +307,8 @@ fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
         assert!(quality != Quality::Unfinished, "step {step}: unfinished");
         slipped = slipped.max(report.slip_violation());
     }
-    // What gives way is told, and is little: 1e-4 to 1.2e-3 m as the triangle lands a few millimetres beside.
-    assert!(slipped > 0.0 && slipped < 2e-3, "{slipped:e} m of slip");
+    // What gives way is told, and is little.
+    assert!(slipped > 0.0 && slipped < 1e-3, "{slipped:e} m of slip");
 }
 
 /// A turning paddle crushes a soft block against a wall, between its own end and the ground: what is tried there for an answer has an end. Without one

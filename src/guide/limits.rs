@@ -70,7 +70,7 @@
 //! - **Heavy on welds.** What is heavier than the welded body that it hits may gain energy: 4 of 720 balls, by 5 to 30 % of what they brought. None of 720 lighter ones on pins gained 1 %. Do: pin nodes in the builder instead of welding.
 //! - **Turning in an impact.** A body that turns by 0.1 rad or more in the step of an impact may store more elastic energy for that step (26 % at 0.37 rad); none is left in the next.
 //! - **Restitution of many.** Bodies that touch in a row rebound all at once, as Newton's law has it: of three balls that touch, or come to do so within the step, a blow of 2 m/s with a restitution of 1 leaves -2/3, 4/3 and 4/3 m/s, where a cradle's
-//!   last one would have all of it. Where friction would let what rebounds gain energy, all that touches there rebounds by less. What something else touches or holds ends the step of its impact where it was struck, and is late by `e v dt` at most.
+//!   last one would have all of it. Where friction would let what rebounds gain energy, all that touches there rebounds by less. What something else touches or holds is struck at the end of the step: it is late by `e v dt` at most, and turned by levers that are off by `v dt`.
 //!   Do: leave gaps that a step resolves, or shorten the step.
 //! - **Deep in each other.** Flexible bodies that are put, or let, into each other by more than their [`contact_offset`](FlexBody::contact_offset) with edges that cross may be pressed apart by forces that do not agree with each other (2.3 J that became 30 J, of plates 5 cm inside each other). See:
 //!   [`StepReport::gap_violation`], `energy().dissipated` below zero. Do: keep them apart; an attachment that switches contact off lets them meet.

@@ -4,8 +4,9 @@
 //! time `s` before the end moves them by `s P / m`: at the time for which this is `δ` it keeps angular momentum, which the `δ n × m v` of bodies that
 //! slide about each other does not. Rows of the end have turned on since, and frictionless balls that are hit beside their centres would spin.
 //!
-//! Bodies of which nothing else takes hold are where the impulse at the time of impact leads them by the end of the step, as far as the path goes
-//! there. Those that do not rebound touch. Any others end where they touch, and their impulse acts in the part of the time since for which that is so.
+//! That is so for bodies of which nothing else takes hold. They end the step where the impulse at the time of impact leads them, if the path goes there
+//! and loads do not press them together again; else where they touch, and the impulse acts in the part of the time since for which that is so. What
+//! joints or other contacts hold as well is struck at the end of the step, in which all of these agree: rows of another time would strike it twice.
 
 use super::active_contact::ActiveContact;
 use super::gathered;
@@ -98,17 +99,17 @@ struct Met {
     rebound: Option<f64>,
 }
 
-/// Finds where the bodies of a hit met; `None` where the contact is none or they did not.
+/// Finds where the bodies of a hit met; `None` where the contact is none, they did not, or something else holds one of them.
 fn met(island: &mut Island, index: usize, settings: &SolveSettings) -> Option<Met> {
     let contact = &island.contacts[index];
     let base = contact.base.filter(|_| is_hit(contact))?;
     let end = contact.kinematics;
     let law = island.candidates[contact.candidate].law;
     let rebound = law.rebound(contact.approach, settings.restitution_threshold);
-    let is_carried = end
-        .attachments()
-        .iter()
-        .all(|grip| island.passes.carried[grip.block]);
+    let mut grips = end.attachments().iter();
+    if !grips.all(|grip| island.passes.carried[grip.block]) {
+        return None;
+    }
     let (mut since, mut gap) = (0.0, -along(island, &end, pushed));
     let mut row = end;
     for _ in 0..NEWTON_STEPS {
@@ -133,7 +134,7 @@ fn met(island: &mut Island, index: usize, settings: &SolveSettings) -> Option<Me
     }
     let restitution = if rebound > 0.0 { law.restitution } else { 0.0 };
     let at_end = restitution * (closing - faster * since) - faster * since;
-    if is_carried && at_end >= -rounding::SOLVED * closing {
+    if at_end >= -rounding::SOLVED * closing {
         let rebound = Some(at_end.max(0.0));
         return Some(Met {
             row,
