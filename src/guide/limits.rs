@@ -72,7 +72,7 @@
 //! - **Restitution of many.** Bodies that touch in a row rebound all at once, as Newton's law has it: of three balls that touch, or come to do so within the step, a blow of 2 m/s with a restitution of 1 leaves -2/3, 4/3 and 4/3 m/s, where a cradle's
 //!   last one would have all of it. Where friction would let what rebounds gain energy, all that touches there rebounds by less. What something else touches or holds is struck at the end of the step: it is late by `e v dt` at most, and turned by levers that are off by `v dt`.
 //!   Do: leave gaps that a step resolves, or shorten the step.
-//! - **Deep in each other.** Flexible bodies that are put, or let, into each other by more than their [`contact_offset`](FlexBody::contact_offset) with edges that cross may be pressed apart by forces that do not agree with each other (2.3 J that became 30 J, of plates 5 cm inside each other). See:
+//! - **Deep in each other.** Flexible bodies that are put, or let, into each other by more than their [`FlexBody::contact_offset`] with edges that cross may be pressed apart by forces that do not agree with each other (2.3 J that became 30 J, of plates 5 cm inside each other). See:
 //!   [`StepReport::gap_violation`], `energy().dissipated` below zero. Do: keep them apart; an attachment that switches contact off lets them meet.
 //! - **Chains of light links** that a heavy body hits may gain a hundredth of the energy brought.
 //! - **Welded bars** that the step does not resolve may vibrate up under the trapezoidal rule, and one cell thick under `Beta2::damped(0.0)`. Do: pin them, or keep to the default integrator.
