@@ -158,3 +158,28 @@ fn pinned_blocks_that_overlap_are_left_alone() {
     let height = scene.body(free).positions()[1];
     assert!((height - 0.4).abs() < 0.01, "it rests at {height} m");
 }
+
+/// Flexible blocks that were put into each other edge on edge, so that the corners of each lie on edges of the other, part by and by and keep still: what
+/// comes near while they part is asked for no more than the rest. They flew apart with 0.1 to 2 J.
+#[test]
+fn flexible_blocks_that_overlap_edge_on_edge_part_at_rest() {
+    for rate in [60.0, 240.0] {
+        for depth in [1e-3, 3e-3, 5e-3] {
+            let mut scene = Scene::in_free_space(1.0 / rate);
+            let block = |x: f64| {
+                FlexBodyBuilder::rectangle([0.8, 0.3], [8, 3])
+                    .material(elastic(1e6, 100.0, 0.0))
+                    .translation([x, 0.0])
+            };
+            let blocks = [0.0, 0.8 - depth].map(|x| scene.flexible(block(x)));
+            scene.steps(rate as usize);
+            let kinetic: f64 = blocks
+                .map(|body| scene.body(body).energy().kinetic)
+                .iter()
+                .sum();
+            assert!(kinetic < 0.02, "{depth} m, 1/{rate} s: {kinetic} J");
+            let left = scene.report().gap_violation();
+            assert!(left < 1e-6, "{depth} m, 1/{rate} s: {left} m");
+        }
+    }
+}
