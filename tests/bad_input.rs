@@ -908,6 +908,27 @@ fn a_body_whose_carrier_the_user_removed_stops_the_step_until_it_is_forgotten() 
     scene.assert_goes_on();
 }
 
+/// A carrier never moves: what is meant for the body is told where it goes.
+#[test]
+fn a_carrier_that_was_given_a_velocity_is_refused_at_once() {
+    let mut scene = Scene::new();
+    scene.step().expect("a sound step");
+    let carrier = scene.flex_bodies[scene.block].rigid_body_handle();
+    for motion in [(Vector::new(1.0, 0.0), 0.0), (Vector::ZERO, -2.0)] {
+        scene.world.bodies[carrier].set_linvel(motion.0, true);
+        scene.world.bodies[carrier].set_angvel(motion.1, true);
+        let state = scene.state();
+        let error = scene.step().expect_err("the carrier is driven");
+        let driven = FlexBodyError::CarrierDriven(scene.block);
+        assert_eq!(error, StepError::Body(driven));
+        assert!(error.to_string().contains("FlexBody::set_linvel"));
+        assert_eq!(state, scene.state());
+    }
+    scene.world.bodies[carrier].set_angvel(0.0, true);
+    scene.step().expect("the world goes on");
+    scene.assert_goes_on();
+}
+
 #[test]
 fn a_body_whose_surface_the_user_removed_stops_the_step() {
     let mut scene = Scene::new();

@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use foil2d::fe::mesh::CellKind;
 use foil2d::pipeline::Participant;
 
 /// A beam held at its ends that sags under its weight by centimetres.
@@ -198,5 +199,65 @@ fn the_pressure_of_contact_is_the_force_over_the_surface() {
         assert!(own.len() >= 5, "{} contacts", own.len());
         let normal: f64 = own.iter().map(|contact| contact.normal_force).sum();
         assert!((normal / (200.0 * G) - 1.0).abs() < 1e-3, "{normal} N");
+    }
+}
+
+/// A block between a floor and its own top, which is pushed down evenly: whatever cells it has, and whatever their nodes stand for.
+#[test]
+fn an_even_pressure_is_met_at_corners_and_midsides_alike() {
+    for kind in [
+        CellKind::Tri3,
+        CellKind::Quad4,
+        CellKind::Tri6,
+        CellKind::Quad8,
+    ] {
+        for is_large in [false, true] {
+            let mut scene = Scene::in_free_space(1.0 / 120.0);
+            scene.fixed(
+                ColliderBuilder::cuboid(5.0, 0.5)
+                    .translation(vec2(0.5, -0.5))
+                    .friction(0.0),
+            );
+            let block = FlexBodyBuilder::rectangle_of([1.0, 0.5], [8, 4], kind)
+                .material(
+                    LinearElastic::plane_strain(1e6, 0.0)
+                        .density(1000.0)
+                        .rayleigh(3e-2),
+                )
+                .thickness(0.3)
+                .friction(0.0)
+                .pin_where(|[_, y]| y == 0.5, Pin::both());
+            let block = scene.flexible(match is_large {
+                true => block.large_strain(),
+                false => block.small_strain(),
+            });
+            let nodes = scene.body(block).mesh().nodes().to_vec();
+            for step in 1..=300 {
+                let down = -0.005 * (f64::from(step) / 100.0).min(1.0);
+                for (node, place) in nodes.iter().enumerate() {
+                    if place[1] == 0.5 {
+                        let body = &mut scene.bodies[block];
+                        body.set_pin_displacement(node, [0.0, down]).expect("a pin");
+                    }
+                }
+                scene.step();
+            }
+            let body = scene.body(block);
+            let even = body.total_contact_force()[1] / 0.3;
+            let below = |&(_, place): &(usize, &[f64; 2])| {
+                place[1] == 0.0 && place[0] > 0.0 && place[0] < 1.0
+            };
+            let mut n_nodes = 0;
+            for (node, place) in nodes.iter().enumerate().filter(below) {
+                let found = body.contact_pressure(node) / even;
+                assert!(
+                    (found - 1.0).abs() < 1e-3,
+                    "{kind:?} at {}: {found} of the even pressure, large {is_large}",
+                    place[0]
+                );
+                n_nodes += 1;
+            }
+            assert!(n_nodes >= 7, "{n_nodes} nodes");
+        }
     }
 }

@@ -4,6 +4,8 @@ mod common;
 
 #[path = "restitution/hits.rs"]
 mod hits;
+#[path = "restitution/phases.rs"]
+mod phases;
 
 use CoefficientCombineRule::{Average, Max, Min, Multiply};
 use common::*;

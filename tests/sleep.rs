@@ -382,7 +382,7 @@ fn what_is_awake_beside_a_sleeping_box_does_not_let_it_fall_into_the_block_under
         let block = block.material(elastic(3e5, 1000.0, 1e-2));
         scene.flexible(block.translation([-1.25 + 0.5 * f64::from(k), 0.001]));
     }
-    let boxes = [(-1.0, 0.0), (0.0, 5.0)].map(|(x, damping)| {
+    let boxes = [(-1.0, 0.0), (0.0, 60.0)].map(|(x, damping)| {
         let body = RigidBodyBuilder::dynamic().translation(vec2(x, 0.8));
         let body = body.linear_damping(real(damping)).lock_rotations();
         let shape = ColliderBuilder::cuboid(real(0.2), real(0.1)).density(1000.0);
@@ -401,4 +401,32 @@ fn what_is_awake_beside_a_sleeping_box_does_not_let_it_fall_into_the_block_under
         );
     }
     assert!(n_alone > 0, "they fell asleep together");
+}
+
+/// Columns of blocks sway for long, and by ever less: what has stayed in equilibrium sleeps, however finely it still trembles.
+#[test]
+fn stacks_of_blocks_fall_asleep() {
+    for (young, rate, n_blocks) in [
+        (1e6, 60.0, 3),
+        (1e6, 120.0, 3),
+        (1e6, 240.0, 3),
+        (1e7, 60.0, 5),
+    ] {
+        let mut scene = Scene::new(1.0 / rate);
+        scene.ground(0.5);
+        let blocks: Vec<_> = (0..n_blocks)
+            .map(|k| {
+                let block = FlexBodyBuilder::rectangle([0.4, 0.4], [4, 4])
+                    .material(elastic(young, 1000.0, 2e-3))
+                    .translation([0.0, 0.01 + 0.41 * f64::from(k)]);
+                scene.flexible(block)
+            })
+            .collect();
+        scene.steps((25.0 * rate) as usize);
+        for block in blocks {
+            let carrier = scene.body(block).rigid_body_handle();
+            let sleeps = scene.world.bodies[carrier].is_sleeping();
+            assert!(sleeps, "{young} Pa, {n_blocks} blocks at 1/{rate} s");
+        }
+    }
 }

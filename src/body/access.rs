@@ -1,7 +1,9 @@
 //! What a step takes from a body and leaves on it: its loads, its motion, put back if it is only tried, and notes.
 
-use super::flex_body::FlexBody;
+use super::flex_body::{FlexBody, sum_of_nodes};
 use super::state::FlexState;
+use super::stillness::{Rest, unbalance};
+use crate::math::Vec2;
 use crate::rapier::prelude::{ColliderHandle, RigidBodyHandle};
 use std::borrow::Cow;
 
@@ -98,11 +100,19 @@ impl FlexBody {
         self.stillness.time()
     }
 
-    /// Looks whether it has stayed where it is in a step, to some tolerance (s, m).
-    pub(crate) fn look_whether_still(&mut self, dt: f64, tolerance: f64) {
+    /// Looks whether it has stayed where it is in a step, in equilibrium.
+    pub(crate) fn look_whether_still(&mut self, rest: Rest) {
         let state = &self.state;
         self.stillness
-            .look([&state.position, &state.velocity], dt, tolerance);
+            .look([&state.position, &state.velocity], rest);
+    }
+
+    /// Acceleration that is at most left of its loads at rest: of gravity, and of the forces on nodes (m/s²).
+    pub(crate) fn unbalance_at_rest(&self, gravity: Vec2) -> f64 {
+        let own = self.gravity_scale * gravity + self.body_force;
+        let at_nodes =
+            sum_of_nodes(&self.contact_force).norm() + sum_of_nodes(&self.nodal_force).norm();
+        unbalance(own.norm() + at_nodes / self.mass())
     }
 
     /// Counts a step, as finished or not.

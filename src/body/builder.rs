@@ -86,7 +86,7 @@ impl FlexBodyBuilder {
         Self::from_result(generate::disc(radius, target_edge, CellKind::Tri6).map(Arc::new))
     }
 
-    /// An annulus about the origin, of quadrilaterals with edges of about `target_edge` (m).
+    /// An annulus about the origin, of quadrilaterals with edges of about `target_edge` (m) at its mean radius: outside they are longer.
     pub fn annulus(inner: f64, outer: f64, target_edge: f64) -> Self {
         Self::from_result(
             generate::annulus(inner, outer, target_edge, CellKind::Quad4).map(Arc::new),

@@ -232,9 +232,14 @@ pub enum FlexBodyError {
     Negative(f64),
     /// The world does not hold the body's carrier.
     #[error(
-        "the world given does not hold the carrier of {0:?} as it was left: use the world it was inserted into, leave the pose and shape of its carrier alone (put back at the identity, steps go on), and remove the body from its set first"
+        "the world given does not hold the carrier of {0:?} as it was left: use the world it was inserted into, leave the pose and shape of its carrier alone (put back at the identity, steps go on), remove the body from its set by `FlexBodySet::remove` rather than through rapier, and `FlexBodySet::forget` it if its carrier is gone"
     )]
     NoCarrier(FlexBodyHandle),
+    /// The user has given the body's carrier a velocity.
+    #[error(
+        "the carrier of {0:?} was given a velocity, and carriers stay where they are: set it back to zero, and steer the body by `FlexBody::set_linvel` or by forces on it"
+    )]
+    CarrierDriven(FlexBodyHandle),
 }
 
 /// Refuses numbers that are not finite.

@@ -329,7 +329,7 @@ impl FlexBody {
     }
 }
 
-fn sum_of_nodes(dofs: &[f64]) -> Vec2 {
+pub(super) fn sum_of_nodes(dofs: &[f64]) -> Vec2 {
     dofs.chunks_exact(2)
         .map(|value| Vec2::new(value[0], value[1]))
         .sum()

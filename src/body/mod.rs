@@ -52,5 +52,6 @@ pub(crate) use record::{SetRecord, SetRecordError};
 pub use region::Region;
 pub use set::FlexBodySet;
 pub use state::{AppliedLoad, BodyEnergy, FlexState, FrameMotion, KnownLoads, Linearized};
+pub(crate) use stillness::{Rest, rest_way};
 pub use surface::SurfacePick;
 pub(crate) use surface::{OFFSET, contact_offset};

@@ -114,8 +114,8 @@ impl FlexBody {
         crossed.count() % 2 == 1
     }
 
-    /// Pressure of contact at a node in the last step (Pa): the normal part of [`FlexBody::contact_force`] over the deformed surface next to the
-    /// node, half of each of its segments, times the thickness. Zero inside.
+    /// Pressure of contact at a node in the last step (Pa): the normal part of [`FlexBody::contact_force`] over the deformed surface that the
+    /// node stands for ([`Boundary::node_shares`](crate::fe::mesh::Boundary::node_shares)), times the thickness. Zero inside.
     ///
     /// A uniform pressure on a smooth surface is met exactly. At a corner the mean of both sides is told, and what
     /// is attached to the node counts as contact.
@@ -128,11 +128,15 @@ impl FlexBody {
             assert!(node < self.n_nodes(), "a node of the body");
             return 0.0;
         };
-        let before = boundary.segments()[boundary.previous_segment(after)][0];
-        let following = boundary.segments()[after][1];
-        let [from, to] = [before, following].map(|node| node_vec(self.positions(), node));
-        // The material is on the left of a segment, and half the sum of both segments is half of what leads from `from` to `to`.
-        let inward = 0.5 * self.model.thickness() * Vec2::new(from.y - to.y, to.x - from.x);
+        let before = boundary.previous_segment(after);
+        let part = |segment: usize, end: usize| {
+            let [from, to] =
+                boundary.segments()[segment].map(|node| node_vec(self.positions(), node));
+            boundary.node_shares(segment)[end] * (to - from)
+        };
+        let along = part(before, 1) + part(after, 0);
+        // The material is on the left of a segment.
+        let inward = self.model.thickness() * Vec2::new(-along.y, along.x);
         let squared_area = inward.norm_squared();
         if squared_area > 0.0 {
             node_vec(&self.contact_force, node).dot(&inward) / squared_area

@@ -6,9 +6,10 @@
 
 use crate::body::{
     BuildError, ContactSettings, FlexBody, FlexBodyBuilder, FlexBodyError, FlexBodyHandle,
-    FlexBodySet,
+    FlexBodySet, rest_way,
 };
 use crate::math::{node_vec, rounding, to_rapier};
+use crate::rapier::parry::bounding_volume::Aabb;
 use crate::rapier::parry::shape::{Polyline, PolylineFlags};
 use crate::rapier::prelude::*;
 
@@ -199,12 +200,13 @@ pub(crate) fn is_carried(body: &FlexBody, bodies: &RigidBodySet, colliders: &Col
         && collider.parent() == Some(body.rigid_body_handle())
         && surface.is_some_and(|polyline| {
             let vertices = polyline.vertices();
-            vertices.len() == body.mesh().boundary().nodes().len() && is_placed(body, vertices, LAG)
+            vertices.len() == body.mesh().boundary().nodes().len()
+                && is_placed(body, vertices, true)
         })
 }
 
-/// How far the surface in rapier may lag behind a body at rest, over the size of the coordinates: every write wakes what touches it,
-/// and a body at rest still moves by rounding.
+/// How far the surface in rapier may lag behind a body at rest, besides what counts as rest, over the size of the coordinates: every write
+/// wakes what touches it, and a body at rest still moves by rounding.
 const LAG: f64 = if size_of::<Real>() == 4 {
     1e-7
 } else {
@@ -212,16 +214,19 @@ const LAG: f64 = if size_of::<Real>() == 4 {
 };
 
 /// Whether these vertices are where the nodes are, but for a `share` of their coordinates.
-fn is_placed(body: &FlexBody, vertices: &[Vector], share: f64) -> bool {
+/// Whether the vertices are where the nodes are, or so near to them that a body at rest may have moved by it.
+fn is_placed(body: &FlexBody, vertices: &[Vector], may_lag: bool) -> bool {
     let (nodes, positions) = (body.mesh().boundary().nodes(), body.positions());
     let mut pairs = nodes.iter().zip(vertices);
     // What was written last is what is asked for most.
     let is_same = pairs.all(|(&node, old)| to_rapier(node_vec(positions, node)) == *old);
-    if is_same || share == 0.0 {
+    if is_same || !may_lag {
         return is_same;
     }
-    let reach = |reach: Real, vertex: &Vector| reach.max(vertex.x.abs()).max(vertex.y.abs());
-    let lag = (share * f64::from(vertices.iter().fold(0.0, reach))) as Real;
+    let aabb = Aabb::from_points(vertices.iter().copied());
+    let reach = f64::from(aabb.mins.abs().max(aabb.maxs.abs()).max_element());
+    let way = rest_way(f64::from(aabb.extents().max_element()));
+    let lag = (LAG * reach + way) as Real;
     nodes.iter().zip(vertices).all(|(&node, old)| {
         let off = to_rapier(node_vec(positions, node)) - *old;
         off.x.abs() <= lag && off.y.abs() <= lag
@@ -334,11 +339,10 @@ pub(crate) fn write_surface(
     parameters: &IntegrationParameters,
 ) {
     let handle = body.collider_handle();
-    let share = if rests { LAG } else { 0.0 };
     let current = colliders
         .get(handle)
         .and_then(|collider| collider.shape().as_polyline());
-    if current.is_none_or(|polyline| is_placed(body, polyline.vertices(), share)) {
+    if current.is_none_or(|polyline| is_placed(body, polyline.vertices(), rests)) {
         return;
     }
     let Some(collider) = colliders.get_mut(handle) else {

@@ -220,7 +220,7 @@ impl CouplingRecord {
             hooks: self.hooks.build(),
             ..Memory::default()
         };
-        memory.contacts.list_pressed();
+        memory.contacts.list_owners();
         memory.masters.last = self.masters.into_iter().collect();
         memory.links.last = self.links.into_iter().collect();
         Some((self.claims.build(), self.events.build(), memory, pool))

@@ -6,15 +6,11 @@
 use super::landing::Landing;
 use super::quarantine::is_out;
 use super::sets::RapierSets;
-use crate::body::{FlexBody, FlexBodySet};
-use crate::math::{from_rapier, judged::Judged};
+use crate::body::{FlexBody, FlexBodySet, Rest, rest_way};
+use crate::math::from_rapier;
 use crate::rapier::math::Real;
 use crate::rapier::parry::bounding_volume::Aabb;
 use crate::rapier::prelude::*;
-
-/// How far a node of a body at rest is at most from where it was, over the body's size: displacements and forces are then those of equilibrium to
-/// some digits more than rapier's single precision has. Rapier's own threshold, 5 cm/s, would freeze a beam that swings.
-const STILL: Judged = Judged::new("coupling::STILL", 1e-8);
 
 /// Part of the time until sleep at which the timer of a body that moves is set back: not in every step, for rapier then looks at
 /// the body again.
@@ -170,7 +166,7 @@ pub(crate) fn wake_moving(
     }
 }
 
-/// Whether a body that may sleep has come to rest, to some eight digits.
+/// Whether a body that may sleep has come to rest, to some six digits.
 pub(crate) fn rests(body: &FlexBody, sets: &RapierSets<'_>) -> bool {
     let carrier = sets.bodies.get(body.rigid_body_handle());
     carrier.is_some_and(|carrier| {
@@ -182,20 +178,31 @@ pub(crate) fn rests(body: &FlexBody, sets: &RapierSets<'_>) -> bool {
 
 /// Looks whether a body has stayed where it is in a step, after it.
 pub(crate) fn look_whether_still(body: &mut FlexBody, sets: &RapierSets<'_>) {
+    let carrier = sets.bodies.get(body.rigid_body_handle());
+    let patience = carrier.map_or(1.0, |carrier| carrier.activation().time_until_sleep);
+    let patience = f64::from(patience).max(f64::MIN_POSITIVE);
+    let way = rest_way(size_of(body, sets));
     let dt = f64::from(sets.integration_parameters.dt);
-    body.look_whether_still(dt, STILL * size_of(body, sets));
+    // Without loads, what would move it as far until it sleeps.
+    let unbalance = match fastest(body.velocities()) * dt > way {
+        true => 0.0,
+        false => body.unbalance_at_rest(from_rapier(sets.gravity)) + way / patience / patience,
+    };
+    body.look_whether_still(Rest { dt, way, unbalance });
 }
 
-/// Whether a node was elsewhere within the last part of the time until sleep, or goes there within as much.
+/// Whether a node was elsewhere within the last part of the time until sleep, or out of balance, or goes elsewhere within the step.
 fn moves(body: &FlexBody, velocities: &[f64], patience: Real, sets: &RapierSets<'_>) -> bool {
+    let dt = f64::from(sets.integration_parameters.dt);
+    let leaves = fastest(velocities) * dt > rest_way(size_of(body, sets));
+    leaves || body.time_still() < f64::from(SET_BACK * patience)
+}
+
+/// Speed of the fastest of some nodes (m/s).
+fn fastest(velocities: &[f64]) -> f64 {
     let nodes = velocities.chunks_exact(2);
-    let fastest = nodes.map(|v| v[0] * v[0] + v[1] * v[1]).fold(0.0, f64::max);
-    let (fastest, way) = (fastest.sqrt(), STILL * size_of(body, sets));
-    let goes_on = fastest * f64::from(patience) > way;
-    // What has stayed for long may tremble, by less than that in a step.
-    let trembles = body.time_still() >= f64::from(SET_BACK * patience)
-        && fastest * f64::from(sets.integration_parameters.dt) <= way;
-    goes_on && !trembles
+    let squared = nodes.map(|v| v[0] * v[0] + v[1] * v[1]);
+    squared.fold(0.0, f64::max).sqrt()
 }
 
 /// The longer side of a body's box (m).

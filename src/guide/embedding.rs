@@ -65,7 +65,8 @@
 //!
 //! The collider of a flexible body, [`FlexBody::collider_handle`](crate::body::FlexBody::collider_handle), is what rapier's queries and events name;
 //! [`FlexBodySet::of_collider`](crate::body::FlexBodySet::of_collider) tells whose it is, and [`FlexBodySet::pick`](crate::body::FlexBodySet::pick) which node. Its rigid body is a
-//! carrier: leave its pose alone, and put no joints on it.
+//! carrier: leave its pose and its velocity alone, put no joints on it, and remove the body by
+//! [`FlexBodySet::remove`](crate::body::FlexBodySet::remove), not through rapier (what is gone already, `forget`).
 //!
 //! # Events
 //!

@@ -13,7 +13,8 @@
 //!   tenths of its size, or by something driven against a wall, a step may take a second or two. See: [`Quality::Cut`](crate::pipeline::Quality::Cut), `Quality::Unfinished`, long steps. Do: take a stiffer material or shorter steps; a smaller
 //!   [`FlexParameters::max_pivots`] ends what cannot be solved sooner.
 //! - **Rolling.** What rolls or spins while it is pressed is braked, because contact forces act wholly within their step. See: a disc of rubber that rolls at 2 m/s loses 0.36 m/s in the first second at
-//!   1/60 s, 0.09 m/s at 1/240 s, and 0.05 m/s at 1/60 s with small strain. Do: shorten the step, or take `small_strain`.
+//!   1/60 s, 0.09 m/s at 1/240 s, and 0.05 m/s at 1/60 s with small strain. Do: shorten the step, or take `small_strain`. A wheel
+//!   is a polygon: from rest it takes the torque of its load at half a side to tip it over a corner. Do: take a smaller `target_edge`; that of an annulus is met at its mean radius, and outside sides are longer.
 //! - **Plane stress** of Hooke's law: the thickness does not change as the body is stretched. Do: take `NeoHookeanSheet` or `MooneyRivlinSheet` where it matters. With Poisson's ratios from -0.5 down it
 //!   has no law for large strains and is refused ([`BuildError::NoLargeLaw`](crate::body::BuildError::NoLargeLaw)). Do: take `small_strain`, or plane strain.
 //! - **Surface.** It keeps its mass; [`ContactInertia::RedistributedAt`](crate::body::ContactInertia::RedistributedAt) is refused
@@ -26,6 +27,8 @@
 //!
 //! # Small strain
 //!
+//! - **Spin of small strain.** The tension of what spins does not stiffen it: a ring or strip that spins faster than it bends (its lowest frequency of bending) grows without bound. See: [`StepReport::overbent`], late. Do: take `large_strain`.
+//! - **Springs of small strain** (attachments, and joints of rapier) act from the step after they are put in on: the error is of first order, half a step's way. Do: shorten the step, or take `large_strain`, where it is of second.
 //! - **Strains of a few percent**, in one frame that moves and turns with the body as far as it likes. A clamped beam that sags by a tenth of its length is outside, and so is a rope. See: steps are
 //!   solved and keep their energy, but the body is another one; [`StepReport::overbent`] names it. Do: leave `small_strain` out.
 //! - **No contact with itself.** It passes through itself; bent so far it is outside anyhow.
@@ -95,7 +98,7 @@
 //!   Links rest on the ground as softly as rapier lets them; their islands allocate in every step. A stiff body of small strain that is heavier than the link whose motor holds it may tremble, and arms of several such links swing.
 //!   Do: take impulse joints, which are solved with the rest, where you can.
 //! - **Contact pairs** of what is solved here tell no impulses: rapier lets nobody else write what `contact_pair(..)` has of them. Do: take [`StepReport::contacts`], or contact force events.
-//! - **Dominance.** A rigid body of positive dominance is met as one that is moved: it goes through what is pinned. See: unfinished steps. Do: leave dominance out.
+//! - **Dominance.** A rigid body of positive dominance is met as one that is moved: it goes through what is pinned, and squeezes what lies on something else flat, with energy as from nowhere (a box on a free block of 5e6 Pa: 8 MJ). See: unfinished steps. Do: leave dominance out.
 //! - **Fast spin.** Rapier turns a rigid body by no more than an eighth of a turn in a step, and takes what is more out of its spin: at 1/60 s beyond 47 rad/s. Do: shorten the step.
 //! - **Seams.** Boxes laid flush have seams by rapier's rounding, on which what slides may trip, as in rapier. Do: take a polyline, a height field or one box.
 //! - **Piles of rigid boxes** that spin fast into each other at 1/60 s may overlap by up to 2 mm where they jam, by 0.1 mm on a flexible slab.
@@ -105,8 +108,7 @@
 //! # Rest and sleep
 //!
 //! - Stresses of the laws for sheets and rubber, Hencky's and yours are known to 1e-16 of their moduli, and not to the digits of the strain as those of the other laws are beside rest.
-//! - A flexible body falls asleep when it is in equilibrium to some eight digits, later than a rigid one; under the trapezoidal rule without damping it never does. Do: give it damping.
-//! - Piles of nine blocks of large strain and 1e5 Pa may creep and never sleep; from 1e6 Pa on they do within two or three seconds.
+//! - A flexible body falls asleep when it has stayed within a millionth of its size, its loads balanced to six digits, later than a rigid one: stacks that sway slowly after tens of seconds; under the trapezoidal rule without damping it may never. Do: give it damping.
 //!
 //! [`FlexBody::contact_offset`]: crate::body::FlexBody::contact_offset
 //! [`FlexParameters::feasible_path`]: crate::pipeline::FlexParameters::feasible_path

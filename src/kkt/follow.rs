@@ -112,6 +112,7 @@ fn try_passes(
         is_again: false,
         keeps_rows: false,
         slop: OVERLAPPED * tolerance,
+        rest: LARGE_TOLERANCE * island.passes.margin,
         kept,
     };
     listing::list_near(island, &listing);
@@ -340,6 +341,7 @@ pub(super) fn return_to_start(
             is_again: false,
             keeps_rows: false,
             slop: 0.0,
+            rest: 0.0,
             kept: 0.0,
         },
     );

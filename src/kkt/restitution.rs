@@ -2,11 +2,11 @@
 //!
 //! Newton's law asks for a velocity after an impact whatever friction does to it, and impulses of friction at levers may then do more work than the
 //! impact takes (Kane and Levinson 1985): a box that falls on a corner may leave with a sixth more than it had. Contacts do the work
-//! `Σ P·(v + v')/2`, none or less if nothing rebounds. Where the contacts of bodies that touch each other do more, all of these rebound by
-//! a share of their velocities, the one at which they do none.
+//! `Σ P·(v + v')/2`, none or less if nothing rebounds. Where the contacts of bodies that touch each other do more than their forces have
+//! taken from what came together within the step, all of these rebound by a share of their velocities, the one at which they do no more.
 
 use super::impulses;
-use super::island::{Island, KktError};
+use super::island::{Island, KktError, SolveSettings};
 use super::together;
 use crate::math::{REAL_EPSILON, judged::NEGLIGIBLE};
 use crate::system::Response;
@@ -44,13 +44,13 @@ struct Group {
 ///
 /// # Errors
 /// If a number is not finite.
-pub(super) fn keep_energy(island: &mut Island, dt: f64) -> Result<(), KktError> {
+pub(super) fn keep_energy(island: &mut Island, settings: &SolveSettings) -> Result<(), KktError> {
     if island.contacts.iter().all(|one| one.parting[0] <= 0.0) {
         return Ok(());
     }
     let leaders = together::groups_of(island, |block| !block.is_prescribed());
     let mut works = vec![[0.0; 2]; island.blocks.len()];
-    add_works(island, &leaders, &mut works);
+    add_works(island, &leaders, settings.b1, &mut works);
     let gains = |leader: usize| works[leader][0] > REAL_EPSILON * works[leader][1];
     let mut groups: Vec<Option<Group>> = (0..works.len())
         .map(|leader| {
@@ -70,9 +70,9 @@ pub(super) fn keep_energy(island: &mut Island, dt: f64) -> Result<(), KktError> 
     let rebounds = list(island, &leaders, &groups);
     for tried in 0..=MOST_TRIES {
         ask(island, &rebounds, &groups);
-        impulses::solve_impulses(island, Response::Velocity, dt)?;
+        impulses::solve_impulses(island, Response::Velocity, settings.dt)?;
         works.fill([0.0; 2]);
-        add_works(island, &leaders, &mut works);
+        add_works(island, &leaders, settings.b1, &mut works);
         let mut is_done = true;
         for (group, work) in groups.iter_mut().zip(&works) {
             if let Some(group) = group {
@@ -165,17 +165,24 @@ fn ask(island: &mut Island, rebounds: &[Rebound], groups: &[Option<Group>]) {
 }
 
 /// Adds the work of every contact to that of its group, and what its impulses come to times the motion before (J).
-fn add_works(island: &Island, leaders: &[usize], works: &mut [[f64; 2]]) {
+///
+/// A position that ends closed has stopped a part of the approach, by the force of the position stage: from where in the step the bodies
+/// met depends how much.
+fn add_works(island: &Island, leaders: &[usize], b1: f64, works: &mut [[f64; 2]]) {
     for (row, direction) in island.problem.rows.iter().enumerate() {
         let Some(group) = group_of(island, leaders, direction.contact) else {
             continue;
         };
         let impulse = island.problem.multipliers[row];
-        let asked = island.contacts[direction.contact].parting[direction.axis];
-        let motion = island.problem.free[row] + asked;
+        let contact = &island.contacts[direction.contact];
+        let motion = island.problem.free[row] + contact.parting[direction.axis];
         let mean = motion + 0.5 * impulses::change_of(island, row);
         works[group][0] += impulse * mean;
         works[group][1] += (impulse * motion).abs();
+        if direction.axis == 0 && !contact.is_hard {
+            let taken = 0.5 * b1 * contact.multiplier[0] * (contact.approach + motion);
+            works[group][0] += taken.min(0.0);
+        }
     }
 }
 

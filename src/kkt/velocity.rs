@@ -68,7 +68,7 @@ fn solve_velocity_rows(island: &mut Island, settings: &SolveSettings) -> Result<
         return Ok(false);
     }
     impulses::solve_impulses(island, Response::Velocity, settings.dt)?;
-    restitution::keep_energy(island, settings.dt)?;
+    restitution::keep_energy(island, settings)?;
     island.joints.take_impulses(&island.problem);
     impulses::read_impulses(island);
     gathered::clear_impulses(island);

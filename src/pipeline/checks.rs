@@ -8,7 +8,7 @@ use crate::fe::model::MassMatrix;
 use crate::integrator::IntegratorError;
 use crate::kkt::{Island, KktError};
 use crate::math::{are_held, from_rapier, is_held};
-use crate::rapier::prelude::ColliderHandle;
+use crate::rapier::prelude::{ColliderHandle, RigidBody, Vector};
 use crate::system::{Block, Step};
 
 /// Shortest step (s), but for what single precision makes of 1e-8. Contact forces change velocities within a step, so accelerations grow as its inverse and the
@@ -72,6 +72,12 @@ pub(super) fn check_bodies(
         }
         if !is_carried(body, sets.bodies, sets.colliders) {
             return Err(FlexBodyError::NoCarrier(handle).into());
+        }
+        let carrier = sets.bodies.get(body.rigid_body_handle());
+        let is_still =
+            |carrier: &RigidBody| carrier.linvel() == Vector::ZERO && carrier.angvel() == 0.0;
+        if !carrier.is_none_or(is_still) {
+            return Err(FlexBodyError::CarrierDriven(handle).into());
         }
         check_integrator(parameters, dt, body).map_err(|source| StepError::Integrator {
             body: handle,

@@ -30,6 +30,7 @@ impl SolvedPart<'_> {
                 tangent,
                 lasting: contact.lasting(),
                 feature: contact.kinematics.feature,
+                parts: contact.allowance < 0.0,
             };
             contacts.remember(self.island.candidates[contact.candidate].key, state);
         }

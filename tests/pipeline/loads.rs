@@ -8,6 +8,7 @@ fn cantilever() -> FlexBodyBuilder {
         .material(elastic(1e7, 1000.0, 2e-2))
         .thickness(0.1)
         .pin_where(|[x, _]| x == 0.0, Pin::both())
+        .can_sleep(false)
 }
 
 #[test]

@@ -19,6 +19,8 @@ pub struct Remembered {
     pub lasting: [f64; 2],
     /// Feature of the target that was touched, for hysteresis.
     pub feature: Option<Feature>,
+    /// Whether a part of an overlap was left for later.
+    pub parts: bool,
 }
 
 /// All contacts of the last step that were closed or near.
@@ -37,6 +39,9 @@ pub struct ContactMemory {
     /// Who pressed whom in the last step; see [`ContactKey::owners`].
     #[cfg_attr(feature = "serde-serialize", serde(skip))]
     pressed: HashSet<[Owner; 2]>,
+    /// Who was near whom.
+    #[cfg_attr(feature = "serde-serialize", serde(skip))]
+    near: HashSet<[Owner; 2]>,
 }
 
 impl ContactMemory {
@@ -50,6 +55,13 @@ impl ContactMemory {
         self.pressed.contains(&[one.min(other), one.max(other)])
     }
 
+    /// Whether a contact begins with an overlap that the last step has not made: its owners were not near each other then, or it was
+    /// left a part of an overlap.
+    pub fn finds_overlap(&self, key: &ContactKey) -> bool {
+        let parts = self.last.get(key).is_some_and(|state| state.parts);
+        parts || !self.near.contains(&key.owners())
+    }
+
     /// Notes the state of a contact for the next step.
     pub fn remember(&mut self, key: ContactKey, state: Remembered) {
         self.next.insert(key, state);
@@ -59,14 +71,16 @@ impl ContactMemory {
     pub fn turn_over(&mut self) {
         std::mem::swap(&mut self.last, &mut self.next);
         self.next.clear();
-        self.list_pressed();
+        self.list_owners();
     }
 
-    /// Lists who presses whom, once for all islands.
-    pub fn list_pressed(&mut self) {
+    /// Lists who presses whom, and who is near whom, once for all islands.
+    pub fn list_owners(&mut self) {
         self.pressed.clear();
         let pressed = self.last.iter().filter(|(_, state)| state.normal > 0.0);
         self.pressed.extend(pressed.map(|(key, _)| key.owners()));
+        self.near.clear();
+        self.near.extend(self.last.keys().map(ContactKey::owners));
     }
 
     /// Keeps the states of the last step that nobody noted anew and that `sleeps` names.

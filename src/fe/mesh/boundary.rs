@@ -43,6 +43,7 @@ pub struct Boundary {
     next: Vec<usize>,
     previous: Vec<usize>,
     is_boundary: Vec<bool>,
+    is_midside: Vec<bool>,
     mean_length: f64,
 }
 
@@ -105,6 +106,25 @@ impl Boundary {
         self.is_boundary.get(node).copied().unwrap_or(false)
     }
 
+    /// Whether a node lies on the boundary between the two corners of an edge; `false` for indices beyond the mesh.
+    pub fn is_midside(&self, node: usize) -> bool {
+        self.is_midside.get(node).copied().unwrap_or(false)
+    }
+
+    /// Shares of a segment that its first and its second node stand for (-): what a uniform load on it comes to at the nodes, by the
+    /// shape functions of its edge. A half each, or a third at the corner and two thirds at the midside node.
+    ///
+    /// # Panics
+    /// If there is no such segment.
+    pub fn node_shares(&self, segment: usize) -> [f64; 2] {
+        let [first, second] = self.segments[segment].map(|node| self.is_midside[node]);
+        match (first, second) {
+            (false, true) => [1.0 / 3.0, 2.0 / 3.0],
+            (true, false) => [2.0 / 3.0, 1.0 / 3.0],
+            _ => [0.5; 2],
+        }
+    }
+
     /// Finds the loops of cells whose indices and shapes have been checked.
     pub(super) fn new(nodes: &[[f64; 2]], cells: &Cells) -> Result<Self, MeshError> {
         let free = free_sides(cells, nodes.len())?;
@@ -117,6 +137,9 @@ impl Boundary {
         }
         let mut boundary = Self::from_rings(rings, nodes.len());
         boundary.mean_length = boundary.mean_length(nodes);
+        for side in free.iter().filter(|side| side.midside != NONE) {
+            boundary.is_midside[side.midside] = true;
+        }
         Ok(boundary)
     }
 
@@ -136,6 +159,7 @@ impl Boundary {
             next: Vec::new(),
             previous: Vec::new(),
             is_boundary: vec![false; n_nodes],
+            is_midside: vec![false; n_nodes],
             mean_length: 0.0,
         };
         for ring in rings {

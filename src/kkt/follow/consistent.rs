@@ -45,8 +45,9 @@ pub(super) fn solve_consistently(
         if solved.is_ok() && !contradicts(island, settings) {
             break true;
         }
-        // Joints that turn far contradict each other less in a shorter step; in the last part of one they give way as contacts do.
-        if settings.may_be_cut && strains_joints(island, settings) {
+        // Joints that turn far contradict each other less in a shorter step; in the last part of one, and where nothing turns, they give way as
+        // contacts do.
+        if settings.may_be_cut && turns_far(island) && strains_joints(island, settings) {
             break false;
         }
         let Some(softness) = softer.next() else {
@@ -136,6 +137,11 @@ pub(in crate::kkt) fn joint_violation(island: &Island) -> f64 {
         .filter(|tie| tie.is_left || tie.is_out_of_reach);
     let off = left.map(|tie| (tie.goal + tie.gap - tie.target).abs());
     off.fold(0.0, f64::max)
+}
+
+/// Whether joints turn so far within the step that a shorter one asks for something else.
+fn turns_far(island: &Island) -> bool {
+    island.joints.bend(&island.blocks) > CLOSE_ENOUGH * island.passes.margin
 }
 
 /// Whether some joint is in that contradiction.

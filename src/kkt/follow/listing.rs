@@ -21,6 +21,8 @@ pub(super) struct Listing<'a> {
     pub is_again: bool,
     /// Overlap beyond which a contact parts by and by (m), and the share of it that stays for this step.
     pub slop: f64,
+    /// The same where bodies that deform were put into each other: pressed out at once, the rest would store energy in them (m).
+    pub rest: f64,
     pub kept: f64,
 }
 
@@ -268,10 +270,14 @@ fn list(island: &mut Island, listed: &Listed, listing: &Listing<'_>) {
             let friction = law.friction;
             let mut contact =
                 ActiveContact::new(candidate, kinematics, remembered, friction, &island.blocks);
-            if listing.memory.is_some() && base.gap < -listing.slop {
-                contact.allowance = listing.kept * base.gap;
-            } else if listing.memory.is_none() {
-                contact.allowance = late_allowance(island, &kinematics, &base, listing);
+            if let Some(memory) = listing.memory {
+                let was_put = !contact.is_hard && memory.finds_overlap(&key);
+                let slop = if was_put { listing.rest } else { listing.slop };
+                if base.gap < -slop {
+                    contact.allowance = listing.kept * base.gap;
+                }
+            } else {
+                contact.allowance = late_allowance(island, &contact, &base, listing);
             }
             contact.asked = contact.allowance;
             island.passes.fresh.push(island.contacts.len());
@@ -285,9 +291,15 @@ fn list(island: &mut Island, listed: &Listed, listing: &Listing<'_>) {
 
 /// What a row that comes near within the step leaves of an overlap that rapier has handed over (m), zero or less: as much as the rest of
 /// both bodies, which part by and by, and no more than there was along the row.
-fn late_allowance(island: &Island, row: &Kinematics, base: &AtBase, listing: &Listing<'_>) -> f64 {
-    let began = base.gap - row.normal.dot(&base.moved);
-    if began >= -listing.slop {
+fn late_allowance(
+    island: &Island,
+    new: &ActiveContact,
+    base: &AtBase,
+    listing: &Listing<'_>,
+) -> f64 {
+    let began = base.gap - new.kinematics.normal.dot(&base.moved);
+    let slop = if new.is_hard { listing.slop } else { 0.0 };
+    if began >= -slop {
         return 0.0;
     }
     let is_of_both = |contact: &&ActiveContact| {

@@ -299,6 +299,18 @@ impl Joints {
         error
     }
 
+    /// How far the ends of joints are at most from where the rows of the beginning would have them (m): by how much bodies that turn make
+    /// rows mean other things within the step.
+    pub(in crate::kkt) fn bend(&self, blocks: &[Block]) -> f64 {
+        let stiff = self.ties.iter().filter(|tie| tie.give == 0.0);
+        let bends = stiff.map(|tie| {
+            let grips = &self.grips[tie.row.grips.0..tie.row.grips.1];
+            let value = tie.row.sign * tie.row.measure.value(blocks, grips, When::Now);
+            (value - tie.start - tie.moved(blocks, &self.grips)).abs()
+        });
+        bends.fold(0.0, f64::max)
+    }
+
     /// Notes that the forces of soft joints acted along the rows that they have.
     pub(in crate::kkt) fn keep_rows(&mut self) {
         self.applied_grips.clear();

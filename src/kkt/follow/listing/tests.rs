@@ -16,6 +16,7 @@ const PASS: Listing<'_> = Listing {
     keeps_rows: false,
     is_again: false,
     slop: 0.0,
+    rest: 0.0,
     kept: 0.0,
 };
 

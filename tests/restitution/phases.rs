@@ -1,0 +1,88 @@
+//! A step ends where bodies touch, or have bounced: what they leave with does not depend on when in the step they met.
+
+use super::SPEED;
+use super::common::*;
+
+/// Shares of a step that have passed when the bodies meet.
+const PHASES: [f64; 7] = [0.02, 0.2, 0.4, 0.5, 0.6, 0.8, 0.98];
+
+fn stiff(size: [f64; 2], cells: [usize; 2], e: f64) -> FlexBodyBuilder {
+    FlexBodyBuilder::rectangle(size, cells)
+        .material(LinearElastic::plane_strain(1e11, 0.3).density(1000.0))
+        .friction(0.0)
+        .restitution(e)
+}
+
+/// Leaving over approaching velocity of a block, large or small strain, that falls on the ground.
+fn on_the_ground(is_large: bool, way: f64, e: f64, rate: f64) -> f64 {
+    let mut scene = Scene::in_free_space(1.0 / rate);
+    scene.fixed(
+        ColliderBuilder::cuboid(5.0, 0.5)
+            .translation(vec2(0.0, -0.5))
+            .restitution(real(e)),
+    );
+    let block = stiff([0.5, 0.3], [5, 4], e)
+        .translation([-0.25, way])
+        .linvel([0.0, -SPEED]);
+    let block = match is_large {
+        true => block.large_strain(),
+        false => block.small_strain(),
+    };
+    let block = scene.flexible(block);
+    scene.steps(7);
+    scene.body(block).linvel()[1] / SPEED
+}
+
+/// The same of a rigid ball that falls on a slab.
+fn on_a_slab(way: f64, e: f64, rate: f64) -> f64 {
+    let mut scene = Scene::in_free_space(1.0 / rate);
+    scene.flexible(
+        stiff([1.0, 0.2], [10, 4], e)
+            .translation([-0.5, -0.2])
+            .pin_where(|[_, y]| y == 0.0, Pin::both()),
+    );
+    let (ball, _) = scene.rigid(
+        RigidBodyBuilder::dynamic()
+            .translation(vec2(0.0, 0.1 + way))
+            .linvel(vec2(0.0, -SPEED)),
+        ColliderBuilder::ball(0.1)
+            .density(1000.0)
+            .friction(0.0)
+            .restitution(real(e)),
+    );
+    scene.steps(7);
+    f64::from(scene.world.bodies[ball].linvel().y) / SPEED
+}
+
+/// The same of a block that meets one at rest.
+fn on_a_block(way: f64, e: f64, rate: f64) -> f64 {
+    let mut scene = Scene::in_free_space(1.0 / rate);
+    let falling = stiff([0.5, 0.3], [5, 4], e)
+        .translation([-0.25, way])
+        .linvel([0.0, -SPEED]);
+    let falling = scene.flexible(falling);
+    let resting = scene.flexible(stiff([0.5, 0.3], [5, 4], e).translation([-0.25, -0.3]));
+    scene.steps(7);
+    (scene.body(falling).linvel()[1] - scene.body(resting).linvel()[1]) / SPEED
+}
+
+#[test]
+fn a_rebound_does_not_depend_on_when_in_the_step_bodies_meet() {
+    for (rate, e) in [(60.0, 0.9), (60.0, 0.5), (480.0, 0.9)] {
+        for phase in PHASES {
+            let way = (2.0 + phase) * SPEED / rate;
+            let found = [
+                on_the_ground(true, way, e, rate),
+                on_the_ground(false, way, e, rate),
+                on_a_slab(way, e, rate),
+                on_a_block(way, e, rate),
+            ];
+            for (found, what) in found.iter().zip(["large", "small", "ball", "blocks"]) {
+                assert!(
+                    (found - e).abs() < 2e-3,
+                    "{what}, e {e}, {phase} of a step of 1/{rate} s: {found}"
+                );
+            }
+        }
+    }
+}
