@@ -376,6 +376,47 @@ fn a_straight_column_is_led_onto_its_bent_path_at_eulers_load() {
     assert!((factors[0] - factors[1]).abs() < 1e-7, "{factors:?}");
 }
 
+/// The more slender a column, the farther from its crossing rounding turns the tangent of its path onto the other one: wherever increments end, it is
+/// found, and the bent path goes on from there.
+#[test]
+fn the_crossing_of_a_slender_column_is_found_by_increments_of_any_length() {
+    for (thickness, n_cells) in [(0.02, 30), (0.005, 80)] {
+        let model = plate(
+            [1.0, thickness],
+            [n_cells, 2],
+            CellKind::Quad4,
+            Arc::clone(&laws(12.0 / f64::powi(thickness, 3), 0.0)[0]),
+        );
+        let rest = model.rest_positions().to_vec();
+        let is_held: Vec<bool> = rest
+            .chunks_exact(2)
+            .flat_map(|x| [x[0] == 0.0; 2])
+            .collect();
+        let mut load = vec![0.0; rest.len()];
+        for (y, share) in [(0.0, 0.25), (0.5 * thickness, 0.5), (thickness, 0.25)] {
+            load[2 * node_at(&model, [1.0, y])] = -std::f64::consts::PI.powi(2) / 4.0 * share;
+        }
+        for k in 0..25 {
+            let first = 0.02 + 0.004 * f64::from(k);
+            let case = PathCase::dead(load.clone(), is_held.clone(), &rest);
+            let settings = PathSettings {
+                first,
+                ..PathSettings::default()
+            };
+            let mut path = PathStepper::new(model.clone(), case, &rest, settings).expect("a case");
+            let branch = path.follow_to_branch();
+            let branch = branch.unwrap_or_else(|error| panic!("{thickness} m, {first}: {error}"));
+            assert!(
+                (branch.factor - 1.0).abs() < 2e-3,
+                "{thickness} m, {first}: {}",
+                branch.factor
+            );
+            let bent = path.switch(&branch, 0.05).expect("the bent path");
+            assert!(bent.is_stable, "{thickness} m, {first}");
+        }
+    }
+}
+
 #[test]
 fn what_leads_nowhere_is_refused_and_nothing_moves() {
     let (model, is_held, tip) = strip();

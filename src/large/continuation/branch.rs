@@ -11,8 +11,12 @@ use crate::math::rounding::SHARE;
 /// A crossing is found when its bracket is this small beside the increment that has passed it.
 const NEAR: f64 = SHARE;
 
-/// Where a bracket is smaller than that, what has been found is a crossing though its neighbourhood has no tangent to rounding.
-const ROUGHLY: f64 = 1e-4;
+/// Where a bracket is smaller than that, what has been found is a crossing though its neighbourhood has no tangent to rounding: of a column
+/// of two hundred times its thickness, that is a thousandth of the increment.
+const ROUGHLY: f64 = 1e-2;
+
+/// Where in a bracket is looked, in turn, for a place that has a tangent (-).
+const PLACES: [f64; 5] = [0.5, 0.25, 0.75, 0.125, 0.875];
 
 /// A point where another path crosses, such as the critical load of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,9 +97,16 @@ impl PathStepper {
         let (mut low, mut high) = (0.0, whole);
         let mut best = self.attempt(whole)?.point;
         while high - low > NEAR * whole {
-            let at = 0.5 * (low + high);
-            let reached = match self.attempt(at) {
-                Ok(reached) => reached,
+            let mut look = |place: f64| {
+                let at = low + place * (high - low);
+                self.attempt(at).map(|reached| (at, reached))
+            };
+            let mut found = look(PLACES[0]);
+            for place in &PLACES[1..] {
+                found = found.or_else(|first| look(*place).map_err(|_| first));
+            }
+            let (at, reached) = match found {
+                Ok(found) => found,
                 // So near that the tangent has no digits left.
                 Err(_) if high - low <= ROUGHLY * whole => break,
                 Err(error) => return Err(error),
