@@ -430,3 +430,49 @@ fn stacks_of_blocks_fall_asleep() {
         }
     }
 }
+
+/// What joints hold as they fall asleep they go on holding, as contacts do, until something wakes them.
+#[test]
+fn joints_of_sleepers_are_still_told() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    let block =
+        FlexBodyBuilder::rectangle([1.0, 0.3], [10, 3]).material(elastic(1e7, 1000.0, 5e-3));
+    let block = scene.flexible(block.translation([-0.5, 0.001]));
+    let boxes = [-0.25, 0.25].map(|x| {
+        let body = RigidBodyBuilder::dynamic().translation(vec2(x, 0.4));
+        let shape = ColliderBuilder::cuboid(0.2, 0.1).density(1000.0);
+        scene.world.insert(body, shape).0
+    });
+    let weld = FixedJointBuilder::new()
+        .local_anchor1(vec2(0.25, 0.0))
+        .local_anchor2(vec2(-0.25, 0.0));
+    scene.world.insert_impulse_joint(boxes[0], boxes[1], weld);
+    let mut last = Vec::new();
+    let mut n_asleep = 0;
+    for _ in 0..600 {
+        let report = scene.step();
+        let (sleeps, joints) = (report.n_asleep() == 1, report.joints().to_vec());
+        assert_eq!(joints.len(), 1, "asleep: {sleeps}");
+        assert!(!report.contacts().is_empty());
+        if sleeps && n_asleep > 0 {
+            assert_eq!(joints, last);
+        }
+        n_asleep += usize::from(sleeps);
+        last = joints;
+    }
+    assert!(n_asleep > 60, "{n_asleep} steps asleep");
+    scene.bodies[block].wake_up();
+    let report = scene.step();
+    assert_eq!((report.n_asleep(), report.joints().len()), (0, 1));
+    // What is removed is told of no more.
+    scene.steps(600);
+    let joint = scene
+        .world
+        .impulse_joints
+        .iter()
+        .map(|(handle, _)| handle)
+        .next();
+    scene.world.remove_impulse_joint(joint.expect("the weld"));
+    assert!(scene.step().joints().is_empty());
+}

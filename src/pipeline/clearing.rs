@@ -1,6 +1,6 @@
 //! Writing reports: they are cleared with their buffers, and told what belongs to no island.
 
-use super::participant::Participant;
+use super::participant::{Held, Participant};
 use super::quality::Unsolved;
 use super::report::StepReport;
 use crate::coupling::RapierSets;
@@ -16,6 +16,7 @@ impl StepReport {
             contacts,
             joints,
             contacts_before: before.contacts_before,
+            joints_before: before.joints_before,
             overbent: before.overbent,
             n_asleep: before.n_asleep,
             n_solves: before.n_solves,
@@ -35,7 +36,8 @@ impl StepReport {
         let contacts_before = std::mem::take(&mut self.contacts);
         let mut contacts = std::mem::take(&mut self.contacts_before);
         contacts.clear();
-        let mut joints = std::mem::take(&mut self.joints);
+        let joints_before = std::mem::take(&mut self.joints);
+        let mut joints = std::mem::take(&mut self.joints_before);
         joints.clear();
         let mut overbent = std::mem::take(&mut self.overbent);
         overbent.clear();
@@ -44,6 +46,7 @@ impl StepReport {
             contacts,
             contacts_before,
             joints,
+            joints_before,
             overbent,
             ..Self::default()
         };
@@ -57,6 +60,19 @@ impl StepReport {
             .iter()
             .filter(|contact| sleeps(contact.contactor) || sleeps(contact.target));
         self.contacts.extend(kept);
+    }
+
+    /// Keeps the joints of the step before that are not in this one and whose bodies `sleep`.
+    pub(super) fn keep_joints(&mut self, sleep: impl Fn(Held) -> bool) {
+        let n_solved = self.joints.len();
+        for one in &self.joints_before {
+            let is_solved = self.joints[..n_solved]
+                .iter()
+                .any(|own| own.joint == one.joint);
+            if !is_solved && sleep(one.joint) {
+                self.joints.push(*one);
+            }
+        }
     }
 
     /// The contacts of the step before, all of them, where nothing was solved.

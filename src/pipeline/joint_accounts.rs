@@ -9,6 +9,7 @@ use crate::body::{AttachmentTarget, FlexBodySet};
 use crate::coupling::RapierSets;
 use crate::kkt::{ActiveJoint, Island};
 use crate::math::{Vec2, cross};
+use crate::rapier::prelude::RigidBody;
 
 impl JointReport {
     /// What the joints of a solved part did, one after the other: the rows of each stand together.
@@ -92,4 +93,19 @@ pub(super) fn drop_orphans(sets: &RapierSets<'_>, flex_bodies: &mut FlexBodySet)
         }
         all = flex_bodies.iter_attachments();
     }
+}
+
+/// Whether a joint of rapier holds bodies that sleep, and nothing that moves.
+pub(super) fn joins_sleepers(held: Held, sets: &RapierSets<'_>) -> bool {
+    let Held::Joint(joint) = held else {
+        return false;
+    };
+    let joint = sets.impulse_joints.get(joint);
+    joint.is_some_and(|joint| {
+        let bodies = [joint.body1(), joint.body2()].map(|body| sets.bodies.get(body));
+        let is_still =
+            |body: &RigidBody| body.is_sleeping() || body.is_fixed() || !body.is_enabled();
+        let sleeps = |body: &&RigidBody| body.is_sleeping();
+        bodies.iter().flatten().any(sleeps) && bodies.iter().flatten().all(|body| is_still(body))
+    })
 }

@@ -19,6 +19,8 @@ pub struct StepReport {
     /// Contacts of the step before, of which those of sleepers are kept.
     pub(super) contacts_before: Vec<ContactReport>,
     pub(super) joints: Vec<JointReport>,
+    /// Joints of the step before, likewise.
+    pub(super) joints_before: Vec<JointReport>,
     pub(super) energy: EnergyReport,
     pub(super) momentum: [f64; 2],
     pub(super) angular_momentum: f64,
@@ -67,7 +69,7 @@ impl StepReport {
         &self.contacts
     }
 
-    /// Reactions of joints between claimed bodies, and of attachments.
+    /// Reactions of joints between claimed bodies, and of attachments; of joints whose bodies sleep, those they fell asleep with.
     pub fn joints(&self) -> &[JointReport] {
         &self.joints
     }

@@ -4,7 +4,7 @@ use super::checks::{check_bodies, check_colliders, check_step};
 use super::clock::Clock;
 use super::error::StepError;
 use super::flex_pipeline::FlexPipeline;
-use super::joint_accounts::{commit_attachments, drop_orphans};
+use super::joint_accounts::{commit_attachments, drop_orphans, joins_sleepers};
 use super::notes::notes_of_newcomers;
 use super::overbent::list_overbent;
 use crate::body::FlexBodySet;
@@ -116,6 +116,7 @@ impl FlexPipeline {
         self.report.n_asleep = flex_bodies.len();
         self.tell_what_was_put_together(sets, flex_bodies);
         self.report.keep_all_contacts();
+        self.report.keep_joints(|held| joins_sleepers(held, sets));
     }
 
     /// Wakes what the user has disturbed, and what rested on, or beside, something that was changed: rapier's detection step knows who
@@ -244,6 +245,7 @@ impl FlexPipeline {
             self.memory.keep(|owner| flex.sleeps(sets, owner));
             self.report
                 .keep_contacts(|one| flex.sleeps(sets, one.owner()));
+            self.report.keep_joints(|held| joins_sleepers(held, sets));
         }
         self.memory.turn_over();
         for end in &self.outcome.flexible {
