@@ -62,3 +62,6 @@ mod sandwich;
 
 #[path = "joints/jumps.rs"]
 mod jumps;
+
+#[path = "joints/clamped.rs"]
+mod clamped;
