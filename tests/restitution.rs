@@ -6,6 +6,8 @@ mod common;
 mod hits;
 #[path = "restitution/phases.rs"]
 mod phases;
+#[path = "restitution/spinning.rs"]
+mod spinning;
 
 use CoefficientCombineRule::{Average, Max, Min, Multiply};
 use common::*;

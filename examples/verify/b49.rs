@@ -24,7 +24,7 @@ use super::statics::grid;
 use foil2d::prelude::*;
 
 pub fn run(sheet: &mut Sheet) -> Outcome {
-    let (n, dt) = sheet.choose((40, 0.01), (24, 0.02));
+    let (n, dt) = sheet.choose((40, 0.005), (24, 0.01));
     let mut scene = Scene::new(dt, Beta2::damped(0.0)?);
     let material = |young: f64| LinearElastic::plane_strain(young, 0.32).density(1e-3);
     let foundation = grid([n, n / 4], CellKind::Tri6, |[s, t]| {

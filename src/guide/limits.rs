@@ -61,7 +61,7 @@
 //! - **Flung within a step.** What flies near a flexible body and is flung into it within rapier's own step, by a motor or a joint, is not foreseen. See: [`Quality::Unfinished`](crate::pipeline::Quality::Unfinished) in that step; it
 //!   is solved for from the next one on.
 //! - **No way forward.** A step that can neither be solved nor stopped on its way without gaining energy ends where it began: what touches moves on together with its momentum, or, where bodies were put into each other beside
-//!   something else, waits. See: `Quality::Unfinished`; nothing sleeps in such steps. Do: shorten the step, look at who is named.
+//!   something else, waits; it is tried in all parts again after a few such steps, then after twice as many, and so on. See: `Quality::Unfinished`; nothing sleeps in such steps. Do: shorten the step, look at who is named.
 //!
 //! # Impacts and energy
 //!

@@ -4,6 +4,7 @@ use crate::constraint::contact::{Kinematics, Remembered};
 use crate::linalg::complementarity::Status;
 use crate::math::Vec2;
 use crate::path::NearPair;
+use crate::system::Block;
 
 /// A contact of the working set: its kinematics, multipliers and state.
 #[derive(Clone, Copy, Debug)]
@@ -57,8 +58,6 @@ pub struct ActiveContact {
     pub(super) yielding: [f64; 2],
     /// How far a force of its own moves it within the step, along its normal and its tangent, where that is known (m/N).
     pub(super) mobility: Option<[f64; 2]>,
-    /// Approach velocity at the beginning of the step, `n·v` (m/s).
-    pub approach: f64,
     /// Gap that is left of an overlap the step began with, zero or negative (m): what was put into each other parts by and
     /// by. The solver's gap counts from here.
     pub allowance: f64,
@@ -95,6 +94,13 @@ impl ActiveContact {
             let sum = |axis| self.multiplier[axis] + (self.impulse[axis] + self.late[axis]) / dt;
             [sum(0), sum(1)]
         }
+    }
+
+    /// Velocity along the normal and the tangent at which the bodies came to where they are (m/s), see [`Block::approaching_velocity`].
+    pub(super) fn approach(&self, blocks: &[Block]) -> [f64; 2] {
+        let row = &self.kinematics;
+        let velocity = row.relative(blocks, |block, grip| block.approaching_velocity(grip));
+        [velocity.dot(&row.normal), velocity.dot(&row.tangent())]
     }
 
     /// The force that is left in the stored accelerations (N).

@@ -42,16 +42,20 @@ pub(super) fn has_gained(
 /// Whether bodies that touch have come to more kinetic energy than twice what was brought and what they part with, by the margin at least: no
 /// forces that mean anything do that.
 pub(super) fn is_thrown(island: &Island, summary: &IslandSummary) -> bool {
+    let most = (1.0 + DOUBLED.get()) * summary.brought() + parting_energy(island);
+    let may_touch = !island.path.is_empty() || !island.contacts.is_empty();
+    may_touch && summary.end_energy[0] > most
+}
+
+/// Kinetic energy of bodies that part from the deepest overlap at twice the pace asked for, or from the margin where that is more (J).
+pub(super) fn parting_energy(island: &Island) -> f64 {
     let overlaps = island.contacts.iter().map(|contact| -contact.allowance);
     let deepest = overlaps.fold(island.passes.margin, f64::max);
     let masses = island.blocks.iter().map(|block| match block {
         Block::Flex(block) => block.mass(),
         Block::Rigid(block) => block.mass()[0].max(block.mass()[1]),
     });
-    let parting = 2.0 * masses.sum::<f64>() * (PARTING_RATE * deepest).powi(2);
-    let most = (1.0 + DOUBLED.get()) * summary.brought() + parting;
-    let may_touch = !island.path.is_empty() || !island.contacts.is_empty();
-    may_touch && summary.end_energy[0] > most
+    2.0 * masses.sum::<f64>() * (PARTING_RATE * deepest).powi(2)
 }
 
 /// Whether some rigid body has come to a motion that rapier's numbers do not hold.

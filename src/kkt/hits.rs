@@ -105,7 +105,8 @@ fn met(island: &mut Island, index: usize, settings: &SolveSettings) -> Option<Me
     let base = contact.base.filter(|_| is_hit(contact))?;
     let end = contact.kinematics;
     let law = island.candidates[contact.candidate].law;
-    let rebound = law.rebound(contact.approach, settings.restitution_threshold);
+    let [approach, _] = contact.approach(&island.blocks);
+    let rebound = law.rebound(approach, settings.restitution_threshold);
     let mut grips = end.attachments().iter();
     if !grips.all(|grip| island.passes.carried[grip.block]) {
         return None;

@@ -19,7 +19,8 @@ pub(super) fn velocity_rows(
     state_rows(island, counts, |island, index| {
         let contact = &mut island.contacts[index];
         let law = island.candidates[contact.candidate].law;
-        let rebound = law.rebound(contact.approach, settings.restitution_threshold);
+        let [approach, _] = contact.approach(&island.blocks);
+        let rebound = law.rebound(approach, settings.restitution_threshold);
         // A resolved impact rebounds by its elasticity.
         let rebound = match contact.rebound {
             Some(at_end) => at_end,

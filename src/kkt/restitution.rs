@@ -166,9 +166,10 @@ fn ask(island: &mut Island, rebounds: &[Rebound], groups: &[Option<Group>]) {
 
 /// Adds the work of every contact to that of its group, and what its impulses come to times the motion before (J).
 ///
-/// A position that ends closed has stopped a part of the approach, by the force of the position stage: from where in the step the bodies
-/// met depends how much.
+/// A position that ends closed has stopped a part of the approach, by the forces of the position stage: from where in the step the bodies
+/// met depends how much. Early in it that is more than the law asks for, and impulses give some back, with the friction that went along.
 fn add_works(island: &Island, leaders: &[usize], b1: f64, works: &mut [[f64; 2]]) {
+    let mut taken = 0.0;
     for (row, direction) in island.problem.rows.iter().enumerate() {
         let Some(group) = group_of(island, leaders, direction.contact) else {
             continue;
@@ -179,8 +180,16 @@ fn add_works(island: &Island, leaders: &[usize], b1: f64, works: &mut [[f64; 2]]
         let mean = motion + 0.5 * impulses::change_of(island, row);
         works[group][0] += impulse * mean;
         works[group][1] += (impulse * motion).abs();
-        if direction.axis == 0 && !contact.is_hard {
-            let taken = 0.5 * b1 * contact.multiplier[0] * (contact.approach + motion);
+        if contact.is_hard {
+            continue;
+        }
+        if direction.axis == 0 {
+            taken = 0.0;
+        }
+        let came = contact.approach(&island.blocks)[direction.axis];
+        taken += 0.5 * b1 * contact.multiplier[direction.axis] * (came + motion);
+        let next = island.problem.rows.get(row + 1);
+        if next.is_none_or(|next| next.contact != direction.contact) {
             works[group][0] += taken.min(0.0);
         }
     }

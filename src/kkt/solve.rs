@@ -53,9 +53,13 @@ fn solve_stages(
     let loads = external_work(&island.blocks, &island.contacts);
     let treatment = settings.treatment();
     summary.start_energy = before;
-    let mut contacts = island.contacts.iter();
+    let (mut contacts, closes) = (island.contacts.iter(), closing::closes(island));
     summary.load_energy = load_energy(&island.blocks);
-    summary.is_parting = contacts.any(|contact| contact.allowance < 0.0) || closing::closes(island);
+    summary.is_parting = contacts.any(|contact| contact.allowance < 0.0) || closes;
+    summary.parting_energy = match closes {
+        true => f64::INFINITY,
+        false => gentle::parting_energy(island),
+    };
     let finished = treatment.finish(island, settings, &mut summary);
     let is_unsolved = summary.is_unsolved();
     if finished.is_err() && is_unsolved && !island.path.is_empty() {
@@ -69,6 +73,7 @@ fn solve_stages(
     summary.end_energy = end_energy(&island.blocks);
     let stretched = closing::stretched_by_closing(island, &summary);
     summary.work = island.actual_work(settings) + joint_work.all + stretched;
+    summary.idle_work = joint_work.idle;
     let allowance = loads + joint_work.all + stretched;
     let joints_feed = joint_work.idle > GAINED * summary.brought();
     let is_thrown =

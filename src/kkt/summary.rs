@@ -23,6 +23,8 @@ pub struct IslandSummary {
     pub is_jammed: bool,
     /// Whether bodies that began in each other were pressed apart.
     pub is_parting: bool,
+    /// Kinetic energy that this may have brought at most (J): without a bound where joints close whose ends were put apart.
+    pub parting_energy: f64,
     /// Largest overlap left at a candidate (m).
     pub gap_violation: f64,
     /// Largest slip that friction wedged against itself has given way by (m).
@@ -33,8 +35,10 @@ pub struct IslandSummary {
     pub start_energy: [f64; 2],
     /// Energy at the end: kinetic, elastic with what plastic flow has dissipated (J).
     pub end_energy: [f64; 2],
-    /// Work of applied forces and of prescribed bodies (J).
+    /// Work of applied forces, of prescribed bodies and of joints (J).
     pub work: f64,
+    /// Work of joints that only hold (J): of long steps, as in truth they do none.
+    pub idle_work: f64,
     /// Energy taken out by the energy stage (J).
     pub limited: f64,
     /// What of it was taken from all joined motion, as a step far too long leaves no other place to take it from (J).
@@ -62,5 +66,16 @@ impl IslandSummary {
     /// Kinetic and elastic energy that there was, with what loads and driven bodies have added or taken, or might have (J).
     pub fn brought(&self) -> f64 {
         self.start_energy[0] + self.start_energy[1] + self.work.abs() + self.load_energy
+    }
+
+    /// The most energy that a step with overlaps may add (J): as much as there was and was brought, but by joints that only hold, and what parting may
+    /// bring.
+    pub fn most_of_parting(&self) -> f64 {
+        let worked = (self.work - self.idle_work).abs();
+        self.start_energy[0]
+            + self.start_energy[1]
+            + worked
+            + self.load_energy
+            + self.parting_energy
     }
 }

@@ -16,10 +16,12 @@ pub(crate) trait Number:
     + AddAssign
 {
     const ZERO: Self;
+    const ONE: Self;
 }
 
 impl Number for f64 {
     const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
 }
 
 /// Numbers side by side, each answered for by itself.
@@ -55,6 +57,7 @@ impl Wide {
 
 impl Number for Wide {
     const ZERO: Self = Self([0.0; LANES]);
+    const ONE: Self = Self([1.0; LANES]);
 }
 
 impl Add for Wide {

@@ -19,6 +19,15 @@ use crate::coupling::Span;
 use crate::kkt::{DOUBLED, GAINED};
 use crate::system::Step;
 
+/// How often a step may be cut at most after this many unfinished ones on end: once less after each, until none is left, and all `most` times again after
+/// as many steps, then twice as many, and so on. A step that ends where it began leaves the next one what it could not finish itself: without
+/// another try what holds it up, long gone, would do so for ever.
+fn n_cuts_after(n_unfinished: usize, most: usize) -> usize {
+    let round = n_unfinished / (most + 1) + 1;
+    let begun = (most + 1) * ((1 << round.ilog2()) - 1);
+    most.saturating_sub(n_unfinished - begun)
+}
+
 impl Solver {
     /// Solves the step of one island, in parts if it must be.
     pub(super) fn solve_island(
@@ -44,7 +53,7 @@ impl Solver {
     /// Whether a part of the step of the island that was gathered, which has been cut `n_cuts` times, may be solved in halves. Links of
     /// multibodies move as rapier moves them, in one piece. What could not be finished in the steps before, as bodies that were put into each other
     /// for good, is cut once less for each, and for each of the last parts of this one: it would not be finished in all the parts either, and cost their
-    /// number. What has used up its pivots is not cut any more.
+    /// number. It is tried in all its parts again [now and then](n_cuts_after). What has used up its pivots is not cut any more.
     pub(super) fn may_be_cut(
         &self,
         step: Step,
@@ -53,7 +62,8 @@ impl Solver {
         flex_bodies: &FlexBodySet,
     ) -> bool {
         let most = parameters.most_cutbacks(self.island.has_large());
-        let most = most.saturating_sub(self.n_unfinished(flex_bodies));
+        let most = n_cuts_after(self.n_unfinished(flex_bodies), most);
+        let most = most.saturating_sub(self.under_way.n_unfinished());
         let is_long = 0.5 * step.dt >= SHORTEST;
         let has_links = !self.gatherer.seats.links().is_empty();
         n_cuts < most && !self.is_spent(parameters) && is_long && !step.is_explicit() && !has_links
@@ -74,17 +84,17 @@ impl Solver {
             ..
         } = task;
         let (summary, [before, reserve]) = self.solve_part(part, task, flex_bodies, books)?;
-        // What contact adds and cannot take back is the error of a step that is longer than the impact; what is parted costs energy at any pace.
-        // What joints leave in stored accelerations swings, and a change of the step's length makes it swing more: with joints it must be as
-        // much as there was, on a path.
+        // What contact adds and cannot take back is the error of a step that is longer than the impact; what is parted costs energy at any pace, but not
+        // more than there is. What joints leave in stored accelerations swings, and a change of the step's length makes it swing more: with joints it must
+        // be as much as there was, on a path.
         let swings = self.island.has_swinging_joints(step.is_within());
-        let share = match (swings, parameters.leads(step)) {
-            (false, _) => GAINED.get(),
-            (true, true) => DOUBLED.get(),
-            (true, false) => f64::INFINITY,
+        let most = match (summary.is_parting, swings, parameters.leads(step)) {
+            (true, _, true) => summary.most_of_parting(),
+            (false, false, _) => GAINED * summary.brought(),
+            (false, true, true) => DOUBLED * summary.brought(),
+            (_, _, false) => f64::INFINITY,
         };
-        let owes_more = summary.calmed - reserve > share * summary.brought() + (-before).max(0.0);
-        let is_coarse = owes_more && !summary.is_parting;
+        let is_coarse = summary.calmed - reserve > most + (-before).max(0.0);
         let is_good = !is_coarse && !summary.is_unsolved();
         let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters, flex_bodies);
         let goes_on = !may_be_cut && summary.quality() == Quality::Unfinished && {
@@ -127,5 +137,27 @@ impl Solver {
                 .go_on(&self.island, claimed, reserve, part.span, flex_bodies);
         }
         Ok(Progress::Done)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::n_cuts_after;
+
+    #[test]
+    fn what_is_not_finished_is_cut_less_and_less_and_tried_again_ever_more_seldom() {
+        for most in [0, 1, 3, 5] {
+            let cuts: Vec<usize> = (0..200).map(|n| n_cuts_after(n, most)).collect();
+            let falling: Vec<usize> = (0..=most).rev().collect();
+            let whole = |n: usize| cuts[n..].starts_with(&falling);
+            let round = most + 1;
+            for begun in [0, round, 3 * round, 7 * round, 15 * round] {
+                assert!(whole(begun), "{most}: {begun}");
+            }
+            let n_whole = cuts.iter().filter(|cut| **cut == most).count();
+            assert!(most == 0 || n_whole <= 1 + (200 / round + 1).ilog2() as usize);
+        }
+        // Whatever the number of steps is.
+        assert_eq!(n_cuts_after(u32::MAX as usize, 5), 0);
     }
 }

@@ -239,11 +239,10 @@ impl Solver {
         bodies.map(FlexBody::energy_reserve).sum()
     }
 
-    /// Steps on end that were not finished for any of the island's bodies, and parts of this one.
+    /// Steps on end that were not finished for any of the island's bodies.
     pub(super) fn n_unfinished(&self, flex_bodies: &FlexBodySet) -> usize {
         let bodies = self.flexible(flex_bodies);
-        let steps = bodies.map(FlexBody::n_unfinished).min().unwrap_or(0) as usize;
-        steps + self.under_way.n_unfinished()
+        bodies.map(FlexBody::n_unfinished).min().unwrap_or(0) as usize
     }
 
     /// Whether the step of the island has used up its pivots.

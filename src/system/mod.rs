@@ -27,7 +27,7 @@ pub use rigid_motion::RigidMotion;
 pub use rigid_way::RigidWay;
 pub use step::{FlexLoad, Response, Step};
 
-use crate::math::{Mat2, Vec2};
+use crate::math::{Mat2, Vec2, perp};
 
 /// A material point of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,6 +108,21 @@ impl Block {
         match (self, grip.point) {
             (Self::Flex(block), Point::Node(node)) => block.start_velocity(node),
             (Self::Rigid(block), Point::Arm(arm)) => block.start().point_velocity(arm),
+            _ => mismatch(),
+        }
+    }
+
+    /// The same velocity, turned on to where the block is at the iterate (m/s): what meets there came at it, if nothing has changed it since.
+    ///
+    /// The point that touches in the end was elsewhere as the step began, and a spin led it towards what it had not come to: for as much of a turn
+    /// as the step has, that is as much of the spin.
+    pub fn approaching_velocity(&self, grip: Grip) -> Vec2 {
+        match (self, grip.point) {
+            (Self::Flex(block), Point::Node(node)) => block.approaching_velocity(node),
+            (Self::Rigid(block), Point::Arm(_)) => {
+                let start = block.start();
+                start.velocity + start.spin * perp(grip.lever)
+            }
             _ => mismatch(),
         }
     }

@@ -111,7 +111,7 @@ fn a_plate_lies_on_the_pressure_of_a_balloon() {
             .locked_axes(LockedAxes::ROTATION_LOCKED | LockedAxes::TRANSLATION_LOCKED_X),
         ColliderBuilder::cuboid(1.0, 0.01).mass(real(weight / G)),
     );
-    scene.steps(360);
+    scene.steps(540);
     let pressure = scene.body(ring).gas_pressure(0).expect("a hole") - 1000.0 * G * skin;
     let [_, force] = scene.force_on_collider(plate);
     assert!((force / weight - 1.0).abs() < 1e-3, "{force} N");

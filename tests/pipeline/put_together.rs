@@ -71,7 +71,8 @@ fn a_body_put_into_an_older_one_is_told_until_it_is_out() {
     }
 }
 
-/// What cannot be parted, a box in the ground and in a beam that is held, stays told and awake, and costs one try in the end.
+/// What cannot be parted, a box in the ground and in a beam that is held, stays told and awake, and costs one try but for those steps in which it is
+/// tried in parts again, ever more seldom.
 #[test]
 fn what_is_stuck_for_good_is_told_in_every_step_and_costs_one_try() {
     let mut scene = Scene::new(1.0 / 60.0);
@@ -79,7 +80,8 @@ fn what_is_stuck_for_good_is_told_in_every_step_and_costs_one_try() {
     scene.flexible(beam(0.5).small_strain());
     scene.steps(20);
     let (body, _) = put(&mut scene, 1.04, [2.14, 0.77], InteractionGroups::all());
-    for step in 0..120 {
+    let mut in_parts = Vec::new();
+    for step in 0..240 {
         let report = scene.try_step().expect("a step");
         let (quality, overlap, n_parts) =
             (report.quality(), report.gap_violation(), report.n_parts());
@@ -87,9 +89,15 @@ fn what_is_stuck_for_good_is_told_in_every_step_and_costs_one_try() {
         if step >= 10 {
             assert_eq!(quality, Quality::Unfinished, "step {step}");
             assert!(overlap > 0.01, "step {step}: {overlap} m");
-            assert_eq!(n_parts, 1, "step {step}");
+        }
+        if n_parts > 1 {
+            in_parts.push(step);
         }
         assert!(!scene.world.bodies[body].is_sleeping(), "step {step}");
+    }
+    for span in [30..60, 60..120, 120..240] {
+        let n_tried = in_parts.iter().filter(|step| span.contains(*step)).count();
+        assert!((1..=3).contains(&n_tried), "{span:?}: {in_parts:?}");
     }
 }
 

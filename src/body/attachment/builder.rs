@@ -107,8 +107,8 @@ impl AttachmentBuilder {
         self
     }
 
-    /// Holds the nodes of the boundary whose position in the mesh's own coordinates (m) fulfils a condition, an edge or a region, beside
-    /// those chosen before.
+    /// Holds the nodes of the boundary whose position in the mesh's own coordinates (m), those before the builder's translation and rotation, fulfils a
+    /// condition, an edge or a region, beside those chosen before.
     pub fn where_(mut self, choose: impl Fn([f64; 2]) -> bool + 'static) -> Self {
         self.0.choice.regions.push(Box::new(choose));
         self
@@ -134,7 +134,8 @@ impl AttachmentBuilder {
     }
 
     /// The point held or pulled towards: of the world, of the rigid body in its own coordinates, or in the world near the surface of
-    /// the flexible one (m). Without it, where the nodes' mean is.
+    /// the flexible one (m). Without it, where the nodes' mean is. Nodes that are elsewhere are pulled there at once, with all the force that this takes: a
+    /// point of the world that was meant for a rigid body's own coordinates throws both.
     pub fn at_point(mut self, point: [f64; 2]) -> Self {
         self.0.point = Some(point.into());
         self

@@ -13,7 +13,7 @@ pub enum AttachmentError {
     Body(#[from] FlexBodyError),
     /// No node was chosen.
     #[error(
-        "the attachment holds no node: name nodes, or choose a region that has some of the body's surface in it"
+        "the attachment holds no node: name nodes, or choose a region that has some of the body's surface in it (in the mesh's own coordinates, before the builder's translation and rotation)"
     )]
     NoNodes,
     /// A node is not on the surface.

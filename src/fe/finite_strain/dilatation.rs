@@ -19,14 +19,14 @@
 //! fields of `J` are not changed.
 //!
 //! The decay of vibrations resists a change of volume by the same modulus, and would hold at the points what the law lets go: its part
-//! `χ/2 λ τ`, `τ = F½ : ΔF`, is smoothed likewise. What flows is told by `Fe = F Fp⁻¹` and `J = k det Fe`, `k = 1/det Fp⁻¹` in the plane.
+//! `χ/2 λ (J' - J)` is smoothed likewise. What flows is told by `Fe = F Fp⁻¹` and `J = k det Fe`, `k = 1/det Fp⁻¹` in the plane.
 
 mod kernels;
 
 use super::cells::CellGroup;
 use super::deformed::Deformed;
 use super::linearization::Linearization;
-use super::point::{Form, middle, moduli_of_pair};
+use super::point::{Form, cofactor, growth, moduli_of_pair};
 use crate::fe::element::{Element, ElementError, LinearFit, MAX_POINTS};
 use crate::fe::material::hyperelastic::{BesideRest, ElasticConstants, Volumetric};
 
@@ -81,8 +81,10 @@ pub(super) struct Cell<'a> {
 /// What smoothing changes in the answer of a point.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Shift {
-    /// Added to the pair `(a, b)` of the law, by the elastic gradient (Pa).
-    pub pair: [f64; 2],
+    /// Added to the `b` of the law, by the elastic gradient (Pa).
+    pub slope: f64,
+    /// The same of the decay (Pa).
+    pub decay: f64,
     /// Taken from its second derivatives by `J` (Pa).
     pub fall: f64,
     /// `Π b̄ - b`, by the whole gradient: a pressure, tension positive (Pa).
@@ -140,13 +142,13 @@ impl<'a> Smoothing<'a> {
         ([a, b], [tt, tj, jj]): ([f64; 2], [f64; 3]),
         ends: [[f64; 4]; 2],
     ) -> [[f64; 4]; 4] {
-        let pair = [a, b + shift.pair[1]];
+        let pair = [a, b + shift.slope];
         let second = [tt, tj, jj - shift.fall];
         let mut moduli = moduli_of_pair(constants, (form, kind), (pair, second), ends);
         if let (Some(of), Form::EnergyMomentum { decay }) = (self.of, form) {
-            let at = form.gradient_of(ends[0], ends[1]);
-            for (row, own) in moduli.iter_mut().zip(at) {
-                for (entry, other) in row.iter_mut().zip(at) {
+            let across = cofactor(form.gradient_of(ends[0], ends[1]));
+            for (row, own) in moduli.iter_mut().zip(across) {
+                for (entry, other) in row.iter_mut().zip(across) {
                     *entry -= 0.5 * decay * of.lambda * own * other;
                 }
             }
@@ -251,23 +253,15 @@ impl Cell<'_> {
         answers
     }
 
-    /// Half of what the decay resists a change of volume by, `χ/4 λ` (Pa).
+    /// What the decay resists a change of volume by, `χ/2 λ` (Pa).
     fn decay(&self, form: Form) -> f64 {
-        match form {
-            Form::EnergyMomentum { decay } => 0.25 * decay * self.of.lambda,
-            Form::Equilibrium => 0.0,
-        }
+        0.5 * form.decays().unwrap_or(0.0) * self.of.lambda
     }
 
     /// What smoothing changes at the points.
     fn shifts(&self, form: Form, slopes: &[[f64; 2]; MAX_POINTS]) -> [Shift; MAX_POINTS] {
         let pressures = self.smoothed(|point| slopes[point][0]);
-        // τ = F½ : ΔF.
-        let growth = |point: usize| {
-            let [start, end] = [0, 1].map(|end| self.ends[end][point]);
-            let at = middle(start, end);
-            (0..4).map(|k| at[k] * (end[k] - start[k])).sum::<f64>()
-        };
+        let growth = |point: usize| growth([0, 1].map(|end| self.ends[end][point]));
         let decay = self.decay(form);
         let growths = match decay > 0.0 {
             true => self.smoothed(growth),
@@ -287,7 +281,8 @@ impl Cell<'_> {
                 false => 0.0,
             };
             *shift = Shift {
-                pair: [along, k * pressure],
+                slope: k * pressure,
+                decay: along,
                 fall: second * k * k * rise,
                 pressure,
             };

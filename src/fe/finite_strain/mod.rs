@@ -5,12 +5,13 @@
 //!
 //! ```text
 //! equilibrium       P = 2 W_t F + W_J cof F
-//! energy-momentum   P = 2 a F½ + b cof F½ + F½ S,    S = χ/2 D0 : (E' - E),    E = (FᵀF - I)/2
+//! energy-momentum   P = 2 a F½ + b cof F½ + χ/2 (2 μ F½ (E' - E) + λ (J' - J) cof F½),    E = (FᵀF - I)/2
 //! ```
 //!
 //! where the first two terms conserve energy and angular momentum of a step from `F` to `F'` exactly (see
-//! [`hyperelastic`](crate::fe::material::hyperelastic)), and the third, with the constant moduli `D0` at rest, makes
-//! vibrations decay: it takes `F½ S : (F' - F) = χ/2 (E' - E) : D0 : (E' - E) ≥ 0` from them, and nothing from rotations.
+//! [`hyperelastic`](crate::fe::material::hyperelastic)), and the third, with Lamé's constants `λ` and `μ` at rest, makes
+//! vibrations decay: it takes `χ/2 (2 μ (E' - E) : (E' - E) + λ (J' - J)²) ≥ 0` from them, and nothing from rotations. What keeps its volume
+//! is resisted by `μ` alone, however little the material gives way to pressure: `tr E` changes then too, at any strain that is not small.
 //! For small strains that is the stiffness part `χ dt/2` of Rayleigh damping.
 //!
 //! | file | owns |

@@ -27,6 +27,15 @@ impl Form {
         }
     }
 
+    /// The decay `χ`, where there is any (-).
+    #[inline(always)]
+    pub(super) fn decays(self) -> Option<f64> {
+        match self {
+            Self::EnergyMomentum { decay } if decay > 0.0 => Some(decay),
+            _ => None,
+        }
+    }
+
     /// The gradient that forces are taken at.
     #[inline(always)]
     pub(super) fn gradient_of<T: Number>(self, start: [T; 4], end: [T; 4]) -> [T; 4] {
@@ -85,15 +94,18 @@ pub(super) fn stress_of_sums<T: Number>(
 ) -> [T; 4] {
     let at = form.gradient_of(start, end);
     let [xx, xy, yx, yy] = at;
+    let decay = form
+        .decays()
+        .map(|decay| Decay::of(constants, decay, [start, end]));
+    // A pressure is part of `b`.
+    let pressure = decay.map_or(T::ZERO, |decay| decay.pressure);
     // Twice α, β, γ and δ of the two parts.
-    let (turned, rest) = (turned * 0.5, rest * 0.5);
+    let (turned, rest) = ((turned + pressure) * 0.5, (rest - pressure) * 0.5);
     let [alpha, beta] = [turned * (xx + yy), turned * (yx - xy)];
     let [gamma, delta] = [rest * (xx - yy), rest * (xy + yx)];
     let mut stress = [alpha + gamma, delta - beta, delta + beta, alpha - gamma];
-    if let Form::EnergyMomentum { decay } = form
-        && decay > 0.0
-    {
-        let [xx, yy, xy] = decay_stress(constants, decay, start, end);
+    if let Some(Decay { shear, .. }) = decay {
+        let [xx, yy, xy] = shear;
         stress[0] += at[0] * xx + at[1] * xy;
         stress[1] += at[0] * xy + at[1] * yy;
         stress[2] += at[2] * xx + at[3] * xy;
@@ -102,26 +114,38 @@ pub(super) fn stress_of_sums<T: Number>(
     stress
 }
 
-/// `S = χ/2 D0 : (E' - E)` as `[S_xx, S_yy, S_xy]` (Pa), with `E' - E` the symmetric part of `F½ᵀ (F' - F)`, exactly.
+/// What resists the changes of a step (Pa).
+#[derive(Clone, Copy)]
+struct Decay<T> {
+    /// `χ μ (E' - E)` as `[xx, yy, xy]`.
+    shear: [T; 3],
+    /// `χ/2 λ (J' - J)`.
+    pressure: T,
+}
+
+impl<T: Number> Decay<T> {
+    /// With `E' - E` the symmetric part of `F½ᵀ (F' - F)` and `J' - J = cof F½ : (F' - F)`, both exactly.
+    #[inline(always)]
+    fn of(constants: ElasticConstants, decay: f64, [start, end]: [[T; 4]; 2]) -> Self {
+        let at = middle(start, end);
+        let change = each(|k| end[k] - start[k]);
+        let xx = at[0] * change[0] + at[2] * change[2];
+        let yy = at[1] * change[1] + at[3] * change[3];
+        let xy = at[0] * change[1] + at[2] * change[3] + at[1] * change[0] + at[3] * change[2];
+        let twice_shear = decay * constants.mu();
+        Self {
+            shear: [xx * twice_shear, yy * twice_shear, xy * (0.5 * twice_shear)],
+            pressure: growth([start, end]) * (0.5 * decay * constants.lambda()),
+        }
+    }
+}
+
+/// `J' - J` of two gradients, without a difference of areas (-).
 #[inline(always)]
-fn decay_stress<T: Number>(
-    constants: ElasticConstants,
-    decay: f64,
-    start: [T; 4],
-    end: [T; 4],
-) -> [T; 3] {
-    let at = middle(start, end);
-    let change = each(|k| end[k] - start[k]);
-    let xx = at[0] * change[0] + at[2] * change[2];
-    let yy = at[1] * change[1] + at[3] * change[3];
-    let xy = at[0] * change[1] + at[2] * change[3] + at[1] * change[0] + at[3] * change[2];
-    let pressure = (xx + yy) * (0.5 * decay * constants.lambda());
-    let twice_shear = decay * constants.mu();
-    [
-        pressure + xx * twice_shear,
-        pressure + yy * twice_shear,
-        xy * (0.5 * twice_shear),
-    ]
+pub(super) fn growth<T: Number>([start, end]: [[T; 4]; 2]) -> T {
+    let across = cofactor(middle(start, end));
+    let own = each(|k| across[k] * (end[k] - start[k]));
+    own[0] + own[1] + own[2] + own[3]
 }
 
 /// What a law says of a point between two states: its pair, and the derivatives of that (Pa).
@@ -173,7 +197,7 @@ pub(super) fn moduli_of_pair(
         definite_pair(constants.mu(), pair),
         definite_hessian(second),
     );
-    let mut moduli = moduli_under(constants, form, derivatives, (ends, [0.0; 3]));
+    let mut moduli = moduli_under(constants, form, derivatives, (ends, None));
     if let Linearization::Impulsive { .. } = kind {
         forget_turn(ends[1], &mut moduli);
     }
@@ -188,31 +212,31 @@ pub(super) fn consistent_moduli<T: Number>(
     derivatives: ([T; 2], [T; 3]),
     ends: [[T; 4]; 2],
 ) -> [[T; 4]; 4] {
-    let stress = match form {
-        Form::EnergyMomentum { decay } if decay > 0.0 => {
-            decay_stress(constants, decay, ends[0], ends[1])
-        }
-        _ => [T::ZERO; 3],
-    };
+    let stress = form.decays().map(|decay| Decay::of(constants, decay, ends));
     moduli_under(constants, form, derivatives, (ends, stress))
 }
 
-/// The same with this stress of the decay (Pa).
+/// The same with this stress of the decay, or as if it had none.
 #[inline(always)]
 fn moduli_under<T: Number>(
     constants: ElasticConstants,
     form: Form,
-    (pair, second): ([T; 2], [T; 3]),
-    ([start, end], stress): ([[T; 4]; 2], [T; 3]),
+    ([a, b], [tt, tj, jj]): ([T; 2], [T; 3]),
+    ([start, end], stress): ([[T; 4]; 2], Option<Decay<T>>),
 ) -> [[T; 4]; 4] {
     let at = form.gradient_of(start, end);
-    let mut moduli = law_moduli(at, pair, second, form.share_of_end());
-    if let Form::EnergyMomentum { decay } = form
-        && decay > 0.0
-    {
-        let shares = [constants.lambda(), constants.mu()].map(|modulus| 0.5 * decay * modulus);
-        add_decay_moduli(at, shares, stress, &mut moduli);
-    }
+    let share = form.share_of_end();
+    let Some(decay) = form.decays() else {
+        return law_moduli(at, [a, b], [tt, tj, jj], share);
+    };
+    let Decay { shear, pressure } = stress.unwrap_or(Decay {
+        shear: [T::ZERO; 3],
+        pressure: T::ZERO,
+    });
+    // `cof F½ ⊗ χ/2 λ cof F½`, of which the half of the end is not to take half.
+    let jj = jj + T::ONE * (decay * constants.lambda());
+    let mut moduli = law_moduli(at, [a, b + pressure], [tt, tj, jj], share);
+    add_shear_decay(at, 0.5 * decay * constants.mu(), shear, &mut moduli);
     moduli
 }
 
@@ -241,20 +265,17 @@ pub(super) fn law_moduli<T: Number>(
     moduli
 }
 
-/// Adds `F½ (χ/2 D0) F½ᵀ` and half the decay stress, both with `F'` replaced by `F½` where the derivative has it.
+/// Adds `F½ (χ/2 D) F½ᵀ`, `D` with the shear modulus alone, and half its stress, both with `F'` replaced by `F½` where the derivative has it.
+///
+/// - `mu`: `χ/2 μ` (Pa).
 #[inline(always)]
-fn add_decay_moduli<T: Number>(
-    at: [T; 4],
-    [lambda, mu]: [f64; 2],
-    [xx, yy, xy]: [T; 3],
-    moduli: &mut [[T; 4]; 4],
-) {
+fn add_shear_decay<T: Number>(at: [T; 4], mu: f64, [xx, yy, xy]: [T; 3], moduli: &mut [[T; 4]; 4]) {
     let stress = [[xx, xy], [xy, yy]];
     for (row, entries) in moduli.iter_mut().enumerate() {
         let (i, j) = (row / 2, row % 2);
         for (column, entry) in entries.iter_mut().enumerate() {
             let (k, l) = (column / 2, column % 2);
-            *entry += at[row] * lambda * at[column] + at[2 * i + l] * mu * at[2 * k + j];
+            *entry += at[2 * i + l] * mu * at[2 * k + j];
             if j == l {
                 *entry += (at[2 * i] * at[2 * k] + at[2 * i + 1] * at[2 * k + 1]) * mu;
             }

@@ -53,9 +53,6 @@ impl ActiveContact {
         friction: f64,
         blocks: &[Block],
     ) -> Self {
-        let approach = kinematics
-            .relative(blocks, |block, grip| block.start_velocity(grip))
-            .dot(&kinematics.normal);
         let limit = friction * remembered.normal * (1.0 - rounding::SHARE);
         let tangential = if remembered.normal <= 0.0 {
             Status::Open
@@ -107,7 +104,6 @@ impl ActiveContact {
             rigid: 0.0,
             yielding: [0.0; 2],
             mobility: None,
-            approach,
             remembered,
             base: None,
         }

@@ -4,7 +4,7 @@ use super::block::{FlexBlock, Method};
 use super::iterate::{Balance, Momentum};
 use crate::body::{Frame, FrameMotion};
 use crate::fe::model::MassMatrix;
-use crate::math::{Vec2, add_node_vec, node_vec, perp, set_node_vec, sum_over};
+use crate::math::{Vec2, add_node_vec, node_vec, perp, rotation, set_node_vec, sum_over};
 use crate::system::common_motion::Hold;
 use crate::system::moments::Moments;
 use crate::system::pin_rates::RigidRates;
@@ -48,6 +48,17 @@ impl FlexBlock {
         let (shape, start) = (&self.shared.shape, &self.shared.start);
         let motion = [&start.position[..], &start.velocity];
         shape.turned_on(node, start.frame.spin, motion)
+    }
+
+    /// That velocity without the one of the frame turned by as much as the frame since (m/s).
+    pub fn approaching_velocity(&self, node: usize) -> Vec2 {
+        let (start, now) = (&self.shared.start.frame, &self.shared.now.frame);
+        let turn = match self.is_large() {
+            // Its frame has no angle.
+            true => 0.5 * self.shared.step.dt * (start.spin + now.spin),
+            false => now.angle - start.angle,
+        };
+        start.velocity + rotation(turn) * (self.start_velocity(node) - start.velocity)
     }
 
     /// Position of a node at the current iterate (m).

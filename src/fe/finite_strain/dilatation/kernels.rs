@@ -123,10 +123,9 @@ impl Dilatation {
             let mut force = [[0.0; 2]; N];
             for (point, gradient) in kinematics.gradients.iter().enumerate() {
                 let at = form.gradient_of(cell.ends[0][point], cell.ends[1][point]);
-                let (cofactor, [a, b]) = (cofactor(at), shifts[point].pair);
-                let volume = cell.volumes[point];
-                let stress: [f64; 4] =
-                    std::array::from_fn(|k| volume * (2.0 * a * at[k] + b * cofactor[k]));
+                let Shift { slope, decay, .. } = shifts[point];
+                let weight = cell.volumes[point] * (slope + decay);
+                let stress = cofactor(at).map(|part| weight * part);
                 for (force, by) in force.iter_mut().zip(gradient) {
                     let [x, y] = flowed.get(point).map_or(*by, |state| state.gradient(*by));
                     force[0] += stress[0] * x + stress[1] * y;
@@ -166,8 +165,9 @@ impl Dilatation {
                 let by = gradient.map(|by| flowed.get(point).map_or(by, |one| one.gradient(by)));
                 let (volume, modes) = (cell.volumes[point], &cell.modes[point]);
                 if kind == Linearization::Consistent {
-                    let Shift { pair, fall, .. } = shifts[point];
-                    let second = [-decay, 0.0, -fall];
+                    let shift = shifts[point];
+                    let pair = [0.0, shift.slope + shift.decay];
+                    let second = [0.0, 0.0, -shift.fall - 2.0 * decay];
                     let moduli = law_moduli(at, pair, second, form.share_of_end());
                     add_point(&by, &moduli, volume, &mut blocks);
                 }
@@ -179,14 +179,15 @@ impl Dilatation {
                     &mut along,
                 );
                 if decay > 0.0 {
-                    project(at, &by, modes.map(|mode| volume * mode), &mut growing);
+                    let weights = modes.map(|mode| volume * mode);
+                    project(cofactor(at), &by, weights, &mut growing);
                 }
             }
             let mut smooth = [[[0.0; 4]; N]; N];
             add_modes(&along, &cell.answers(&slopes, kind), &mut smooth);
             if decay > 0.0 {
                 let answers = std::array::from_fn(|k| {
-                    std::array::from_fn(|l| if k == l { 2.0 * decay } else { 0.0 })
+                    std::array::from_fn(|l| if k == l { decay } else { 0.0 })
                 });
                 add_modes(&growing, &answers, &mut smooth);
             }

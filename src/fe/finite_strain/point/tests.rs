@@ -62,7 +62,7 @@ fn the_conserving_stress_does_the_work_that_the_energy_rises_by_and_turns_nothin
     }
 }
 
-/// `F½ S : ΔF = χ/2 ΔE : D0 : ΔE` for any change of strain, and nothing for a rotation about the same axes.
+/// `χ/2 (2 μ ΔE : ΔE + λ ΔJ²)` for any change of strain, and nothing for a rotation about the same axes.
 #[test]
 fn decay_takes_energy_from_every_change_of_strain_and_none_from_rotation() {
     let (sin, cos) = sin_cos(0.7);
@@ -85,11 +85,33 @@ fn decay_takes_energy_from_every_change_of_strain_and_none_from_rotation() {
         [0.5 * (a - 1.0), 0.5 * (b - 1.0), xx * xy + yx * yy]
     };
     let (before, after) = (strain(START), strain(END));
-    let change = std::array::from_fn(|k| after[k] - before[k]);
-    let hooke = law.constants().linear(1.0);
-    use crate::fe::material::Material;
-    let expected = 0.1 * hooke.energy_density(change);
+    let [xx, yy, xy]: [f64; 3] = std::array::from_fn(|k| after[k] - before[k]);
+    let grown = Invariants::of(END).j - Invariants::of(START).j;
+    let (lambda, mu) = (law.constants().lambda(), law.constants().mu());
+    let sheared = 2.0 * mu * (xx * xx + yy * yy + 0.5 * xy * xy);
+    let expected = 0.05 * (sheared + lambda * grown * grown);
     assert!((work(END) - expected).abs() < 1e-9 * expected);
+}
+
+/// What keeps its volume is braked by the shear modulus alone, at a strain of any size.
+#[test]
+fn decay_of_what_keeps_its_volume_knows_no_bulk_modulus() {
+    // Both of the area 1.
+    let (start, end) = ([1.25, 0.0, 0.0, 0.8], [0.8, 0.6, 0.0, 1.25]);
+    let brake = |nu: f64| {
+        let law = NeoHookean::plane_strain(2.0 * 1e5 * (1.0 + nu), nu);
+        let of = |decay| stress(&law, Form::EnergyMomentum { decay }, start, end);
+        let (with, without) = (of(0.1), of(0.0));
+        let change = std::array::from_fn(|k| end[k] - start[k]);
+        dot(std::array::from_fn(|k| with[k] - without[k]), change)
+    };
+    let soft = brake(0.3);
+    assert!(soft > 1e3);
+    for nu in [0.49, 0.4999, 0.499_999] {
+        // What is left of a modulus times the round-off of areas.
+        let error = (brake(nu) - soft).abs();
+        assert!(error < 1e-8 * soft, "{nu}: {error:e}");
+    }
 }
 
 #[test]
