@@ -864,6 +864,11 @@ fn stale_and_foreign_handles_are_told_apart_and_change_nothing() {
             FlexBodyError::Foreign(other.block),
             "the set that returned it",
         ),
+        (
+            FlexBodyHandle::default(),
+            FlexBodyError::Foreign(FlexBodyHandle::invalid()),
+            "never filled in",
+        ),
     ];
     for (handle, expected, cure) in cases {
         assert!(expected.to_string().contains(cure), "{expected}");

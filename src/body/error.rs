@@ -191,7 +191,9 @@ pub enum FlexBodyError {
     #[error("{0:?} names a flexible body that was removed: drop the handle")]
     Stale(FlexBodyHandle),
     /// The handle came from another set.
-    #[error("{0:?} comes from another FlexBodySet: use the set that returned it")]
+    #[error(
+        "{0:?} comes from another FlexBodySet, or was never filled in: use the set that returned it"
+    )]
     Foreign(FlexBodyHandle),
     /// A node index is out of range.
     #[error("node {node} of a body with {n_nodes} nodes: use an index below {n_nodes}")]

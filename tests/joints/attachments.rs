@@ -296,6 +296,11 @@ fn a_removed_attachment_lets_go_and_its_handle_is_stale() {
         scene.bodies.attachment(again),
         Err(AttachmentError::Stale(_))
     ));
+    let never = AttachmentHandle::default();
+    assert_eq!(
+        scene.bodies.detach(never).err(),
+        Some(AttachmentError::Foreign(AttachmentHandle::invalid()))
+    );
 }
 
 #[test]

@@ -17,9 +17,25 @@ pub struct AttachmentHandle {
 }
 
 impl AttachmentHandle {
+    /// Names no attachment of any set, for what is to be filled in later, as rapier's handles have it.
+    pub fn invalid() -> Self {
+        Self {
+            set: u32::MAX,
+            index: u32::MAX,
+            generation: u32::MAX,
+        }
+    }
+
     /// Position in the set and generation, for display and logs.
     pub fn into_raw_parts(self) -> (u32, u32) {
         (self.index, self.generation)
+    }
+}
+
+impl Default for AttachmentHandle {
+    /// The [invalid](Self::invalid) one.
+    fn default() -> Self {
+        Self::invalid()
     }
 }
 

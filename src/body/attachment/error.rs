@@ -90,6 +90,8 @@ pub enum AttachmentError {
     #[error("{0:?} names an attachment that was removed, or whose body was: drop the handle")]
     Stale(AttachmentHandle),
     /// The handle came from another set.
-    #[error("{0:?} comes from another FlexBodySet: use the set that returned it")]
+    #[error(
+        "{0:?} comes from another FlexBodySet, or was never filled in: use the set that returned it"
+    )]
     Foreign(AttachmentHandle),
 }
