@@ -169,7 +169,7 @@ fn ask(island: &mut Island, rebounds: &[Rebound], groups: &[Option<Group>]) {
 /// A position that ends closed has stopped a part of the approach, by the forces of the position stage: from where in the step the bodies
 /// met depends how much. Early in it that is more than the law asks for, and impulses give some back, with the friction that went along.
 fn add_works(island: &Island, leaders: &[usize], b1: f64, works: &mut [[f64; 2]]) {
-    let mut taken = 0.0;
+    let (mut came, mut taken) = ([0.0; 2], 0.0);
     for (row, direction) in island.problem.rows.iter().enumerate() {
         let Some(group) = group_of(island, leaders, direction.contact) else {
             continue;
@@ -183,11 +183,12 @@ fn add_works(island: &Island, leaders: &[usize], b1: f64, works: &mut [[f64; 2]]
         if contact.is_hard {
             continue;
         }
+        // The row of the normal comes first.
         if direction.axis == 0 {
-            taken = 0.0;
+            (came, taken) = (contact.approach(&island.blocks), 0.0);
         }
-        let came = contact.approach(&island.blocks)[direction.axis];
-        taken += 0.5 * b1 * contact.multiplier[direction.axis] * (came + motion);
+        let sum = came[direction.axis] + motion;
+        taken += 0.5 * b1 * contact.multiplier[direction.axis] * sum;
         let next = island.problem.rows.get(row + 1);
         if next.is_none_or(|next| next.contact != direction.contact) {
             works[group][0] += taken.min(0.0);

@@ -53,12 +53,15 @@ fn solve_stages(
     let loads = external_work(&island.blocks, &island.contacts);
     let treatment = settings.treatment();
     summary.start_energy = before;
-    let (mut contacts, closes) = (island.contacts.iter(), closing::closes(island));
+    let mut contacts = island.contacts.iter();
+    let parts = contacts.any(|contact| contact.allowance < 0.0);
+    let closes = closing::closes(island);
     summary.load_energy = load_energy(&island.blocks);
-    summary.is_parting = contacts.any(|contact| contact.allowance < 0.0) || closes;
-    summary.parting_energy = match closes {
-        true => f64::INFINITY,
-        false => gentle::parting_energy(island),
+    summary.is_parting = parts || closes;
+    summary.parting_energy = match (parts, closes) {
+        (_, true) => f64::INFINITY,
+        (true, false) => gentle::parting_energy(island),
+        (false, false) => 0.0,
     };
     let finished = treatment.finish(island, settings, &mut summary);
     let is_unsolved = summary.is_unsolved();

@@ -1,6 +1,6 @@
 //! Eight-node cells whose areas are smoothed: material that all but keeps its volume, and metal that flows.
 
-use super::support::{deformed, dot, largest, warped_plate};
+use super::support::{deformed, describe, dot, largest, warped_plate};
 use foil2d::fe::finite_strain::{FiniteStrainModel, Form, Linearization};
 use foil2d::fe::material::hyperelastic::{
     Gent, Hencky, Hyperelastic, J2Plasticity, MooneyRivlin, NeoHookean, PlasticState,
@@ -78,6 +78,48 @@ fn steps_of_what_keeps_its_volume_conserve_energy_and_both_momenta() {
             assert!(moment.abs() < 1e-12 * size, "{name}: {moment:e}");
         }
     }
+}
+
+/// `u = (c (x y² - x/3), 0)` changes areas by `c (y² - 1/3)`, of which the best linear fit in the cell is nothing: the decay brakes it by the shear modulus
+/// alone, at any amplitude, though the areas at the points change.
+#[test]
+fn decay_of_what_keeps_its_smooth_areas_knows_no_bulk_modulus() {
+    let brake = |poisson: f64, share: f64| {
+        let law = NeoHookean::plane_strain(2e5 * (1.0 + poisson), poisson);
+        let description = describe([2.0, 2.0], [1, 1], CellKind::Quad8, Arc::new(law));
+        let model = FiniteStrainModel::assemble(description).expect("one cell");
+        let start = model.rest_positions().to_vec();
+        let mut end = start.clone();
+        for pair in end.chunks_exact_mut(2) {
+            let [x, y] = [pair[0] - 1.0, pair[1] - 1.0];
+            pair[0] += 0.2 * (x * y * y - share * x);
+        }
+        let of = |decay| {
+            let form = Form::EnergyMomentum { decay };
+            dot(
+                &force(&model, form, [&start, &end], &[]),
+                &way(&start, &end),
+            )
+        };
+        of(0.2) - of(0.0)
+    };
+    let soft = brake(0.3, 1.0 / 3.0);
+    assert!(soft > 1e2, "{soft}");
+    for poisson in [0.49, 0.4999] {
+        let error = (brake(poisson, 1.0 / 3.0) - soft).abs();
+        assert!(error < 1e-9 * soft, "{poisson}: {error:e} of {soft}");
+    }
+    // And what the fit sees is braked by `χ/2 λ (J' - J)²`: here by .2 (1/3 - s) of the area all over the cell of 4 m².
+    let grown: f64 = 0.2 / 3.0;
+    let of_lambda = |poisson: f64| brake(poisson, 0.0);
+    let lambda = |poisson: f64| 2e5 * poisson / (1.0 - 2.0 * poisson);
+    let [low, high] = [0.3, 0.4999];
+    let slope = (of_lambda(high) - of_lambda(low)) / (lambda(high) - lambda(low));
+    let expected = 0.1 * grown * grown * 4.0;
+    assert!(
+        (slope / expected - 1.0).abs() < 1e-9,
+        "{slope} of {expected}"
+    );
 }
 
 /// The tangent of a state (N/m).
