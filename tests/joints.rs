@@ -2,6 +2,9 @@
 
 mod common;
 
+#[path = "joints/jammed.rs"]
+mod jammed;
+
 #[path = "joints/support.rs"]
 mod support;
 

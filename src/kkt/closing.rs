@@ -87,8 +87,8 @@ fn gather_partings(island: &mut Island) {
     }
 }
 
-/// How contacts that part move a joint row, over `b0` (N/kg, or N m/(kg m²) of what keeps an angle).
-fn parted(
+/// How contacts whose wrenches are gathered move a joint row, over `b0` (N/kg, or N m/(kg m²) of what keeps an angle).
+pub(super) fn parted(
     (blocks, wrenches): (&[Block], &[[f64; 3]]),
     grips: &[JointGrip],
     tie: &ActiveJoint,
@@ -121,7 +121,11 @@ pub(super) fn stretched_by_closing(island: &Island, summary: &IslandSummary) -> 
     stored.min(works.sum()).max(0.0)
 }
 
-fn solve_closings(island: &mut Island, settings: &SolveSettings) -> Result<(), KktError> {
+/// Solves the joint rows that are listed.
+pub(super) fn solve_closings(
+    island: &mut Island,
+    settings: &SolveSettings,
+) -> Result<(), KktError> {
     let n = island.problem.kinds.len();
     island.problem.acted.resize(n, 0.0);
     if cones::is_sparse(island, n) {

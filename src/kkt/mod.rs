@@ -19,6 +19,7 @@
 //! | shared | `settings`, `summary`, `tolerances`, `gathered` (multipliers as impulses on blocks) |
 
 mod active_contact;
+mod answers;
 mod calm;
 mod closing;
 mod cones;

@@ -15,7 +15,7 @@ use super::impulses;
 use super::island::{Island, KktError, SolveSettings};
 use super::multipliers::prepare;
 use super::unresolved::unresolved_shares;
-use super::{closing, gathered, hits, joint_mass, restitution};
+use super::{answers, closing, gathered, hits, joint_mass, restitution};
 use crate::system::Response;
 
 pub(super) fn solve_velocities(
@@ -50,6 +50,7 @@ pub(super) fn solve_velocities(
 /// Solves the impact law at the contacts that hold velocities, and gathers its impulses, which rigid bodies take at once;
 /// returns whether there are any.
 pub(super) fn impact_rows(island: &mut Island, settings: &SolveSettings) -> Result<bool, KktError> {
+    answers::find_answers(island, settings)?;
     closing::take_out_closings(island, settings)?;
     island.joints.kick(&mut island.blocks, settings);
     joint_mass::settle_joined_velocities(island, settings)?;

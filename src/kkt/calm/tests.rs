@@ -57,6 +57,7 @@ pub(in crate::kkt) fn join(island: &mut Island, blocks: [usize; 2]) {
         status: Status::Stick,
         closing: 0.0,
         closer: 0.0,
+        answer: 0.0,
         asked: [0.0; 2],
         kick: 0.0,
         impulse: 0.0,

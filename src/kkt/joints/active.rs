@@ -38,6 +38,8 @@ pub struct ActiveJoint {
     /// How far the step brings ends that were put apart nearer to each other (m or rad), and the part of the multiplier that does so.
     pub(in crate::kkt) closing: f64,
     pub(in crate::kkt) closer: f64,
+    /// The part of the multiplier that answers to contacts of rigid bodies, which velocities do not feel (N or N m).
+    pub(in crate::kkt) answer: f64,
     /// Goal and closing before it was asked whether the bodies can come that near (m or rad).
     pub(in crate::kkt) asked: [f64; 2],
     /// Impulses along the rows of the beginning and of the end (N s or N m s).
@@ -173,6 +175,22 @@ impl ActiveJoint {
     /// Whether the row holds nodes of flexible bodies that all have mass.
     pub(in crate::kkt) fn holds_masses(&self) -> bool {
         !self.is_hard && self.has_mass
+    }
+
+    /// Whether the row answers to what contacts of rigid bodies do: it holds, with any force.
+    pub(in crate::kkt) fn answers(&self) -> bool {
+        let is_bounded = matches!(self.kind, RowKind::Box { .. });
+        self.is_hard && self.holds() && !is_bounded
+    }
+
+    /// The part of the multiplier that velocities feel (N or N m).
+    pub(in crate::kkt) fn felt(&self) -> f64 {
+        let felt = self.multiplier - self.closer - self.answer;
+        match self.kind {
+            // A limit that only contacts press against does not pull.
+            RowKind::Unilateral => felt.max(0.0),
+            _ => felt,
+        }
     }
 
     /// Whether the row is a spring or damper, which leaves its ends to move by themselves.

@@ -32,7 +32,7 @@ impl Joints {
             if !tie.is_hard {
                 continue;
             }
-            let half = settings.b0 * (tie.multiplier - tie.closer) / settings.dt;
+            let half = settings.b0 * tie.felt() / settings.dt;
             let stayed = tie.row.last_multiplier() > 0.0 && tie.start - tie.goal <= STAYED;
             tie.kick = if tie.finish == Finish::Limit && !stayed {
                 0.0

@@ -83,6 +83,7 @@ impl Joints {
                 status,
                 closing: resolved.closing,
                 closer: 0.0,
+                answer: 0.0,
                 asked: [resolved.goal, resolved.closing],
                 kick: 0.0,
                 impulse: 0.0,
@@ -119,6 +120,16 @@ impl Joints {
     /// Takes the stiffness against turning back from the blocks.
     pub(in crate::kkt) fn relax_turns(&mut self, blocks: &mut [Block]) {
         self.twists.relax(blocks);
+    }
+
+    /// Leaves blocks the share of their torque against turning that goes with forces that velocities feel; returns whether that takes anything.
+    pub(in crate::kkt) fn leave_felt_torques(&mut self) -> bool {
+        self.twists.leave_felt((&self.ties, &self.grips))
+    }
+
+    /// Torques against turning that velocities do not feel, by block (N m).
+    pub(in crate::kkt) fn unfelt_torques(&self) -> &[f64] {
+        self.twists.unfelt()
     }
 
     fn hold<'a>(&'a self, blocks: &'a [Block]) -> JointHold<'a> {

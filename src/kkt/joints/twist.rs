@@ -22,6 +22,10 @@ pub(super) struct Twists {
     /// Inertia per mass that a block has besides its own where rows hold it to what does not give way: how far its centre goes by its turn, squared
     /// and summed up over the rows (m²).
     arms: Vec<f64>,
+    /// By block, the sums of what forces pull along levers: of those that velocities feel, and of all (N m/rad).
+    pulls: Vec<[f64; 2]>,
+    /// Torques that velocities do not feel, by block (N m).
+    unfelt: Vec<f64>,
 }
 
 impl Twists {
@@ -38,34 +42,19 @@ impl Twists {
             values.resize(blocks.len(), 0.0);
         }
         let scale = 2.0 * settings.b0 / (settings.dt * settings.dt);
-        let mut first = 0;
-        while first < ties.len() {
-            let owner = ties[first].row.key.owner;
-            let rest = ties[first..].iter();
-            let last = first + rest.take_while(|tie| tie.row.key.owner == owner).count();
-            // What holds the turn itself needs no more.
-            let is_hinge = !ties[first..last].iter().any(|tie| {
-                tie.row.measure.is_turn() && matches!(tie.row.law, JointLaw::Rigid { .. })
-            });
-            for tie in ties[first..last]
-                .iter()
-                .filter(|tie| is_hinge && tie.is_hard)
-            {
-                let force = scale * multiplier(tie);
-                let own = &grips[tie.row.grips.0..tie.row.grips.1];
-                let is_given = |grip: &JointGrip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_prescribed());
-                let holds = matches!(tie.row.law, JointLaw::Rigid { .. });
-                let stays = holds && own.iter().any(is_given);
-                for grip in own {
-                    let is_turn = tie.row.measure.is_turn();
-                    let [x, y, couple] = unit_wrench(grip, tie.direction, is_turn);
-                    self.twists[grip.block] += force * (grip.lever.x * x + grip.lever.y * y);
-                    if stays && !is_turn {
-                        self.arms[grip.block] += couple * couple;
-                    }
+        for tie in of_hinges(ties) {
+            let force = scale * multiplier(tie);
+            let own = &grips[tie.row.grips.0..tie.row.grips.1];
+            let is_given = |grip: &JointGrip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_prescribed());
+            let holds = matches!(tie.row.law, JointLaw::Rigid { .. });
+            let stays = holds && own.iter().any(is_given);
+            for grip in own {
+                let ([_, _, couple], pull) = pull_of(tie, grip);
+                self.twists[grip.block] += force * pull;
+                if stays && !tie.row.measure.is_turn() {
+                    self.arms[grip.block] += couple * couple;
                 }
             }
-            first = last;
         }
         for ((block, twist), arm) in blocks.iter_mut().zip(&self.twists).zip(&self.arms) {
             if let Block::Rigid(block) = block {
@@ -92,6 +81,36 @@ impl Twists {
         }
     }
 
+    /// Leaves of every torque the share that goes with the forces that velocities feel; returns whether it took anything.
+    pub fn leave_felt(&mut self, (ties, grips): (&[ActiveJoint], &[JointGrip])) -> bool {
+        self.pulls.clear();
+        self.pulls.resize(self.twists.len(), [0.0; 2]);
+        for tie in of_hinges(ties) {
+            for grip in &grips[tie.row.grips.0..tie.row.grips.1] {
+                let (_, pull) = pull_of(tie, grip);
+                let [felt, all] = &mut self.pulls[grip.block];
+                *felt += tie.felt() * pull;
+                *all += tie.multiplier * pull;
+            }
+        }
+        self.unfelt.clear();
+        for (torque, &[felt, all]) in self.twists.iter_mut().zip(&self.pulls) {
+            let share = match felt == all {
+                true => 1.0,
+                false if all > 0.0 => (felt / all).clamp(0.0, 1.0),
+                false => 0.0,
+            };
+            self.unfelt.push((1.0 - share) * *torque);
+            *torque *= share;
+        }
+        self.unfelt.iter().any(|torque| *torque != 0.0)
+    }
+
+    /// Torques that velocities do not feel, by block (N m).
+    pub fn unfelt(&self) -> &[f64] {
+        &self.unfelt
+    }
+
     /// Gives the velocities that go with the torques of the stiffness.
     pub fn kick(&self, blocks: &mut [Block], settings: &SolveSettings) {
         for (block, torque) in blocks.iter_mut().zip(&self.twists) {
@@ -102,4 +121,20 @@ impl Twists {
             }
         }
     }
+}
+
+/// The rows of rigid bodies of joints that let these turn: what holds the turn itself needs no more.
+fn of_hinges(ties: &[ActiveJoint]) -> impl Iterator<Item = &ActiveJoint> {
+    let joints = ties.chunk_by(|one, next| one.row.key.owner == next.row.key.owner);
+    let holds_turn = |tie: &ActiveJoint| {
+        tie.row.measure.is_turn() && matches!(tie.row.law, JointLaw::Rigid { .. })
+    };
+    let hinges = joints.filter(move |rows| !rows.iter().any(holds_turn));
+    hinges.flatten().filter(|tie| tie.is_hard)
+}
+
+/// Wrench of a row's unit multiplier on the block of a grip, and how far along its lever it pulls (m).
+fn pull_of(tie: &ActiveJoint, grip: &JointGrip) -> ([f64; 3], f64) {
+    let wrench = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
+    (wrench, grip.lever.x * wrench[0] + grip.lever.y * wrench[1])
 }
