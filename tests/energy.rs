@@ -434,3 +434,74 @@ fn what_moving_pins_put_in_is_accounted_for_and_not_taken_for_a_gain() {
     let kinetic = scene.report().energy().kinetic;
     assert!(kinetic > 1e-3 * largest, "the waves were taken out");
 }
+
+/// A weight with a flexible block welded to it falls a metre into something that stops it: what the two have lost is told as dissipated.
+#[test]
+fn what_a_rope_or_a_limit_stops_is_told_as_lost() {
+    for (is_rope, is_large, rate) in [(true, true, 60.0), (true, false, 60.0)]
+        .into_iter()
+        .flat_map(|(_, large, rate)| [(true, large, rate), (false, large, rate)])
+        .chain([(true, true, 240.0), (false, false, 240.0)])
+    {
+        let mut scene = Scene::in_free_space(1.0 / rate).with_gravity(0.0, -9.81);
+        let anchor = scene.world.insert_body(RigidBodyBuilder::fixed());
+        let (hub, _) = scene.rigid(
+            RigidBodyBuilder::dynamic().translation(vec2(0.0, -0.5)),
+            ColliderBuilder::cuboid(0.1, 0.1).density(500.0),
+        );
+        if is_rope {
+            let rope = RopeJointBuilder::new(1.5);
+            scene.world.insert_impulse_joint(anchor, hub, rope.build());
+        } else {
+            let slide = PrismaticJointBuilder::new(vec2(0.0, 1.0)).limits([-1.5, 10.0]);
+            scene.world.insert_impulse_joint(anchor, hub, slide.build());
+        }
+        let block = FlexBodyBuilder::rectangle([0.3, 0.3], [4, 4])
+            .material(LinearElastic::plane_stress(1e7, 0.3).density(1000.0))
+            .translation([-0.15, -0.9]);
+        let block = scene.flexible(of_strain(block, is_large));
+        let weld = AttachmentBuilder::weld(block).where_(|[_, y]| y > 0.2999);
+        scene
+            .bodies
+            .attach(weld.to_rigid_body(hub), &scene.world.bodies)
+            .expect("a weld of the upper face");
+        let start = energy_of(&scene);
+        for step in 0..(1.5 * rate) as usize {
+            scene.step();
+            let told = scene.report().energy().dissipated;
+            let lost = start - energy_of(&scene);
+            assert!(
+                (told - lost).abs() < by_precision(2e-2, 1e-6),
+                "rope {is_rope}, large {is_large}, 1/{rate} s, step {step}: {told} J told, {lost} J lost"
+            );
+        }
+        let fallen = start - energy_of(&scene);
+        assert!(fallen > 900.0, "{fallen} J");
+    }
+}
+
+/// A body whose weight is a quarter of what it would be falls with a flexible one: their energy stays, as it is told.
+#[test]
+fn the_energy_told_knows_of_a_bodys_share_of_gravity() {
+    let mut scene = Scene::in_free_space(1.0 / 60.0).with_gravity(0.0, -9.81);
+    let (hub, _) = scene.rigid(
+        RigidBodyBuilder::dynamic().gravity_scale(0.25),
+        ColliderBuilder::cuboid(0.1, 0.1).density(500.0),
+    );
+    let block = FlexBodyBuilder::rectangle([0.3, 0.3], [4, 4])
+        .material(LinearElastic::plane_stress(1e7, 0.3).density(1000.0))
+        .gravity_scale(0.25)
+        .translation([-0.15, -0.4]);
+    let block = scene.flexible(block);
+    let weld = AttachmentBuilder::weld(block).where_(|[_, y]| y > 0.2999);
+    scene
+        .bodies
+        .attach(weld.to_rigid_body(hub), &scene.world.bodies)
+        .expect("a weld of the upper face");
+    scene.step();
+    let start = scene.report().energy().total();
+    scene.steps(60);
+    let fallen = 0.5 * 0.25 * 9.81 * scene.mass(hub);
+    let off = scene.report().energy().total() - start;
+    assert!(off.abs() < 1e-4 * fallen, "{off} J of {fallen} J fallen");
+}

@@ -4,6 +4,8 @@ mod common;
 
 #[path = "restitution/hits.rs"]
 mod hits;
+#[path = "restitution/moving_walls.rs"]
+mod moving_walls;
 #[path = "restitution/phases.rs"]
 mod phases;
 #[path = "restitution/spinning.rs"]

@@ -1,5 +1,6 @@
 //! A contact of the working set.
 
+use super::settings::SolveSettings;
 use crate::constraint::contact::{Kinematics, Remembered};
 use crate::linalg::complementarity::Status;
 use crate::math::Vec2;
@@ -94,6 +95,20 @@ impl ActiveContact {
             let sum = |axis| self.multiplier[axis] + (self.impulse[axis] + self.late[axis]) / dt;
             [sum(0), sum(1)]
         }
+    }
+
+    /// Impulse that the step has given, normal and tangential (N s): of a force in the stored accelerations, `1 - β1` of the last one and `β1` of
+    /// this one.
+    pub(super) fn given(&self, settings: &SolveSettings) -> [f64; 2] {
+        if self.is_hard {
+            return self.impulse;
+        }
+        let (dt, b1) = (settings.dt, settings.b1);
+        let late = if settings.is_explicit { 0.0 } else { dt - b1 };
+        [0, 1].map(|axis| {
+            let before = self.remembered.lasting[axis] - self.settled[axis];
+            (dt - late) * self.multiplier[axis] + self.impulse[axis] + late * before
+        })
     }
 
     /// Velocity along the normal and the tangent at which the bodies came to where they are (m/s), see [`Block::approaching_velocity`].

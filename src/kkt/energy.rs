@@ -15,9 +15,9 @@ use super::delassus::RowDirection;
 use super::island::{Island, SolveSettings};
 use super::joints::Among;
 use super::summary::IslandSummary;
-use super::work::{kinetic_energy, momentum_at_most};
+use super::work::{kinetic_energy, momentum_at_most, work_of_driven, work_of_links};
 use super::{gathered, momentum, together};
-use crate::math::{judged::Judged, rounding};
+use crate::math::{Vec2, judged::Judged, rounding};
 use crate::system::{Block, Response};
 
 /// Keeps contact, and turning frames, from adding energy.
@@ -26,7 +26,6 @@ use crate::system::{Block, Response};
 pub(super) fn limit_energy(
     island: &mut Island,
     settings: &SolveSettings,
-    allowance: f64,
     reserve: &mut f64,
     summary: &mut IslandSummary,
 ) {
@@ -35,20 +34,23 @@ pub(super) fn limit_energy(
         .iter()
         .any(|contact| contact.multiplier[0] > 0.0 || contact.remembered.normal > 0.0);
     let [kinetic, elastic] = summary.end_energy;
+    // By how much energy may swing does not depend on how fast all of it moves.
+    let seen = seen_energy(island, settings.dt, kinetic) + elastic;
     let swings = island.has_swinging_joints(settings.is_within);
     let kept = match (touches, swings) {
         (false, false) => 0.0,
-        (false, true) => kinetic + elastic,
-        (true, false) => SWING * (kinetic + elastic),
+        (false, true) => seen,
+        (true, false) => SWING * seen,
         (true, true) => f64::INFINITY,
     };
     *reserve = reserve.min(kept);
+    let allowance = summary.work + work_of_links(&island.blocks, &island.contacts, settings);
     let gain = kinetic + elastic - summary.start_energy[0] - summary.start_energy[1] - allowance;
     *reserve -= gain;
     let band = if touches { ROUND_OFF } else { SWING.get() };
     // What is there by mistake is no measure of it.
     let had = summary.start_energy[0] + summary.start_energy[1] + allowance.abs();
-    let owed = -*reserve - band * (kinetic + elastic).min(had);
+    let owed = -*reserve - band * seen.min(had);
     // Older debts are paid by what later steps lose. Taken out of these, they are impulses that no contact of theirs has asked for: a soft disc
     // that rolled with one was driven by them. What swings in joints comes back in the steps after, and what parts overlaps is brought by several.
     let is_brought_back = swings || summary.is_parting;
@@ -62,15 +64,17 @@ pub(super) fn limit_energy(
     if debt <= 0.0 || is_still {
         return;
     }
-    let mut taken = if touches {
-        remove_along_contacts(island, debt, settings)
-    } else {
-        0.0
-    };
+    let mut taken = 0.0;
+    if touches {
+        let driven;
+        [taken, driven] = remove_along_contacts(island, debt, settings);
+        summary.work += driven;
+        summary.end_energy[0] += driven;
+    }
     if taken < debt {
         taken += remove_vibration(island, debt - taken);
     }
-    if taken < debt && swings {
+    if taken < debt && (swings || presses_joined(island)) {
         let leaders = together::groups_of(island, |block| !block.is_prescribed());
         let joints = (&island.joints.ties[..], &island.joints.grips[..]);
         let excess = debt - taken;
@@ -82,9 +86,44 @@ pub(super) fn limit_energy(
     *reserve += taken;
 }
 
+/// Whether contacts press bodies that joints hold, so that forces of both may be of any size.
+fn presses_joined(island: &Island) -> bool {
+    let mut contacts = island.contacts.iter();
+    contacts.any(|contact| contact.is_closed() && island.joints.joins(contact))
+}
+
+/// Kinetic energy as it is seen from the slowest of the driven bodies that touch or hold something (J).
+fn seen_energy(island: &Island, dt: f64, kinetic: f64) -> f64 {
+    let of_contacts = island
+        .contacts
+        .iter()
+        .filter(|contact| contact.is_closed() || contact.remembered.normal > 0.0)
+        .flat_map(|contact| contact.kinematics.attachments().iter().map(|a| a.block));
+    let grips = island.joints.grips.iter().map(|grip| grip.block);
+    let velocities = of_contacts
+        .chain(grips)
+        .filter_map(|block| match &island.blocks[block] {
+            Block::Rigid(block) if block.is_driven() && block.link_response().is_none() => {
+                let [x, y, _] = block.moved();
+                Some(Vec2::new(x, y) / dt)
+            }
+            _ => None,
+        });
+    let slowest = velocities.min_by(|one, other| one.norm().total_cmp(&other.norm()));
+    let Some(velocity) = slowest.filter(|velocity| *velocity != Vec2::zeros()) else {
+        return kinetic;
+    };
+    let moving = island.blocks.iter().filter(|block| !block.is_prescribed());
+    let seen = moving.map(|block| {
+        let moments = block.end_moments();
+        moments.mass * velocity.dot(&(0.5 * velocity - moments.velocity))
+    });
+    (kinetic + seen.sum::<f64>()).max(0.0)
+}
+
 /// Changes the end velocity along the response to the contact forces until `excess` (J) is gone, or as far as that
-/// direction carries energy; returns what was removed.
-fn remove_along_contacts(island: &mut Island, excess: f64, settings: &SolveSettings) -> f64 {
+/// direction carries energy; returns what was removed, and what driven bodies did with it (J).
+fn remove_along_contacts(island: &mut Island, excess: f64, settings: &SolveSettings) -> [f64; 2] {
     island.problem.rows.clear();
     island.problem.multipliers.clear();
     for (index, contact) in island.contacts.iter().enumerate() {
@@ -99,7 +138,7 @@ fn remove_along_contacts(island: &mut Island, excess: f64, settings: &SolveSetti
         }
     }
     if island.problem.rows.is_empty() {
-        return 0.0;
+        return [0.0; 2];
     }
     // Along what contacts and joints together allow.
     let among = Among {
@@ -111,15 +150,16 @@ fn remove_along_contacts(island: &mut Island, excess: f64, settings: &SolveSetti
         .answer_contacts(&mut island.problem, among, settings)
         .is_err()
     {
-        return 0.0;
+        return [0.0; 2];
     }
     gathered::clear_impulses(island);
     gathered::gather_rows(island, Response::Velocity);
     gathered::respond(island);
-    // Kinetic energy along v' + s z is a parabola in s; three samples give it exactly.
+    // Kinetic energy along v' + s z, less what driven bodies do on that way, is a parabola in s; three samples give it exactly.
+    let driven = work_of_driven(&island.blocks, &island.wrenches, settings.dt);
     let before = kinetic_energy(&island.blocks);
-    let after = add_responses(island, 1.0);
-    let mirrored = add_responses(island, -2.0);
+    let after = add_responses(island, 1.0) - driven;
+    let mirrored = add_responses(island, -2.0) + driven;
     let curvature = 0.5 * (after + mirrored) - before;
     let slope = 0.5 * (after - mirrored);
     // What presses against something that does not give way moves nothing, however often it is taken: it is taken no more often than would
@@ -141,7 +181,8 @@ fn remove_along_contacts(island: &mut Island, excess: f64, settings: &SolveSetti
     add_responses(island, 1.0 + step);
     // What has flown away has slid since its row was measured: the levers of its force have a couple.
     momentum::balance_angular_momentum(island);
-    before - kinetic_energy(&island.blocks)
+    let done = step * driven;
+    [before + done - kinetic_energy(&island.blocks), done]
 }
 
 /// Adds a multiple of the responses to the velocities; returns the kinetic energy (J).

@@ -123,7 +123,9 @@ pub(super) fn end_gently(
     }
     summary.gap_violation = working_set::gap_violation(island, true);
     settings.treatment().finish(island, settings, summary)?;
-    summary.work = island.actual_work(settings) + island.joint_work(settings).all;
+    let joint_work = island.joint_work(settings);
+    summary.work = island.actual_work(settings) + joint_work.all;
+    summary.stopped = joint_work.stopped;
     summary.end_energy = end_energy(&island.blocks);
     Ok(())
 }

@@ -86,7 +86,7 @@ impl Island {
 
     /// Work of applied forces and of the contact forces of driven bodies (J).
     pub(super) fn actual_work(&self, settings: &SolveSettings) -> f64 {
-        work::actual_work(&self.blocks, &self.contacts, settings.dt)
+        work::actual_work(&self.blocks, &self.contacts, settings)
     }
 
     /// Work of the joints on what is not driven from outside.

@@ -41,7 +41,7 @@ pub(super) fn settle_joined_velocities(
     island
         .joints
         .list_velocities(&mut island.problem, (&island.blocks, settings), takes_part);
-    push_joined_masses(island, Response::Velocity, settings.dt)
+    push_joined_masses(island, Response::Velocity, settings)
 }
 
 /// Takes out of the velocities what a jump of the motion that drives a joint has left there, or of one that has taken hold.
@@ -96,7 +96,7 @@ pub(super) fn settle_joined_accelerations(
         (&island.blocks, &island.wrenches),
         takes_part,
     );
-    push_joined_masses(island, Response::Acceleration, settings.dt)
+    push_joined_masses(island, Response::Acceleration, settings)
 }
 
 /// Whether rigid bodies have met in this step that did not press in the last, or a joint has taken hold of masses.
@@ -113,8 +113,12 @@ fn has_joined_masses(island: &Island, settings: &SolveSettings) -> bool {
 }
 
 /// Solves the rows, and lets those of joined masses act.
-fn push_joined_masses(island: &mut Island, of: Response, dt: f64) -> Result<(), KktError> {
-    impulses::solve_impulses(island, Response::ByMass, dt)?;
+fn push_joined_masses(
+    island: &mut Island,
+    of: Response,
+    settings: &SolveSettings,
+) -> Result<(), KktError> {
+    impulses::solve_impulses(island, Response::ByMass, settings.dt)?;
     let first = island.problem.rows.len();
     gathered::clear_impulses(island);
     // Without links it stays empty, and takes no memory.
@@ -125,8 +129,10 @@ fn push_joined_masses(island: &mut Island, of: Response, dt: f64) -> Result<(), 
         if !tie.holds_masses() || value == 0.0 {
             continue;
         }
-        if of == Response::Velocity {
-            island.joints.ties[island.joints.listed[slot]].impulse += value;
+        let acting = &mut island.joints.ties[island.joints.listed[slot]];
+        match of {
+            Response::Velocity => acting.impulse += value,
+            _ => acting.settle(value, settings.dt - settings.b1),
         }
         for grip in &island.joints.end_grips[tie.row.grips.0..tie.row.grips.1] {
             let force: Vec2 = value * grip.weight * tie.end;

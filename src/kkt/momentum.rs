@@ -83,7 +83,7 @@ pub fn late_forces(island: &Island, step: &Step, late: &mut Vec<LateForce>) {
         };
         for grip in grips {
             let wrench = unit_wrench(grip, tie.direction, tie.row.measure.is_turn());
-            let force = tie.multiplier - tie.closer;
+            let force = tie.lasting();
             late[grip.block].add(wrench.map(|part| force * part), island.flex_index[partner]);
         }
     }

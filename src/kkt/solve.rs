@@ -4,7 +4,7 @@ use super::gentle::GAINED;
 use super::island::Island;
 use super::settings::{KktError, SolveSettings};
 use super::summary::IslandSummary;
-use super::work::{end_energy, external_work, load_energy, start_energy};
+use super::work::{end_energy, load_energy, start_energy};
 use super::{closing, energy, gentle, momentum, position, together};
 use crate::constraint::contact::ContactMemory;
 use crate::system::Block;
@@ -50,7 +50,6 @@ fn solve_stages(
         return Ok(summary);
     }
     let before = start_energy(&island.blocks);
-    let loads = external_work(&island.blocks, &island.contacts);
     let treatment = settings.treatment();
     summary.start_energy = before;
     let mut contacts = island.contacts.iter();
@@ -76,8 +75,7 @@ fn solve_stages(
     summary.end_energy = end_energy(&island.blocks);
     let stretched = closing::stretched_by_closing(island, &summary);
     summary.work = island.actual_work(settings) + joint_work.all + stretched;
-    summary.idle_work = joint_work.idle;
-    let allowance = loads + joint_work.all + stretched;
+    (summary.idle_work, summary.stopped) = (joint_work.idle, joint_work.stopped);
     let joints_feed = joint_work.idle > GAINED * summary.brought();
     let is_thrown =
         gentle::is_flung(island) || !summary.is_unsolved() && gentle::is_thrown(island, &summary);
@@ -95,10 +93,8 @@ fn solve_stages(
     }
     if treatment.limits_energy() {
         let stored = reserve.max(0.0);
-        let is_unsolved = summary.is_unsolved();
-        let allowance = if is_unsolved { summary.work } else { allowance };
-        energy::limit_energy(island, settings, allowance, reserve, &mut summary);
-        if is_unsolved {
+        energy::limit_energy(island, settings, reserve, &mut summary);
+        if summary.is_unsolved() {
             // What such a step has lost is lost.
             *reserve = reserve.min(stored);
         }

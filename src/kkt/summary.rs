@@ -39,6 +39,8 @@ pub struct IslandSummary {
     pub work: f64,
     /// Work of joints that only hold (J): of long steps, as in truth they do none.
     pub idle_work: f64,
+    /// What joints have stopped of the motion of what they hold, which is in their work, but turns into heat (J).
+    pub stopped: f64,
     /// Energy taken out by the energy stage (J).
     pub limited: f64,
     /// What of it was taken from all joined motion, as a step far too long leaves no other place to take it from (J).

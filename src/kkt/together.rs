@@ -210,6 +210,7 @@ pub(super) fn measure_ended(
     let swings = island.blocks.iter().map(|block| block.swing()[1]);
     (summary.swing, summary.pending) = (swings.sum(), 0.0);
     summary.work = island.actual_work(settings);
+    summary.stopped = 0.0;
     summary.end_energy = end_energy(&island.blocks);
 }
 

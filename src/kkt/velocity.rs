@@ -143,6 +143,7 @@ fn settle_accelerations(island: &mut Island, settings: &SolveSettings) -> Result
         contact.impulse[direction.axis] += late * force;
         contact.settled[direction.axis] = force;
     }
+    island.joints.take_accelerations(&island.problem, late);
     gathered::gather_rows(island, Response::Acceleration);
     gathered::add_to_rigid(island, Response::Acceleration, 1.0);
     Ok(())

@@ -2,6 +2,7 @@
 
 use super::active_contact::ActiveContact;
 use super::joints::{ActiveJoint, add_wrench};
+use super::settings::SolveSettings;
 use crate::constraint::joint::{JointGrip, JointLaw, When, unit_wrench};
 use crate::math::Vec2;
 use crate::system::{Balance, Block, FlexBlock, RigidBlock, RigidMotion};
@@ -71,17 +72,24 @@ pub(super) fn load_energy(blocks: &[Block]) -> f64 {
 }
 
 /// Work of applied forces and of the contact forces of driven bodies, prescribed ones and links of multibodies (J).
-pub(super) fn actual_work(blocks: &[Block], contacts: &[ActiveContact], dt: f64) -> f64 {
+///
+/// Impulses count that the step has given, times the mean velocity of the driven bodies. Seen from a body that moves evenly that is what the
+/// kinetic energy changes by, so that all that is said of the rest is the same from there.
+pub(super) fn actual_work(
+    blocks: &[Block],
+    contacts: &[ActiveContact],
+    settings: &SolveSettings,
+) -> f64 {
     let mut work = applied_work(blocks);
     for contact in contacts {
-        let [normal, tangent] = contact.force(dt);
+        let [normal, tangent] = contact.given(settings);
         let kinematics = &contact.kinematics;
-        let force = normal * kinematics.normal + tangent * kinematics.tangent();
+        let impulse = normal * kinematics.normal + tangent * kinematics.tangent();
         for a in kinematics.attachments() {
             let block = &blocks[a.block];
             if matches!(block, Block::Rigid(block) if block.is_driven()) {
                 let moved = block.position(a.grip.point) - block.start_position(a.grip.point);
-                work -= a.weight * force.dot(&moved);
+                work -= a.weight * impulse.dot(&moved) / settings.dt;
             }
         }
     }
@@ -96,6 +104,8 @@ pub(super) struct JointWork {
     /// What is done by joints that do none: bilateral rows between rigid bodies that are held at rest, and what limits give. The force of the
     /// step's beginning works on the velocities of the end, that of the end on those of the beginning.
     pub idle: f64,
+    /// What rows of rigid bodies that hold, or limit, have taken out of the motion: less work than driven bodies have done through them.
+    pub stopped: f64,
 }
 
 /// Sums up the work of the joint rows over the step, from their grips at its beginning and at its end.
@@ -114,6 +124,10 @@ pub(super) fn joint_work(
         let work = work_of(blocks, tie, grips, weights);
         sum.all += work;
         let own = &grips.start[tie.row.grips.0..tie.row.grips.1];
+        let holds = matches!(tie.row.law, JointLaw::Rigid { .. } | JointLaw::Limit { .. });
+        if tie.is_hard && holds {
+            sum.stopped -= work + driven_work(blocks, tie, grips, weights[0]);
+        }
         if tie.is_hard && !tie.moves_apart() && !own.iter().any(is_driven) {
             sum.idle += match tie.row.law {
                 JointLaw::Rigid { rate: 0.0, .. } => work,
@@ -129,7 +143,7 @@ pub(super) fn joint_work(
 fn work_of(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, [dt, b1]: [f64; 2]) -> f64 {
     if tie.moves_apart() {
         // Ends that are drawn together, or left apart, move against each other: work is what the driven ones do.
-        return -driven_work(blocks, tie, grips.start, dt);
+        return -driven_work(blocks, tie, grips, dt);
     }
     let is_turn = tie.row.measure.is_turn();
     let (first, last) = tie.row.grips;
@@ -139,7 +153,7 @@ fn work_of(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, [dt, b1]: 
     } else {
         let own = &grips.start[first..last];
         let began = tie.row.sign * tie.row.measure.direction(blocks, own, When::Start);
-        let [before, after] = [tie.row.last_multiplier(), tie.left_behind().multiplier];
+        let [before, after] = [tie.row.last_lasting(), tie.lasting()];
         (1.0 - b1 / dt) * (before * began - after * tie.direction)
     };
     let works = (first..last).map(|at| {
@@ -165,41 +179,73 @@ fn work_of(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, [dt, b1]: 
 }
 
 /// What a joint's mean force does on driven bodies that it holds (J).
-fn driven_work(blocks: &[Block], tie: &ActiveJoint, grips: &[JointGrip], dt: f64) -> f64 {
+fn driven_work(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, dt: f64) -> f64 {
+    let is_turn = tie.row.measure.is_turn();
+    let impulses = match tie.is_hard {
+        true => [tie.kick, tie.impulse],
+        false => [dt * tie.row.sign * tie.force(dt), 0.0],
+    };
     let (first, last) = tie.row.grips;
-    let force = tie.force(dt) * tie.row.sign;
-    let driven = grips[first..last]
-        .iter()
-        .filter(|grip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_driven()));
-    let works = driven.map(|grip| {
-        let block = &blocks[grip.block];
-        let moved = block.position(grip.point) - block.start_position(grip.point);
-        force * grip.weight * tie.direction.dot(&moved)
+    let works = (first..last).map(|at| match &blocks[grips.start[at].block] {
+        Block::Rigid(block) if block.is_driven() => {
+            let mut impulse = [0.0; 3];
+            let kept = unit_wrench(&grips.start[at], tie.direction, is_turn);
+            add_wrench(&mut impulse, impulses[0], kept);
+            if let Some(grip) = grips.end.get(at) {
+                add_wrench(
+                    &mut impulse,
+                    impulses[1],
+                    unit_wrench(grip, tie.end, is_turn),
+                );
+            }
+            impulse.iter().zip(block.moved()).map(|(p, x)| p * x).sum()
+        }
+        _ => 0.0,
     });
-    works.sum()
+    works.sum::<f64>() / dt
 }
 
-/// Work done on the island by applied forces and, at most, by moving driven bodies (J).
-pub(super) fn external_work(blocks: &[Block], contacts: &[ActiveContact]) -> f64 {
-    let mut work = applied_work(blocks);
-    for contact in contacts {
-        let driven: Vec2 = contact
-            .kinematics
-            .attachments()
-            .iter()
-            .filter(|a| matches!(&blocks[a.block], Block::Rigid(block) if block.is_driven()))
+/// What contacts may bring from links of multibodies beyond the work that they are known by (J): rapier moves these, by the way that they would go
+/// without this step's forces.
+pub(super) fn work_of_links(
+    blocks: &[Block],
+    contacts: &[ActiveContact],
+    settings: &SolveSettings,
+) -> f64 {
+    let is_link = |block: usize| matches!(&blocks[block], Block::Rigid(block) if block.link_response().is_some());
+    let works = contacts.iter().map(|contact| {
+        let grips = contact.kinematics.attachments().iter();
+        let moved: Vec2 = grips
+            .filter(|a| is_link(a.block))
             .map(|a| {
                 let block = &blocks[a.block];
-                block.position(a.grip.point) - block.start_position(a.grip.point)
+                a.weight * (block.position(a.grip.point) - block.start_position(a.grip.point))
             })
             .sum();
+        let (row, [normal, tangent]) = (&contact.kinematics, contact.given(settings));
+        let impulse = normal * row.normal + tangent * row.tangent();
         let force = contact.multiplier[0].max(contact.remembered.normal);
         let drag = contact.multiplier[1]
             .abs()
             .max(contact.remembered.tangent.abs());
-        work += driven.norm() * (force + drag);
-    }
-    work
+        moved.norm() * (force + drag) + impulse.dot(&moved) / settings.dt
+    });
+    works.sum()
+}
+
+/// What wrenches of impulses on driven bodies do on what these meet (J); links answer to them.
+pub(super) fn work_of_driven(blocks: &[Block], wrenches: &[[f64; 3]], dt: f64) -> f64 {
+    let works = blocks
+        .iter()
+        .zip(wrenches)
+        .map(|(block, wrench)| match block {
+            Block::Rigid(block) if block.is_driven() && block.link_response().is_none() => {
+                let moved = block.moved();
+                wrench.iter().zip(moved).map(|(w, x)| w * x).sum::<f64>()
+            }
+            _ => 0.0,
+        });
+    -works.sum::<f64>() / dt
 }
 
 /// The momentum of all blocks if each moved along one line with its kinetic energy (N s).

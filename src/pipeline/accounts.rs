@@ -7,9 +7,7 @@ use super::outcome::Outcome;
 use super::quality::{Quality, Unsolved};
 use super::report::StepReport;
 use super::solved::{Entry, SolvedPart};
-use crate::body::FlexBodySet;
 use crate::coupling::{EventBook, Memory};
-use crate::kkt::Island;
 use crate::math::{Vec2, cross, from_rapier};
 use crate::system::Block;
 
@@ -81,13 +79,13 @@ impl StepReport {
             summary.end_energy.iter().sum::<f64>() - summary.start_energy.iter().sum::<f64>();
         let flowed = part.island.flow_energy();
         self.energy.flowed += flowed;
-        self.energy.dissipated += summary.work - gain + flowed;
+        self.energy.dissipated += summary.work + summary.stopped - gain + flowed;
         if part.span.is_last() {
             self.energy.kinetic += summary.end_energy[0] + summary.pending;
             self.energy.elastic += summary.end_energy[1] - flowed;
             self.energy.swing += summary.swing;
             let gravity = from_rapier(names.sets.gravity);
-            self.add_momentum(part.island, gravity, names.flex_bodies);
+            self.add_momentum(part, gravity, names);
         }
     }
 
@@ -149,11 +147,22 @@ impl StepReport {
     }
 
     /// Adds the island's momentum and potential energy.
-    fn add_momentum(&mut self, island: &Island, gravity: Vec2, flex_bodies: &FlexBodySet) {
+    fn add_momentum(&mut self, part: &SolvedPart<'_>, gravity: Vec2, names: Names<'_, '_>) {
+        let island = part.island;
+        for &(block, handle) in part.seats.claimed() {
+            if let (Block::Rigid(block), Some(body)) =
+                (&island.blocks[block], names.sets.bodies.get(handle))
+            {
+                let [mass, mass_y, _] = block.mass();
+                let weight = mass.max(mass_y) * f64::from(body.gravity_scale());
+                self.energy.potential -= weight * gravity.dot(&block.current().centre);
+            }
+        }
         for (block, index) in island.blocks.iter().zip(&island.flex_index) {
             match (block, index) {
                 (Block::Flex(block), Some(index)) => {
-                    let scale = flex_bodies
+                    let scale = names
+                        .flex_bodies
                         .at_index(*index)
                         .map_or(1.0, |(_, body)| body.gravity_scale());
                     let momentum = block.momentum();
@@ -169,7 +178,6 @@ impl StepReport {
                     self.momentum[0] += momentum.x;
                     self.momentum[1] += momentum.y;
                     self.angular_momentum += inertia * motion.spin + cross(motion.centre, momentum);
-                    self.energy.potential -= mass.max(mass_y) * gravity.dot(&motion.centre);
                 }
                 _ => {}
             }

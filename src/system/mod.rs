@@ -120,8 +120,12 @@ impl Block {
         match (self, grip.point) {
             (Self::Flex(block), Point::Node(node)) => block.approaching_velocity(node),
             (Self::Rigid(block), Point::Arm(_)) => {
-                let start = block.start();
-                start.velocity + start.spin * perp(grip.lever)
+                // What is moved as it must has the velocity of the way that it goes.
+                let moves = match block.is_prescribed() && block.link_response().is_none() {
+                    true => block.current(),
+                    false => block.start(),
+                };
+                moves.velocity + moves.spin * perp(grip.lever)
             }
             _ => mismatch(),
         }

@@ -99,3 +99,91 @@ fn bars_that_are_held_where_they_touch_keep_their_energy() {
         }
     }
 }
+
+/// A ball hinged to a box exactly where the two touch, on contacts as rapier has them: the hinge lets it nod, the contact does not.
+#[test]
+fn a_ball_that_is_hinged_where_it_touches_gains_nothing() {
+    for rate in [60.0, 120.0, 240.0, 1000.0] {
+        let spin = -1.0;
+        let mut scene = Scene::in_free_space(1.0 / rate);
+        let turning = |y: f64, spin: f64, faster: f64| {
+            RigidBodyBuilder::dynamic()
+                .translation(vec2(0.0, y))
+                .linvel(vec2(-spin * y, 0.0))
+                .angvel(real(faster * spin))
+        };
+        let (chest, _) = scene.rigid(
+            turning(0.0, spin, 1.0),
+            ColliderBuilder::cuboid(0.15, 0.25).mass(20.0),
+        );
+        let (head, _) = scene.rigid(
+            turning(0.37, spin, 1.3),
+            ColliderBuilder::ball(0.12).mass(4.0),
+        );
+        let neck = hinge([0.0, 0.25], [0.0, -0.12]);
+        scene.world.insert_impulse_joint(chest, head, neck.build());
+        let limb = FlexBodyBuilder::rectangle([0.1, 0.5], [2, 10])
+            .material(
+                LinearElastic::plane_stress(2e6, 0.35)
+                    .density(1000.0)
+                    .rayleigh(2e-3),
+            )
+            .translation([-0.25, -0.25])
+            .linvel([0.0, -0.2 * spin])
+            .angvel(spin);
+        let limb = scene.flexible(limb);
+        let weld = AttachmentBuilder::weld(limb).where_(|[x, _]| x > 0.0999);
+        scene
+            .bodies
+            .attach(weld.to_rigid_body(chest), &scene.world.bodies)
+            .expect("a weld along the chest");
+        let start = energy_of(&scene);
+        for step in 0..(3.0 * rate) as usize {
+            scene.try_step().expect("a step");
+            let now = energy_of(&scene) / start;
+            assert!(now < 1.02, "1/{rate} s, step {step}: {now} of the energy");
+        }
+    }
+}
+
+/// A bar hung on a hinge with a soft one at its end, which it touches where it holds it: what swings has the energy that it began with.
+#[test]
+fn bars_that_are_hung_and_touch_where_they_are_held_gain_nothing() {
+    for (is_weld, rate) in [(true, 60.0), (true, 240.0), (false, 60.0), (false, 240.0)] {
+        let mut scene = Scene::in_free_space(1.0 / rate).with_gravity(0.0, -9.81);
+        let anchor = scene.world.insert_body(RigidBodyBuilder::fixed());
+        let (upper, _) = scene.rigid(
+            RigidBodyBuilder::dynamic().translation(vec2(0.5, 0.0)),
+            ColliderBuilder::cuboid(0.5, 0.05).mass(20.0),
+        );
+        let hung = hinge([0.0, 0.0], [-0.5, 0.0]);
+        scene
+            .world
+            .insert_impulse_joint(anchor, upper, hung.build());
+        let lower = FlexBodyBuilder::rectangle([1.0, 0.1], [10, 2])
+            .material(LinearElastic::plane_stress(3e8, 0.3).density(500.0))
+            .translation([1.0, -0.05]);
+        let lower = scene.flexible(lower);
+        let held = match is_weld {
+            true => AttachmentBuilder::weld(lower).where_(|[x, _]| x < 1e-9),
+            false => {
+                AttachmentBuilder::pin(lower).where_(|[x, y]| x < 1e-9 && (y - 0.05).abs() < 1e-9)
+            }
+        };
+        let held = held.contacts_enabled(true).to_rigid_body(upper);
+        scene
+            .bodies
+            .attach(held, &scene.world.bodies)
+            .expect("the end is there");
+        let fallen = 9.81 * (20.0 * 0.5 + 50.0 * 1.5);
+        let start = energy_of(&scene);
+        for step in 0..(4.0 * rate) as usize {
+            scene.try_step().expect("a step");
+            let gained = (energy_of(&scene) - start) / fallen;
+            assert!(
+                gained < 0.01,
+                "weld {is_weld}, 1/{rate} s, step {step}: {gained} of the fall"
+            );
+        }
+    }
+}

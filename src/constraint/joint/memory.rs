@@ -37,6 +37,8 @@ pub struct JointKey {
 pub struct RememberedJoint {
     /// Its multiplier (N or N m).
     pub multiplier: f64,
+    /// What is left in the stored accelerations of flexible bodies (N or N m).
+    pub lasting: f64,
     /// Rate at which it was driven from outside when the step ended (m/s or rad/s).
     pub driven: f64,
     /// Whether its ends were put apart and do not meet yet.

@@ -34,4 +34,9 @@ impl JointRow {
     pub fn last_multiplier(&self) -> f64 {
         self.remembered.map_or(0.0, |last| last.multiplier)
     }
+
+    /// What the last step has left of it in stored accelerations (N or N m).
+    pub fn last_lasting(&self) -> f64 {
+        self.remembered.map_or(0.0, |last| last.lasting)
+    }
 }

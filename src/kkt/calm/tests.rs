@@ -61,6 +61,7 @@ pub(in crate::kkt) fn join(island: &mut Island, blocks: [usize; 2]) {
         asked: [0.0; 2],
         kick: 0.0,
         impulse: 0.0,
+        settled: 0.0,
         began: 0.0,
         driven: 0.0,
         is_movable: true,

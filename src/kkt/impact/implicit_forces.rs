@@ -68,6 +68,7 @@ fn take_from_acceleration(island: &mut Island, settings: &SolveSettings) {
         // The mean force over the step is `β0 p̃`.
         let part = (beta0 - 1.0) * settings.dt;
         contact.impulse = contact.multiplier.map(|force| part * force);
+        contact.settled = contact.multiplier.map(|force| -force);
     }
     for block in &mut island.blocks {
         if let Block::Flex(block) = block {

@@ -45,6 +45,8 @@ pub struct ActiveJoint {
     /// Impulses along the rows of the beginning and of the end (N s or N m s).
     pub(in crate::kkt) kick: f64,
     pub(in crate::kkt) impulse: f64,
+    /// Force of the acceleration stage (N or N m).
+    pub(in crate::kkt) settled: f64,
     /// Rate of what is not driven from outside when the step begins, and the rate at which that is driven when it ends (m/s or rad/s).
     pub(in crate::kkt) began: f64,
     pub(in crate::kkt) driven: f64,
@@ -65,8 +67,26 @@ impl ActiveJoint {
     pub fn left_behind(&self) -> RememberedJoint {
         RememberedJoint {
             multiplier: self.multiplier - self.closer,
+            lasting: self.lasting(),
             driven: self.driven,
             closes: self.closing != 0.0 && self.goal != self.target,
+        }
+    }
+
+    /// The force that is left in the stored accelerations of flexible bodies (N or N m).
+    pub(in crate::kkt) fn lasting(&self) -> f64 {
+        if self.is_hard {
+            0.0
+        } else {
+            self.multiplier - self.closer + self.settled
+        }
+    }
+
+    /// Takes a force of the acceleration stage; `late` of its time is in the next step (N or N m, s).
+    pub(in crate::kkt) fn settle(&mut self, force: f64, late: f64) {
+        if !self.is_hard {
+            self.settled += force;
+            self.impulse += late * force;
         }
     }
 

@@ -219,6 +219,13 @@ impl Joints {
         }
     }
 
+    /// Notes the forces of a solved acceleration problem; `late` of their time is in the next step (s).
+    pub(in crate::kkt) fn take_accelerations(&mut self, problem: &RowProblem, late: f64) {
+        for (&row, force) in self.listed.iter().zip(problem.of_joints()) {
+            self.ties[row].settle(*force, late);
+        }
+    }
+
     /// Whether some joint holds a flexible block, so that accelerations are settled.
     pub(in crate::kkt) fn has_soft(&self) -> bool {
         self.ties.iter().any(|tie| !tie.is_hard)

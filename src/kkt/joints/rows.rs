@@ -87,6 +87,7 @@ impl Joints {
                 asked: [resolved.goal, resolved.closing],
                 kick: 0.0,
                 impulse: 0.0,
+                settled: 0.0,
                 began: 0.0,
                 driven: 0.0,
                 is_movable: mobility > SINGULAR * across,
