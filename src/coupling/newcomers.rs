@@ -154,7 +154,20 @@ fn least_depth(flex: &Roster, slot: usize) -> f64 {
 pub(crate) fn overlap(one: &FlexBody, other: &FlexBody, depth: f64, sets: ReadSets<'_>) -> bool {
     one.contains(inner_point(other).into())
         || other.contains(inner_point(one).into())
+        || has_vertex_in(one, other, depth)
+        || has_vertex_in(other, one, depth)
         || crossing(one.collider_handle(), other.collider_handle(), sets) > depth
+}
+
+/// Whether a node of one body's surface is deeper than this in the other (m): edges that lie in line do not cross.
+fn has_vertex_in(body: &FlexBody, other: &FlexBody, depth: f64) -> bool {
+    let around = [Vec2::x(), -Vec2::x(), Vec2::y(), -Vec2::y()];
+    let mut nodes = body.mesh().boundary().nodes().iter();
+    nodes.any(|&node| {
+        let place = node_vec(body.positions(), node);
+        let is_in = |away: &Vec2| other.contains((place + depth * away).into());
+        around.iter().all(is_in)
+    })
 }
 
 /// How deep a collider is in a flexible body (m), zero where it is not: at the surface, or by half its width if its middle is in there.

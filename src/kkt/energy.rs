@@ -74,7 +74,7 @@ pub(super) fn limit_energy(
     if taken < debt {
         taken += remove_vibration(island, debt - taken);
     }
-    if taken < debt && (swings || presses_joined(island)) {
+    if taken < debt && (swings || island.presses_joined()) {
         let leaders = together::groups_of(island, |block| !block.is_prescribed());
         let joints = (&island.joints.ties[..], &island.joints.grips[..]);
         let excess = debt - taken;
@@ -84,12 +84,6 @@ pub(super) fn limit_energy(
     summary.limited = taken;
     summary.end_energy[0] -= taken;
     *reserve += taken;
-}
-
-/// Whether contacts press bodies that joints hold, so that forces of both may be of any size.
-fn presses_joined(island: &Island) -> bool {
-    let mut contacts = island.contacts.iter();
-    contacts.any(|contact| contact.is_closed() && island.joints.joins(contact))
 }
 
 /// Kinetic energy as it is seen from the slowest of the driven bodies that touch or hold something (J).

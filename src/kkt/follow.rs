@@ -19,6 +19,7 @@ use self::listing::Listing;
 use self::trend::Trend;
 use super::cones;
 use super::island::{Island, SolveSettings};
+use super::joints::put_apart;
 use super::summary::IslandSummary;
 use super::tolerances::{
     ANGLE_TOLERANCE, CLOSE_ENOUGH, FEW_PASSES, LARGE_TOLERANCE, OVERLAPPED, PARTING_RATE,
@@ -65,7 +66,7 @@ pub(super) fn follow_path(
     tolerance: f64,
     summary: &mut IslandSummary,
 ) -> Passed {
-    find_margin(island, tolerance);
+    find_margin(island, settings, tolerance);
     if !island.path.is_empty() {
         island.path.rest(&island.blocks);
     }
@@ -90,12 +91,13 @@ pub(super) fn follow_path(
 }
 
 /// Finds what the laws may miss at the very most: the least margin of the ways, or where there is no path, what counts as near.
-pub(super) fn find_margin(island: &mut Island, tolerance: f64) {
+pub(super) fn find_margin(island: &mut Island, settings: &SolveSettings, tolerance: f64) {
     island.passes.margin = if island.path.is_empty() {
         NEAR / CLOSE_ENOUGH * tolerance
     } else {
         island.path.least_margin()
     };
+    island.passes.slack = put_apart(settings.length_unit);
 }
 
 fn try_passes(

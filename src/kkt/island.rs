@@ -84,6 +84,12 @@ impl Island {
         !self.joints.ties.is_empty() && !is_within
     }
 
+    /// Whether contacts press bodies that joints hold, so that forces of both may be of any size.
+    pub(super) fn presses_joined(&self) -> bool {
+        let mut contacts = self.contacts.iter();
+        contacts.any(|contact| contact.is_closed() && self.joints.joins(contact))
+    }
+
     /// Work of applied forces and of the contact forces of driven bodies (J).
     pub(super) fn actual_work(&self, settings: &SolveSettings) -> f64 {
         work::actual_work(&self.blocks, &self.contacts, settings)

@@ -21,7 +21,7 @@ pub(super) fn solve_positions(
 ) {
     let tolerance = working_set::gap_tolerance(island, settings);
     working_set::open_working_set(island, settings, tolerance, memory);
-    follow::find_margin(island, tolerance);
+    follow::find_margin(island, settings, tolerance);
     let is_solved = match &settings.contact {
         ContactMethod::Lagrange => false,
         ContactMethod::ConstraintFunction(functions) => {

@@ -9,7 +9,7 @@ use super::participant::{Held, Participant};
     derive(serde::Serialize, serde::Deserialize)
 )]
 pub struct ContactReport {
-    /// Position (m).
+    /// Position where the step ends (m); of a contact that has opened in an earlier part of a step that was taken in parts, where it was then.
     pub position: [f64; 2],
     /// Unit normal, from the target to the contactor.
     pub normal: [f64; 2],

@@ -1,4 +1,4 @@
-//! Rigid bodies that the user puts into flexible ones that have been there before.
+//! Bodies that the user puts into others: rigid ones into flexible ones that have been there before, and flexible ones into each other.
 
 use crate::common::{G, Scene, real, vec2};
 use foil2d::pipeline::{InsertionNote, Participant, Quality};
@@ -204,5 +204,27 @@ fn what_is_put_into_each_other_in_flight_flies_on() {
             assert!(off[0].abs() < 1e-5 && off[1].abs() < 1e-2, "{off:?}");
         }
         assert!(is_unfinished, "they are in each other");
+    }
+}
+
+/// Blocks that are laid on each other in line, too near by a little or by a third: the corners of both are in line with the sides of the other, where
+/// edges do not cross.
+#[test]
+fn blocks_that_overlap_in_line_are_told() {
+    for (overlap, is_told) in [(-1e-3, false), (0.0, false), (1e-5, false)]
+        .into_iter()
+        .chain([0.005, 0.015, 0.03, 0.05, 0.1].map(|overlap| (overlap, true)))
+    {
+        let mut scene = Scene::new(1.0 / 60.0);
+        scene.ground(0.5);
+        for y in [0.01, 0.31 - overlap] {
+            let block = FlexBodyBuilder::rectangle([0.3, 0.3], [4, 4])
+                .material(LinearElastic::plane_stress(1e6, 0.3).density(1000.0))
+                .translation([-0.15, y]);
+            scene.flexible(block);
+        }
+        scene.try_step().expect("a step");
+        let n_told = scene.report().insertion_notes().len();
+        assert_eq!(n_told, usize::from(is_told), "{overlap} m");
     }
 }

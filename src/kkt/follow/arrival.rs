@@ -13,7 +13,12 @@ use crate::kkt::{follow, working_set};
 /// `counts_lost`.
 pub(super) fn shortfall(island: &mut Island, counts_lost: bool) -> f64 {
     let least = island.passes.margin;
-    let mut worst = island.joints.measure(&island.blocks) / least;
+    let presses_joined = island.presses_joined();
+    let of_joints = match presses_joined {
+        true => least.min(island.passes.slack),
+        false => least,
+    };
+    let mut worst = island.joints.measure(&island.blocks) / of_joints;
     let counted = |is_lost: bool| counts_lost || !is_lost;
     for contact in island.contacts.iter().filter(|one| counted(one.is_lost)) {
         let friction = island.candidates[contact.candidate].law.friction;

@@ -37,6 +37,11 @@ pub(super) struct Resolved {
     pub finish: Finish,
 }
 
+/// Distance from which ends count as put apart, or an angle where the unit is one (m or rad): farther than what rests on each other.
+pub(in crate::kkt) fn put_apart(length_unit: f64) -> f64 {
+    RESTING * length_unit
+}
+
 /// The law of a row that measures `start` when the step begins, and has this mobility.
 pub(super) fn resolve(
     row: &JointRow,
@@ -52,8 +57,8 @@ pub(super) fn resolve(
     };
     // Ends that are farther apart than what rests on each other have been put there: they close over several steps.
     let slack = match row.measure.is_turn() {
-        true => RESTING.get(),
-        false => RESTING * settings.length_unit,
+        true => put_apart(1.0),
+        false => put_apart(settings.length_unit),
     };
     match row.law {
         JointLaw::Rigid { goal, rate } => {

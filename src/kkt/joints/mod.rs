@@ -14,7 +14,7 @@ mod twist;
 
 pub use self::active::ActiveJoint;
 pub(super) use self::joined::JOINED;
-pub(super) use self::law::Finish;
+pub(super) use self::law::{Finish, put_apart};
 pub(super) use self::rows::add_wrench;
 
 use self::joined::Joined;
