@@ -174,6 +174,7 @@ fn gather_closer(island: &mut Island, tie: &ActiveJoint, b1: f64) {
 mod tests {
     use super::*;
     use crate::constraint::contact::{Kinematics, Remembered};
+    use crate::kkt::answers::find_answers;
     use crate::kkt::calm::tests::join;
     use crate::kkt::together::tests::rigid;
     use crate::linalg::complementarity::Method;
@@ -222,6 +223,17 @@ mod tests {
             let expected = if asked < 0.0 { -force * normal.x } else { 0.0 };
             let found = island.joints.ties[0].closer;
             assert!((found - expected).abs() < 1e-12, "{slant}: {found}");
+            // What does not part is answered too, and not felt.
+            assert!(find_answers(&mut island, &SETTINGS).is_ok());
+            let tie = island.joints.ties[0];
+            let answer = -force * normal.x - expected;
+            assert!(
+                (tie.answer - answer).abs() < 1e-12,
+                "{slant}: {}",
+                tie.answer
+            );
+            let felt = tie.multiplier + force * normal.x;
+            assert!((tie.felt() - felt).abs() < 1e-12, "{slant}: {}", tie.felt());
         }
     }
 }

@@ -52,7 +52,7 @@ pub(super) struct Passes {
     pub softness: f64,
     /// What the laws may miss at the very most: the least margin of the ways (m).
     pub margin: f64,
-    /// What joints may miss at the very most (m or rad): the margin too, but where contacts press what they hold, no more than what counts as put apart.
+    /// What joints may miss besides where contacts press what they hold (m or rad): what would count as put apart in the next step.
     pub slack: f64,
     /// How fine the laws are to hold at the least, by what the step began with (m).
     pub finest: f64,

@@ -83,6 +83,9 @@ impl Twists {
 
     /// Leaves of every torque the share that goes with the forces that velocities feel; returns whether it took anything.
     pub fn leave_felt(&mut self, (ties, grips): (&[ActiveJoint], &[JointGrip])) -> bool {
+        if self.twists.iter().all(|torque| *torque == 0.0) {
+            return false;
+        }
         self.pulls.clear();
         self.pulls.resize(self.twists.len(), [0.0; 2]);
         for tie in of_hinges(ties) {
