@@ -58,6 +58,8 @@ pub(super) struct LargeStrain {
     pub(super) is_ambiguous: bool,
     /// Whether what is not found without detours need not be found: the step is cut then.
     pub(super) may_give_up: bool,
+    /// What had been dissipated by flow where the step, or this part of it, begins (J).
+    flow_energy: f64,
     led: Led,
     reference: Reference,
 }
@@ -75,6 +77,7 @@ impl LargeStrain {
             resolved: zeros,
             is_ambiguous: false,
             may_give_up: false,
+            flow_energy: 0.0,
             led: Led::default(),
             reference: Reference::default(),
         };
@@ -110,6 +113,7 @@ impl LargeStrain {
         shared.contact.clear();
         self.led.forget();
         self.trial.deformation.begin_with(&state.flowed);
+        self.flow_energy = state.flow_energy;
         self.begin_at(&state.position);
         shared.energy.flow = 0.0;
         self.problem.begin(shared.step.dt, state);

@@ -170,8 +170,11 @@ impl LargeStrain {
         state.velocity.copy_from_slice(&shared.now.velocity);
         let (factor, dt) = (&shared.answer.factor, shared.step.dt);
         self.reference.tell(factor, dt, &mut state.linearized);
+        // From where the part of the step began that has been solved: the state may be that of the whole step.
         let flowed = &mut state.flowed;
-        state.flow_energy += self.problem.model.commit_flow(&shared.now.position, flowed);
+        flowed.copy_from_slice(self.trial.deformation.flowed());
+        let flow = self.problem.model.commit_flow(&shared.now.position, flowed);
+        state.flow_energy = self.flow_energy + flow;
         state.torque = 0.0;
         state.loads.last.force.clear();
         state.frame = shared.now.frame;
