@@ -54,6 +54,9 @@ mod welded_twice;
 #[path = "joints/touching.rs"]
 mod touching;
 
+#[path = "joints/stiff_chain.rs"]
+mod stiff_chain;
+
 #[path = "joints/taut.rs"]
 mod taut;
 

@@ -277,7 +277,9 @@ impl FlexBody {
         node_vec(&self.contact_force, node).into()
     }
 
-    /// Sum of the forces of contacts and attachments in the last step (N).
+    /// Sum of the forces of contacts and attachments in the last step (N): what a contact presses with and an attachment holds it against sums up to
+    /// zero. Each by itself is in [`StepReport::contacts`](crate::pipeline::StepReport::contacts) and
+    /// [`joints`](crate::pipeline::StepReport::joints).
     pub fn total_contact_force(&self) -> [f64; 2] {
         sum_of_nodes(&self.contact_force).into()
     }

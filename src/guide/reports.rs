@@ -7,8 +7,8 @@
 //!
 //! | [`quality`](crate::pipeline::StepReport::quality) | means | do |
 //! |---|---|---|
-//! | `Solved` | all laws hold to the residuals told | |
-//! | `Cut` | in shorter parts, or with a joint that contradicts another left open | nothing, or look at [`unsolved`](crate::pipeline::StepReport::unsolved) |
+//! | `Solved` | all laws hold to the residuals told, in one piece or in [parts](crate::pipeline::StepReport::n_parts) | |
+//! | `Cut` | with gaps that miss the laws by up to a hundredth of an edge, a contact that has slid off within the step, or joints that contradict each other left open | nothing, or look at [`unsolved`](crate::pipeline::StepReport::unsolved) |
 //! | `Unfinished` | the budget ran out: bodies were stopped where nothing overlaps, or wait | shorten the step, look at who is named |
 //!
 //! [`FlexPipeline::refusing_unsolved`](crate::pipeline::FlexPipeline::refusing_unsolved) makes an unsolved step an error and leaves the world as it was.

@@ -190,6 +190,7 @@ fn state_sparse(island: &Island, sparse: &mut Sparse, asked: Asked) -> Result<()
             give,
             acted,
             scale,
+            local: f64::INFINITY,
         });
         sparse.places.push(row);
         // What slid at the last look slides on, about as far.
@@ -230,11 +231,13 @@ fn state_sparse(island: &Island, sparse: &mut Sparse, asked: Asked) -> Result<()
             island.joints.listed[slot],
             (asked.of, asked.which),
         );
+        let own = &grips[tie.row.grips.0..tie.row.grips.1];
+        // What welds a stiff body by many nodes holds their places to each other too, which a share of the whole body's motion would let go.
+        let local = sparse.local_mobility(&island.blocks, own);
         let yielding = match asked.of {
-            Response::Position => YIELDING * scale,
+            Response::Position => (YIELDING * scale).min(LARGE_TOLERANCE * local),
             _ => 0.0,
         };
-        let own = &grips[tie.row.grips.0..tie.row.grips.1];
         let turned = own.iter().map(|grip| {
             let turned = sparse.turned(&island.blocks, grip.block, grip.grip());
             grip.weight * direction.dot(&turned)
@@ -261,6 +264,7 @@ fn state_sparse(island: &Island, sparse: &mut Sparse, asked: Asked) -> Result<()
             ],
             acted: [0.0; 2],
             scale: [scale, 0.0],
+            local,
         });
         sparse.places.push(place);
         sparse.slip.push(0.0);

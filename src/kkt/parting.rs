@@ -330,6 +330,7 @@ fn row(entries: (u32, u32), law: ConeLaw, free: f64, (share, mobility): (f64, f6
         give: [share * mobility, 0.0],
         acted: [0.0; 2],
         scale: [mobility, 0.0],
+        local: f64::INFINITY,
     }
 }
 

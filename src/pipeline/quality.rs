@@ -10,7 +10,7 @@ use crate::kkt::IslandSummary;
     derive(serde::Serialize, serde::Deserialize)
 )]
 pub enum Quality {
-    /// The laws of contact hold at its end.
+    /// The laws of contact hold at its end, and at those of its [parts](super::StepReport::n_parts), if it was taken in several.
     #[default]
     Solved,
     /// The whole of the step was taken along a feasible path, with forces under which gaps miss the laws by up to the offset of the surfaces,

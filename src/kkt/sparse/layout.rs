@@ -191,6 +191,27 @@ impl Sparse {
         }
     }
 
+    /// What a unit multiplier moves the grips of one flexible block by if all else of it was held, `Σ w²/A_ii`: the least of the blocks (1/kg), infinite
+    /// without any.
+    pub(in crate::kkt) fn local_mobility(&self, blocks: &[Block], grips: &[JointGrip]) -> f64 {
+        let Kept { matrix, first, .. } = &self.kept[self.at];
+        let moved = |grip: &JointGrip| match (&blocks[grip.block], grip.point) {
+            (Block::Flex(_), Point::Node(node)) => {
+                let node = first[grip.block] + node;
+                let own = matrix.block(node, node)?;
+                Some(grip.weight * grip.weight / own[0].max(own[3]))
+            }
+            _ => None,
+        };
+        let of_block = |block: usize| {
+            let own = grips.iter().filter(|grip| grip.block == block);
+            own.filter_map(moved).sum::<f64>()
+        };
+        let least = grips.iter().map(|grip| of_block(grip.block));
+        let known = least.filter(|moved| *moved > 0.0);
+        known.fold(f64::INFINITY, f64::min)
+    }
+
     pub(in crate::kkt) fn push_load(
         &mut self,
         blocks: &[Block],

@@ -31,6 +31,7 @@
 //!     give: [0.0; 2],
 //!     acted: [0.0; 2],
 //!     scale: [0.25; 2],
+//!     local: f64::INFINITY,
 //! };
 //! let entry = ConeEntry { node: 0, normal: [0.0, 1.0], tangent: [1.0, 0.0] };
 //! let problem = ConeProblem { matrix: &mass, load: &[0.0; 2], rows: &[row], entries: &[entry] };

@@ -54,6 +54,9 @@ pub struct ConeRow {
     /// An estimate of the diagonal of `G A⁻¹ Gᵀ`, normal and tangential, good within some factor of ten. Zero, without
     /// `give`, says that nothing can move the row.
     pub scale: [f64; 2],
+    /// The first diagonal of `G A⁻¹ Gᵀ` by the stiffest body that the row grips, if all of that was held but the grips: `Σ n²/A_ii` there. Several rows
+    /// that hold a stiff body move next to nothing together, however far each of them would move all of it. Infinite where none is known.
+    pub local: f64,
 }
 
 /// The problem; see the [module](super).
@@ -100,7 +103,7 @@ pub enum ConeError {
     },
     /// A number of a row is infinite or not a number, or `give` or `scale` is negative.
     #[error(
-        "row {row} holds {value} as {what}: give a finite number, and no negative give or scale"
+        "row {row} holds {value} as {what}: give a finite number, no negative give or scale, and a positive local"
     )]
     Row {
         /// The row.
@@ -187,6 +190,10 @@ impl ConeRow {
                     return Err(ConeError::Row { row, what, value });
                 }
             }
+        }
+        if self.local.is_nan() || self.local <= 0.0 {
+            let (what, value) = ("local", self.local);
+            return Err(ConeError::Row { row, what, value });
         }
         match self.law {
             ConeLaw::Contact { friction } if !(friction.is_finite() && friction >= 0.0) => {

@@ -2,7 +2,7 @@
 
 use super::ConeSettings;
 use super::law::{ConeStatus, project};
-use super::problem::{ConeProblem, ConeRow};
+use super::problem::{ConeLaw, ConeProblem, ConeRow};
 
 /// A problem restated for `P`: `A a = load + Gᵀ P`, `w = free + G a + give P`.
 #[derive(Debug, Clone, Default)]
@@ -13,6 +13,9 @@ pub(super) struct Reduced {
     pub free: Vec<[f64; 2]>,
     /// `W_ii + give_i`, the larger of both components, per row; zero if nothing can move the row.
     pub resistance: Vec<f64>,
+    /// What each bilateral row moves by where the stiffest body that it grips is held but for its grips, infinite where that is not known or may
+    /// change sides.
+    pub local: Vec<f64>,
     /// The reciprocal of the diagonal of `A`, length `n_dofs`.
     pub inverse_diagonal: Vec<f64>,
     /// The largest `|load| / sqrt(A_ii)`.
@@ -56,6 +59,7 @@ impl Reduced {
         self.load.extend_from_slice(problem.load);
         self.free.clear();
         self.resistance.clear();
+        self.local.clear();
         for row in problem.rows {
             let acted = row.acted();
             problem.push(row, -1.0, acted, &mut self.load);
@@ -68,6 +72,10 @@ impl Reduced {
                 0.0
             };
             self.resistance.push(normal.max(tangential));
+            self.local.push(match row.law {
+                ConeLaw::Bilateral => row.local,
+                _ => f64::INFINITY,
+            });
         }
         self.inverse_diagonal.clear();
         for node in 0..problem.matrix.n_nodes() {

@@ -60,6 +60,7 @@ impl Scene {
             give: [0.0; 2],
             acted: [0.0; 2],
             scale,
+            local: f64::INFINITY,
         });
         let last = self.rows.len() - 1;
         &mut self.rows[last]
@@ -244,6 +245,7 @@ fn a_start_that_is_right_but_for_its_size_needs_no_factorization() {
         give: [0.0; 2],
         acted: [0.0; 2],
         scale: [0.25; 2],
+        local: f64::INFINITY,
     };
     let entry = ConeEntry {
         node: 0,
@@ -269,4 +271,51 @@ fn a_start_that_is_right_but_for_its_size_needs_no_factorization() {
         );
         assert!((impulses[0][0] - 12.0).abs() < 1e-12 && (impulses[0][1] + 4.0).abs() < 1e-12);
     }
+}
+
+/// Two masses with a stiff spring between them, both tied to a third: each row would move all three far, and both together only the spring, next to nothing.
+#[test]
+fn what_is_tied_at_both_ends_of_something_stiff_finds_its_forces_at_once() {
+    let (mass, stiffness, [one, other]) = (1.0, 1e9, [2e-6, -1e-6]);
+    let cells = [vec![0], vec![1, 2]];
+    let mut matrix = BlockMatrix::from_cells(3, cells.iter().map(|cell| &cell[..]));
+    for node in 0..3 {
+        matrix.add_diagonal(node, [mass; 2]);
+    }
+    let mut spring = [0.0; 16];
+    (spring[0], spring[2], spring[8], spring[10]) = (stiffness, -stiffness, -stiffness, stiffness);
+    matrix.add_cell(&[1, 2], &spring);
+    let mut scene = Scene {
+        load: vec![0.0; matrix.n_dofs()],
+        matrix,
+        rows: Vec::new(),
+        entries: Vec::new(),
+    };
+    let local = 1.0 / (mass + stiffness);
+    for (node, apart) in [(1, one), (2, other)] {
+        let grips = [(0, [-1.0, 0.0], [0.0; 2]), (node, [1.0, 0.0], [0.0; 2])];
+        let row = scene.row(ConeLaw::Bilateral, [-apart, 0.0], [0.0; 2], &grips);
+        // Of the rigid mass, and of the other two with the spring stiff.
+        (row.scale, row.local) = ([1.5 / mass, 0.0], local);
+    }
+    let settings = ConeSettings {
+        // As passes ask for: a motion, whatever force that leaves.
+        gap_tolerance: 1e-8,
+        ..ConeSettings::default()
+    };
+    let answer = solve_with(
+        &mut ConeSolver::new(settings),
+        &scene,
+        &[[0.0; 2]; 2],
+        &[0.0; 2],
+    );
+    // All momentum together is zero.
+    let first = -(one + other) / 3.0;
+    let exact = mass * (first + one) + stiffness * (one - other);
+    assert!(
+        (answer.p[0][0] / exact - 1.0).abs() < 1e-3,
+        "{} of {exact}",
+        answer.p[0][0]
+    );
+    assert!(answer.outcome.n_factorizations <= 1, "{:?}", answer.outcome);
 }

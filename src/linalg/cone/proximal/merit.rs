@@ -154,6 +154,7 @@ mod tests {
             give: [0.01, 0.02],
             acted: [0.3, 0.1],
             scale: [0.3, 0.25],
+            local: f64::INFINITY,
         };
         let rows = [
             row(0, ConeLaw::Contact { friction: 0.5 }, [-0.4, 0.7]),
