@@ -476,3 +476,61 @@ fn joints_of_sleepers_are_still_told() {
     scene.world.remove_impulse_joint(joint.expect("the weld"));
     assert!(scene.step().joints().is_empty());
 }
+
+/// A platform at the lower end of a vertical slider, a block at rest on it, both asleep.
+fn lift() -> (Scene, FlexBodyHandle, RigidBodyHandle, ImpulseJointHandle) {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let post = scene.world.insert_body(RigidBodyBuilder::fixed());
+    let (platform, _) = scene.world.insert(
+        RigidBodyBuilder::dynamic(),
+        ColliderBuilder::cuboid(0.6, 0.1).density(1000.0),
+    );
+    let slider = PrismaticJointBuilder::new(vec2(0.0, 1.0)).limits([0.0, 2.0]);
+    let slider = scene.world.insert_impulse_joint(post, platform, slider);
+    let block = scene.flexible(block(1e7).translation([-0.25, 0.101]));
+    let time = settle(&mut scene, 10.0);
+    assert!(time.is_some() && sleeps(&scene, block), "nothing moves");
+    (scene, block, platform, slider)
+}
+
+/// What the block is above the platform by, at its lowest node (m).
+fn height(scene: &Scene, block: FlexBodyHandle, platform: RigidBodyHandle) -> f64 {
+    let top = f64::from(scene.world.bodies[platform].translation().y) + 0.1;
+    let positions = scene.body(block).positions().chunks_exact(2);
+    positions.map(|at| at[1]).fold(f64::INFINITY, f64::min) - top
+}
+
+#[test]
+fn joints_that_are_changed_wake_what_rests_on_their_bodies() {
+    type Change = fn(&mut GenericJoint);
+    let changes: [(&str, Change); 3] = [
+        ("motor", |joint| {
+            joint.set_motor_velocity(JointAxis::LinX, 1.0, real(1e6));
+        }),
+        ("limit", |joint| {
+            joint.set_limits(JointAxis::LinX, [0.5, 2.0]);
+        }),
+        ("anchor", |joint| {
+            joint.set_local_anchor1(vec2(0.0, 0.05));
+        }),
+    ];
+    for (name, change) in changes {
+        let (mut scene, block, platform, slider) = lift();
+        let rest = height(&scene, block, platform);
+        let slider = scene.world.impulse_joints.get_mut(slider, true);
+        change(&mut slider.expect("the slider").data);
+        for step in 0..30 {
+            let report = scene.step();
+            assert_eq!(report.n_asleep(), 0, "{name}, step {step}");
+            let now = height(&scene, block, platform);
+            assert!(now > rest - 1e-4, "{name}, step {step}: {now} m");
+        }
+    }
+    // As in rapier, it is the user who says whether a change wakes.
+    let (mut scene, block, _, slider) = lift();
+    let slider = scene.world.impulse_joints.get_mut(slider, false);
+    let data = &mut slider.expect("the slider").data;
+    data.set_motor_velocity(JointAxis::LinX, 1.0, real(1e6));
+    scene.step();
+    assert!(sleeps(&scene, block));
+}

@@ -4,6 +4,7 @@
 //! the marks themselves are looked at, and at nothing else of what is not marked. What is neither marked nor awake is where rapier's tree has it, so
 //! that it need not be asked.
 
+use super::joint_changes::KnownJoints;
 use super::places::{loosened, placed_on, swept_box};
 use super::roster::Roster;
 use super::sets::RapierSets;
@@ -25,6 +26,8 @@ pub(super) struct Changes {
     altered: Vec<ColliderHandle>,
     /// What the next step is compared with: the number of colliders, and gravity.
     noted: (usize, Vector),
+    /// And the joints.
+    pub joints: KnownJoints,
 }
 
 /// What may end the rest of a flexible body that sleeps.
@@ -86,6 +89,8 @@ impl Changes {
             WorldChange::Everywhere
         } else if !is_counted || !self.altered.is_empty() {
             WorldChange::Somewhere
+        } else if self.joints.have_changed(sets) {
+            return WorldChange::Somewhere;
         } else {
             return WorldChange::None;
         };
@@ -100,6 +105,7 @@ impl Changes {
     /// Notes what the next step is to be compared with.
     pub fn note_world(&mut self, sets: &RapierSets<'_>) {
         self.noted = (sets.colliders.len(), sets.gravity);
+        self.joints.note(sets);
     }
 
     /// Wakes sleepers beside which something was put or altered.
@@ -161,10 +167,11 @@ impl Changes {
         self.noted
     }
 
-    /// Changes of a world that had so many colliders, and gravity.
-    pub fn since(n_colliders: usize, gravity: Vector) -> Self {
+    /// Changes of a world that had so many colliders, gravity, and these joints.
+    pub fn since(n_colliders: usize, gravity: Vector, joints: KnownJoints) -> Self {
         Self {
             noted: (n_colliders, gravity),
+            joints,
             ..Self::default()
         }
     }

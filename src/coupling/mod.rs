@@ -22,6 +22,7 @@ mod gather_settings;
 mod hand_back;
 mod hooks;
 mod inset;
+mod joint_changes;
 mod joints;
 mod landing;
 mod link_gate;

@@ -6,6 +6,7 @@ use super::claim::Claims;
 use super::events::EventBook;
 use super::filter::Answers;
 use super::hooks::HookBook;
+use super::joint_changes::{KnownJoints, NotedJoint};
 use super::links::KnownForces;
 use super::masters::Master;
 use super::members::Members;
@@ -66,6 +67,7 @@ struct ClaimRecord {
     asleep: Vec<Sleeper>,
     n_colliders: usize,
     gravity: Vector,
+    joints: Vec<NotedJoint>,
     answers: Vec<(PairName, Option<u32>)>,
 }
 
@@ -79,6 +81,7 @@ impl ClaimRecord {
             asleep: claims.flex.asleep().to_vec(),
             n_colliders,
             gravity,
+            joints: claims.changes.joints.noted().to_vec(),
             answers: answers
                 .map(|(name, answer)| (name, answer.map(|flags| flags.bits())))
                 .collect(),
@@ -90,7 +93,11 @@ impl ClaimRecord {
         let answers = answers.map(|(name, bits)| (name, bits.map(SolverFlags::from_bits_truncate)));
         let mut claims = Claims::default();
         claims.flex = Roster::remembered(self.surfaces, self.asleep);
-        claims.changes = Changes::since(self.n_colliders, self.gravity);
+        claims.changes = Changes::since(
+            self.n_colliders,
+            self.gravity,
+            KnownJoints::remembered(self.joints),
+        );
         claims.walk.members = Members::remembered(self.claimed);
         claims.walk.answers = Answers::remembered(answers);
         claims

@@ -97,7 +97,6 @@
 //! - **Taut chains** sag by a hundredth of their length where they would have to be straight. See: [`StepReport::joint_violation`].
 //! - **Light hubs.** A spring or position motor is resolved by the mass of the body that it is at, not of what is welded to that: one of 1,000 N/m at 1/60 s that moves 10 kg is damped away within seconds if its own body has less than 0.07 kg. Do: give
 //!   the hub more mass, or shorten the step.
-//! - **Joints of what sleeps.** A motor, limit or anchor that is changed under a flexible body asleep drives what it moves into that body for some steps, untold (14 mm for 1 m/s at 1/60 s). Do: `FlexBody::wake_up` first.
 //! - **Sleep.** Attached bodies do not sleep.
 //! - **Carriers.** A joint to the rigid body that carries a flexible one is refused ([`StepError::CarrierJoint`](crate::pipeline::StepError::CarrierJoint)). Do: attach nodes, [`FlexBodySet::attach`](crate::body::FlexBodySet::attach).
 //!
