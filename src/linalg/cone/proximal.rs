@@ -316,16 +316,15 @@ impl Proximal {
 
     /// Chooses `D` as a power of two, so that the same factor serves while estimates move a little.
     fn penalize(&mut self, reduced: &Reduced, level: f64) {
-        let inverse = |(&resistance, &local): (&f64, &f64)| {
+        let inverse = |&resistance: &f64| {
             if resistance > 0.0 {
-                nearest_power_of_two((resistance / level).min(local / LEVELS[0]))
+                nearest_power_of_two(resistance / level)
             } else {
                 1.0
             }
         };
         self.penalty.clear();
-        let rows = reduced.resistance.iter().zip(&reduced.local);
-        self.penalty.extend(rows.map(inverse));
+        self.penalty.extend(reduced.resistance.iter().map(inverse));
     }
 
     /// Newton's method with exact line search on one proximal step, from the present `a`, which has been evaluated; `trial` becomes

