@@ -526,6 +526,25 @@ fn joints_that_are_changed_wake_what_rests_on_their_bodies() {
             assert!(now > rest - 1e-4, "{name}, step {step}: {now} m");
         }
     }
+    for is_taken_out in [true, false] {
+        let (mut scene, block, platform, slider) = lift();
+        let (rest, joints) = (
+            height(&scene, block, platform),
+            &mut scene.world.impulse_joints,
+        );
+        if is_taken_out {
+            assert!(joints.remove(slider, true).is_some());
+        } else {
+            let spring = SpringJointBuilder::new(1.0, real(1e4), real(1e2));
+            let post = joints.get(slider).map(ImpulseJoint::body1);
+            joints.insert(post.expect("the slider"), platform, spring, true);
+        }
+        for step in 0..10 {
+            assert_eq!(scene.step().n_asleep(), 0, "{is_taken_out}, step {step}");
+            let now = height(&scene, block, platform);
+            assert!(now > rest - 1e-4, "{is_taken_out}, step {step}: {now} m");
+        }
+    }
     // As in rapier, it is the user who says whether a change wakes.
     let (mut scene, block, _, slider) = lift();
     let slider = scene.world.impulse_joints.get_mut(slider, false);

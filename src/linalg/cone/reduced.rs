@@ -11,8 +11,8 @@ pub(super) struct Reduced {
     pub load: Vec<f64>,
     /// `free - give acted`, per row.
     pub free: Vec<[f64; 2]>,
-    /// `W_ii + give_i`, the larger of both components, per row; zero if nothing can move the row. Of what is held for good no more than a multiple of
-    /// what stiff bodies yield alone: by that, and not by `W_ii`, errors of `w` are forces where several rows hold such a body.
+    /// `W_ii + give_i`, the larger of both components, per row; zero if nothing can move the row. Of what is held for good, `W_ii` counts up to a multiple
+    /// of what stiff bodies yield alone: by that errors of `w` are forces where several rows hold such a body. Rows that change sides press by `W_ii`.
     pub resistance: Vec<f64>,
     /// The reciprocal of the diagonal of `A`, length `n_dofs`.
     pub inverse_diagonal: Vec<f64>,
@@ -69,7 +69,7 @@ impl Reduced {
                 0.0
             };
             self.resistance.push(match row.law {
-                ConeLaw::Bilateral => normal.min(LEVELS[0] * row.local),
+                ConeLaw::Bilateral => row.scale[0].min(LEVELS[0] * row.local) + row.give[0],
                 _ => normal.max(tangential),
             });
         }

@@ -319,3 +319,25 @@ fn what_is_tied_at_both_ends_of_something_stiff_finds_its_forces_in_two_steps() 
     );
     assert!(answer.outcome.n_factorizations <= 2, "{:?}", answer.outcome);
 }
+
+/// A spring in series with something stiff gives way by all of its compliance: errors of `w` are forces by that.
+#[test]
+fn what_is_held_by_a_spring_is_as_soft_as_that() {
+    let mut scene = Scene::bodies(&[[2.0, 1.0]]);
+    let grips = Scene::grips(0, 1.0, [1.0, 0.0], [0.0, 0.0]);
+    let row = scene.row(ConeLaw::Bilateral, [1.0, 0.0], [0.5; 2], &grips);
+    row.local = 1e-6;
+    let resistance = |scene: &Scene, give: f64| {
+        let mut scene = scene.clone();
+        scene.rows[0].give = [give, 0.0];
+        let mut reduced = Reduced::default();
+        reduced.restate(&scene.problem());
+        reduced.resistance[0]
+    };
+    let is_near = |found: f64, exact: f64| (found / exact - 1.0).abs() < 1e-12;
+    assert!(is_near(resistance(&scene, 0.0), 1e-4));
+    assert!(is_near(resistance(&scene, 3.0), 3.0001));
+    // Nothing is softer than all of what moves.
+    scene.rows[0].local = 1.0;
+    assert_eq!(resistance(&scene, 3.0), 3.5);
+}
