@@ -29,6 +29,12 @@ mod forces;
 #[path = "joints/multibody.rs"]
 mod multibody;
 
+#[path = "joints/multibody_alike.rs"]
+mod multibody_alike;
+
+#[path = "joints/multibody_changes.rs"]
+mod multibody_changes;
+
 #[path = "joints/multibody_soft.rs"]
 mod multibody_soft;
 

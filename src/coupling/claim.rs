@@ -6,6 +6,7 @@
 
 use super::changes::{Changes, WorldChange};
 use super::claim_attachments::{Attached, ClaimedAttachment};
+use super::claim_multibodies::ClaimedMultibodies;
 use super::pair_name::PairName;
 use super::quarantine::is_out;
 use super::roster::Roster;
@@ -127,6 +128,11 @@ impl Claims {
         self.walk.begin(&map, sets);
     }
 
+    /// Brings what rapier knows of claimed multibodies up to date, and weighs their coordinates where motors count by that.
+    pub fn prepare_multibodies(&mut self, sets: &mut RapierSets<'_>) {
+        self.walk.multibodies.prepare(sets);
+    }
+
     /// Wakes the flexible bodies that sleep under, or beside, rigid bodies that were claimed; returns whether one woke, so that the look-ahead has
     /// to begin anew. A rigid body that sleeps is claimed by what is awake beside it, and would fall into what carries it.
     pub fn wake_touched(&mut self, sets: &mut RapierSets<'_>) -> bool {
@@ -159,6 +165,11 @@ impl Claims {
     /// Impulse joints of claimed bodies, in the order they were reached.
     pub fn joints(&self) -> &[ImpulseJointHandle] {
         self.walk.joints.as_slice()
+    }
+
+    /// Multibodies of claimed links.
+    pub(super) fn multibodies(&self) -> &ClaimedMultibodies {
+        &self.walk.multibodies
     }
 
     /// Attachments, in the order of their bodies' places.

@@ -86,8 +86,6 @@ impl Attached {
             if let Some(handle) = one.rigid.filter(|&handle| claimable_body(sets, handle)) {
                 let member = members.claim(handle);
                 members.unite(one.flex, member);
-            } else {
-                members.meet_link(sets.multibody_joints, one.rigid, one.flex);
             }
         }
     }

@@ -53,9 +53,6 @@ impl ClaimedJoints {
                 let other = members.claim(partner);
                 let own = members.claim(body);
                 members.unite(own, other);
-            } else {
-                let own = members.claim(body);
-                members.meet_link(sets.multibody_joints, Some(partner), own);
             }
         }
     }

@@ -19,20 +19,15 @@ pub(crate) fn claimable_parent(
     claimable_body(sets, parent).then_some(parent)
 }
 
-/// Whether the flexible stage can solve for a rigid body.
+/// Whether the flexible stage can solve for a rigid body, and forces of flexible bodies move it.
 pub(super) fn claimable_body(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bool {
-    is_free_body(sets, handle) && sets.multibody_joints.rigid_body_link(handle).is_none()
+    let body = sets.bodies.get(handle);
+    body.is_some_and(|body| is_movable(body) && body.dominance_group() <= 0)
 }
 
-/// Whether forces of flexible bodies move a rigid one.
-pub(super) fn is_free_body(sets: &RapierSets<'_>, handle: RigidBodyHandle) -> bool {
-    let body = sets.bodies.get(handle);
-    body.is_some_and(|body| {
-        body.is_dynamic()
-            && body.is_enabled()
-            && !body.is_soft_frame()
-            && body.dominance_group() <= 0
-    })
+/// Whether forces can move a rigid body at all.
+pub(super) fn is_movable(body: &RigidBody) -> bool {
+    body.is_dynamic() && body.is_enabled() && !body.is_soft_frame()
 }
 
 /// What the user's filter has said of pairs in this step: each is asked about once.
@@ -128,6 +123,9 @@ fn joint_forbids(sets: &RapierSets<'_>, one: &Collider, other: &Collider) -> boo
     let parameters = sets.integration_parameters;
     let slop = RESTING * f64::from(parameters.length_unit).abs();
     let dt = f64::from(parameters.dt);
+    if links_forbid(sets, [parent, other_parent], [one, other], slop) {
+        return true;
+    }
     let mut joints = sets.impulse_joints.joints_between(parent, other_parent);
     joints.any(|(_, joint)| {
         let surfaces = match joint.body1() == parent {
@@ -135,11 +133,47 @@ fn joint_forbids(sets: &RapierSets<'_>, one: &Collider, other: &Collider) -> boo
             false => [other, one],
         };
         let joint = &joint.data;
-        let welds = joint.locked_axes.contains(JointAxesMask::LOCKED_FIXED_AXES);
-        let contradicts = welds || pins_inside(joint, surfaces, slop);
         let holds = joint.is_enabled() && is_rigid(joint, dt);
-        !joint.contacts_enabled() || holds && contradicts
+        !joint.contacts_enabled() || holds && contradicts(joint, surfaces, slop)
     })
+}
+
+/// Whether two links of a multibody are kept from touching, by it or by the joint between them.
+fn links_forbid(
+    sets: &RapierSets<'_>,
+    bodies: [RigidBodyHandle; 2],
+    surfaces: [&Collider; 2],
+    slop: f64,
+) -> bool {
+    let joints = &*sets.multibody_joints;
+    let [Some(one), Some(other)] = bodies.map(|body| joints.rigid_body_link(body)) else {
+        return false;
+    };
+    if one.multibody != other.multibody {
+        return false;
+    }
+    let multibody = joints.get_multibody(one.multibody);
+    multibody.is_some_and(|multibody| {
+        let joined = |[from, to]: [usize; 2], surfaces| {
+            let link = multibody
+                .link(to)
+                .filter(|link| link.parent_id() == Some(from));
+            link.is_some_and(|link| {
+                let joint = &link.joint().data;
+                !joint.contacts_enabled() || contradicts(joint, surfaces, slop)
+            })
+        };
+        let [first, second] = surfaces;
+        !multibody.self_contacts_enabled()
+            || joined([one.id, other.id], [first, second])
+            || joined([other.id, one.id], [second, first])
+    })
+}
+
+/// Whether contact between the surfaces contradicts a joint that holds: it welds them, or pins them inside each other.
+fn contradicts(joint: &GenericJoint, surfaces: [&Collider; 2], slop: f64) -> bool {
+    let welds = joint.locked_axes.contains(JointAxesMask::LOCKED_FIXED_AXES);
+    welds || pins_inside(joint, surfaces, slop)
 }
 
 /// Whether a joint holds a point inside one collider at a point inside the other, so that the two overlap wherever they are, by more than `slop` (m):

@@ -4,9 +4,10 @@ use super::claim::Claims;
 use super::gather_joints::JointGatherer;
 use super::gather_pairs::PairGatherer;
 use super::gather_settings::GatherSettings;
-use super::links::foresee_links;
 use super::masters::{Masters, cap_speed};
 use super::memory::Memory;
+use super::multibody::{link_of, load_of_link};
+use super::placed::Placed;
 use super::pool::FlexPool;
 use super::reading::{GatherError, is_representable_load, is_representable_motion, load_of};
 use super::rigid_pairs::Agitation;
@@ -100,14 +101,7 @@ impl Gatherer {
         } else {
             &under_way.joints
         };
-        JointGatherer { last, open }.add_all(claims, flex_bodies)?;
-        foresee_links(
-            self.seats.links(),
-            settings.step,
-            &memory.links,
-            sets,
-            island,
-        )
+        JointGatherer { last, open }.add_all(claims, flex_bodies)
     }
 
     fn add_flex(
@@ -174,16 +168,24 @@ fn claimed_block(
     let Some(body) = sets.bodies.get(handle) else {
         return Ok(None);
     };
-    let load = load_of(body, from_rapier(sets.gravity));
+    let link = link_of(handle, sets.multibody_joints);
+    let gravity = from_rapier(sets.gravity);
+    let load = match link {
+        Some(link) => load_of_link(link, body, gravity),
+        None => load_of(body, gravity),
+    };
     let step = &sources.settings.step;
     let (mut motion, acceleration) = match sources.under_way.rigid(handle) {
         Some(known) => known,
         None => {
             let own = (load.drive(), load.inverse_mass);
-            masters.motion(handle, body, own, step.is_within())
+            let placed = Placed::of(handle, body, sets.multibody_joints);
+            masters.motion(handle, (body, placed), own, step.is_within())
         }
     };
-    cap_speed(&mut motion, body, sets.integration_parameters);
+    if link.is_none() {
+        cap_speed(&mut motion, body, sets.integration_parameters);
+    }
     if !is_representable_motion(&motion) || !is_representable_load(&load) {
         return Err(GatherError::RigidBody(handle));
     }

@@ -1,9 +1,10 @@
 //! Gathering joints and attachments as joint rows.
 
 use super::claim::Claims;
+use super::gather_multibodies::add_multibodies;
 use super::gather_settings::GatherSettings;
 use super::joints::{self, RowWriter, Side, is_representable_joint};
-use super::masters::local_centre;
+use super::placed::local_centre;
 use super::reading::GatherError;
 use super::seats::OpenIsland;
 use crate::body::{Anchor, Attachment, AttachmentKind, AttachmentTarget, FlexBodySet, Shift};
@@ -34,6 +35,7 @@ impl JointGatherer<'_, '_> {
         for &handle in claims.joints() {
             self.add_joint(handle, claims)?;
         }
+        add_multibodies(claims, self.last, &mut self.open)?;
         for attached in claims.attached() {
             if claims.component_of_flex(attached.flex) != component {
                 continue;
@@ -85,6 +87,7 @@ impl JointGatherer<'_, '_> {
             owner: joints::owner_of(handle),
             sides: [first, second],
             dt: settings.step.dt,
+            counted: None,
         };
         writer.write(&joint.data);
         Ok(())

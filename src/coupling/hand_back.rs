@@ -4,11 +4,13 @@
 //! body on our result; then axes ([`super::loan`]) and true end velocities return.
 
 use super::landing::Landing;
-use super::masters::{Masters, cap_speed, local_centre};
+use super::masters::{Masters, cap_speed};
+use super::placed::{Placed, pose_after};
 use super::sets::RapierSets;
-use crate::math::{self, REAL_EPSILON, Vec2, atan2, from_rapier, tan, to_rapier};
+use crate::math::{REAL_EPSILON, Vec2, atan2, from_rapier, tan, to_rapier, wrap_angle};
 use crate::rapier::math::{Pose, Real, Rotation};
 use crate::rapier::prelude::*;
+use crate::system::RigidMotion;
 
 /// Locks claimed bodies and gives them the velocity that lands them; the axes that were locked before are added to `axes`.
 pub(super) fn hand_back(
@@ -24,13 +26,21 @@ pub(super) fn hand_back(
             // Rapier knows nothing of attachments and may find an attached body at rest alone.
             sets.islands.wake_up(sets.bodies, landing.handle, true);
         }
+        if sets
+            .multibody_joints
+            .rigid_body_link(landing.handle)
+            .is_some()
+        {
+            // Moved by its joints.
+            continue;
+        }
         let Some(body) = sets.bodies.get_mut(landing.handle) else {
             continue;
         };
         axes.push((landing.handle, body.locked_axes()));
         let n = (iterations + body.additional_solver_iterations()).max(1) as f64;
         let angle = atan2(f64::from(body.rotation().im), f64::from(body.rotation().re));
-        let turned = wrap(landing.motion.angle - angle);
+        let turned = wrap_angle(landing.motion.angle - angle);
         let moved = landing.motion.centre - from_rapier(body.center_of_mass());
         body.set_locked_axes(
             LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED,
@@ -42,47 +52,64 @@ pub(super) fn hand_back(
     }
 }
 
-/// Gives claimed bodies their end velocities after rapier's step, and keeps the motions in `f64`.
+/// Gives claimed bodies their end velocities after rapier's step.
 ///
 /// Rapier's continuous collision detection sweeps every fast body along a straight way and stops it where nothing was solved. What `is_led`
 /// along a feasible path passes through nothing, and is put where it was led to; of others rapier's pose counts.
-pub(super) fn land(
-    landings: &[Landing],
-    is_led: bool,
-    sets: &mut RapierSets<'_>,
-    masters: &mut Masters,
-) {
+pub(super) fn land(landings: &[Landing], is_led: bool, sets: &mut RapierSets<'_>) {
     for landing in landings {
-        if is_led {
+        if is_led && !is_link(landing, sets) {
             put_where_led(landing, sets);
         }
-        let Some(body) = sets.bodies.get_mut(landing.handle) else {
-            continue;
-        };
-        let mut motion = landing.motion;
-        if body.is_sleeping() {
-            (motion.velocity, motion.spin) = (Vec2::zeros(), 0.0);
+        let end = end_of(landing, sets);
+        if let (Some(motion), Some(body)) = (end, sets.bodies.get_mut(landing.handle)) {
+            body.set_linvel(to_rapier(motion.velocity), false);
+            body.set_angvel(motion.spin as Real, false);
         }
-        cap_speed(&mut motion, body, sets.integration_parameters);
-        body.set_linvel(to_rapier(motion.velocity), false);
-        body.set_angvel(motion.spin as Real, false);
-        let missed = from_rapier(body.center_of_mass()) - motion.centre;
-        if missed.norm() <= LANDING_TOLERANCE * (1.0 + motion.centre.norm()) {
-            masters.keep(landing, motion, body);
+    }
+}
+
+/// Keeps the motions of landed bodies in `f64`.
+pub(super) fn keep(landings: &[Landing], sets: &RapierSets<'_>, masters: &mut Masters) {
+    for landing in landings {
+        let end = end_of(landing, sets);
+        if let (Some(motion), Some(body)) = (end, sets.bodies.get(landing.handle)) {
+            let missed = from_rapier(body.center_of_mass()) - motion.centre;
+            if missed.norm() <= LANDING_TOLERANCE * (1.0 + motion.centre.norm()) {
+                let placed = Placed::of(landing.handle, body, sets.multibody_joints);
+                masters.keep(landing, motion, placed);
+            }
         }
     }
     masters.turn_over(sets.bodies);
 }
 
+fn is_link(landing: &Landing, sets: &RapierSets<'_>) -> bool {
+    let link = sets.multibody_joints.rigid_body_link(landing.handle);
+    link.is_some()
+}
+
+/// The motion that a body is left with: none if rapier has put it to sleep, and no faster than rapier lets it be.
+fn end_of(landing: &Landing, sets: &RapierSets<'_>) -> Option<RigidMotion> {
+    let mut motion = landing.motion;
+    let body = sets.bodies.get(landing.handle)?;
+    if body.is_sleeping() {
+        (motion.velocity, motion.spin) = (Vec2::zeros(), 0.0);
+    }
+    if !is_link(landing, sets) {
+        cap_speed(&mut motion, body, sets.integration_parameters);
+    }
+    Some(motion)
+}
+
 /// Pose of a body where it was led to.
 pub(super) fn end_pose(body: &RigidBody, landing: &Landing) -> Pose {
-    let turn = math::rotation(landing.motion.angle);
+    let pose = pose_after(body, &landing.motion);
     let rotation = Rotation {
-        re: turn.m11 as Real,
-        im: turn.m21 as Real,
+        re: pose.cos as Real,
+        im: pose.sin as Real,
     };
-    let origin = landing.motion.centre - turn * local_centre(body);
-    Pose::from_parts(to_rapier(origin), rotation)
+    Pose::from_parts(to_rapier(pose.translation), rotation)
 }
 
 /// Puts a body where it was led to, if rapier has stopped it on the way.
@@ -95,7 +122,7 @@ fn put_where_led(landing: &Landing, sets: &mut RapierSets<'_>) {
     let missed = from_rapier(body.center_of_mass()) - motion.centre;
     let rounding = LANDED * REAL_EPSILON;
     let is_there = missed.norm() <= rounding * (1.0 + motion.centre.norm())
-        && wrap(motion.angle - angle).abs() <= rounding;
+        && wrap_angle(motion.angle - angle).abs() <= rounding;
     // What rapier has just put to sleep stays where it is.
     if is_there || !body.is_enabled() || body.is_sleeping() {
         return;
@@ -119,9 +146,3 @@ const LANDED: f64 = 64.0;
 
 /// A landing this exact, relative to the distance from the origin, is rapier's rounding and no clamp.
 const LANDING_TOLERANCE: f64 = 1e-4;
-
-/// The equivalent angle in (-π, π].
-fn wrap(angle: f64) -> f64 {
-    let turns = (angle / std::f64::consts::TAU).round();
-    angle - turns * std::f64::consts::TAU
-}

@@ -5,7 +5,6 @@
 //! a manifold of one point, whose `user_data` lasts as long as the candidate does. Rapier is given the answers.
 
 use super::claim::Claims;
-use super::link_gate::Borrowed;
 use super::pair_name::{PairName, pair_name};
 use super::reading::GatherError;
 use super::sets::RapierSets;
@@ -292,8 +291,6 @@ pub(crate) struct HookGate<'a> {
     pub book: &'a HookBook,
     /// Carriers and claimed bodies.
     pub claims: &'a Claims,
-    /// Contacts of links with claimed bodies, which are ours.
-    pub borrowed: &'a Borrowed,
     /// Whether this is the full step, in which claimed bodies are locked.
     pub is_full: bool,
 }
@@ -313,18 +310,10 @@ impl PhysicsHooks for HookGate<'_> {
         let [one, other] = [context.collider1, context.collider2];
         let name = pair_name(one, other);
         let answered = self.claims.answer(name);
-        let borrowed = self.borrowed;
-        let flags = match answered.filter(|_| self.is_full) {
+        match answered.filter(|_| self.is_full) {
             Some(answer) => answer,
-            None if borrowed.asks_user(name, context.colliders) => {
-                self.user.filter_contact_pair(context)
-            }
-            None => Some(SolverFlags::default()),
-        };
-        if borrowed.holds(name) {
-            return flags.map(|flags| flags - SolverFlags::COMPUTE_RIGID_IMPULSES);
+            None => self.user.filter_contact_pair(context),
         }
-        flags
     }
 
     fn filter_intersection_pair(&self, context: &PairFilterContext) -> bool {

@@ -2,16 +2,15 @@
 //!
 //! Locked axes become bilateral rows, limits one row a side, motors and soft axes springs, coupled axes (ropes, springs) rows of
 //! the distance. Softness is natural frequency and damping ratio per mass that the row moves; where it vibrates much faster than
-//! steps follow each other, as by default, the axis is rigid. A joint to a fixed or kinematic body holds on to its prescribed motion, one
-//! to a link of a multibody on the motion foreseen for it, which the joint's forces change.
+//! steps follow each other, as by default, the axis is rigid. A joint to a fixed or kinematic body holds on to its prescribed motion.
 
-use super::masters::local_centre;
+use super::placed::local_centre;
 use super::sets::RapierSets;
 use crate::constraint::joint::{
     JointGrip, JointKey, JointLaw, JointMemory, JointOwner, JointRow, Measure, Spring,
 };
 use crate::kkt::Island;
-use crate::math::{Vec2, atan2, from_rapier, judged::Judged, rounding, sin_cos};
+use crate::math::{Vec2, atan2, from_rapier, judged::Judged, rounding, sin_cos, wrap_angle};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use crate::system::{Block, Point, RigidMotion};
@@ -35,6 +34,12 @@ pub(super) mod slot {
     pub const UPPER: u32 = 8;
     /// A motor.
     pub const MOTOR: u32 = 12;
+    /// Spring and damper of a multibody's coordinate.
+    pub const SPRING: u32 = 16;
+    /// Friction of a multibody's coordinate.
+    pub const FRICTION: u32 = 20;
+    /// The first coupling of two coordinates of a multibody.
+    pub const COUPLING: u32 = 24;
 }
 
 /// Index of the angular axis in rapier's masks and arrays.
@@ -67,6 +72,16 @@ impl Side {
             angle: atan2(f64::from(frame.rotation.im), f64::from(frame.rotation.re)),
         }
     }
+
+    /// The block.
+    pub fn block(&self) -> usize {
+        self.block
+    }
+
+    /// The frame's origin about the block's centre (m).
+    pub fn arm(&self) -> Vec2 {
+        self.arm
+    }
 }
 
 /// Writes the rows of one joint.
@@ -76,6 +91,9 @@ pub(super) struct RowWriter<'a> {
     pub owner: JointOwner,
     pub sides: [Side; 2],
     pub dt: f64,
+    /// The angle that the joint of a multibody counted where the step began (rad), by turns too: its axes are rigid, its limits of any width. `None` of an
+    /// impulse joint.
+    pub counted: Option<f64>,
 }
 
 /// What a row measures, before it has grips.
@@ -98,13 +116,8 @@ impl RowWriter<'_> {
         let limited = bits(data.limit_axes) & !locked;
         let driven = bits(data.motor_axes) & !locked;
         let has = |mask: u8, axis: usize| mask & (1 << axis) != 0;
-        let is_pinned = has(locked, 0) && has(locked, 1);
         for axis in 0..=ANGULAR {
-            let measured = match axis {
-                ANGULAR => Axis::Turn,
-                _ if is_pinned => Axis::World(axis),
-                _ => Axis::Frame(axis),
-            };
+            let measured = measured_by(axis, data);
             if has(locked, axis) {
                 self.lock(axis, measured, data);
             }
@@ -143,8 +156,13 @@ impl RowWriter<'_> {
         }
     }
 
+    /// Writes one more row along an axis of the joint.
+    pub fn add(&mut self, kind: u32, axis: usize, law: JointLaw, data: &GenericJoint) {
+        self.push(kind, axis, measured_by(axis, data), 1.0, law);
+    }
+
     fn lock(&mut self, axis: usize, measured: Axis, data: &GenericJoint) {
-        let law = if is_rigid(data, self.dt) {
+        let law = if self.counted.is_some() || is_rigid(data, self.dt) {
             JointLaw::Rigid {
                 goal: 0.0,
                 rate: 0.0,
@@ -167,7 +185,7 @@ impl RowWriter<'_> {
 
     fn limit(&mut self, axis: usize, measured: Axis, limits: &JointLimits<Real>) {
         let (mut low, mut high) = (f64::from(limits.min), f64::from(limits.max));
-        if axis == ANGULAR {
+        if axis == ANGULAR && self.counted.is_none() {
             let half = 0.5 * (high - low);
             // No angle tells a range wider than a turn from none.
             if half.is_nan() || half >= std::f64::consts::PI {
@@ -175,7 +193,7 @@ impl RowWriter<'_> {
             }
             // Measured about the middle of the range.
             let middle = 0.5 * (low + high);
-            let off = wrap(self.turn() - middle);
+            let off = wrap_angle(self.turn() - middle);
             low = self.turn() - off - half;
             high = low + 2.0 * half;
         }
@@ -215,8 +233,8 @@ impl RowWriter<'_> {
         let (stiffness, damping) = (f64::from(motor.stiffness), f64::from(motor.damping));
         let rate = f64::from(motor.target_vel);
         let mut rest = f64::from(motor.target_pos);
-        if axis == ANGULAR {
-            rest = self.turn() - wrap(self.turn() - rest);
+        if axis == ANGULAR && self.counted.is_none() {
+            rest = self.turn() - wrap_angle(self.turn() - rest);
         }
         let law = if stiffness == 0.0 && damping == 0.0 {
             JointLaw::Drive { rate, most }
@@ -233,11 +251,21 @@ impl RowWriter<'_> {
         self.push(slot::MOTOR, axis, measured, 1.0, law);
     }
 
-    /// Angle of the second frame from the first at the beginning of the step, in (-π, π] (rad).
+    /// Angle of the second frame from the first at the beginning of the step, in (-π, π] where no turns are counted (rad).
     fn turn(&self) -> f64 {
         let [first, second] = self.sides;
         let angle = |side: Side| self.motion(side.block).angle + side.angle;
-        wrap(angle(second) - angle(first))
+        let shown = angle(second) - angle(first);
+        match self.counted {
+            None => wrap_angle(shown),
+            Some(counted) => counted + wrap_angle(shown - counted),
+        }
+    }
+
+    /// By how much the turn is more than what the angles of the bodies make (rad).
+    pub fn offset(&self) -> f64 {
+        let [first, second] = self.sides;
+        self.turn() - (self.motion(second.block).angle - self.motion(first.block).angle)
     }
 
     fn motion(&self, block: usize) -> RigidMotion {
@@ -262,10 +290,7 @@ impl RowWriter<'_> {
             Axis::World(_) => Measure::Along(Vec2::y()),
             Axis::Frame(axis) => Measure::Axis(unit(axis)),
             Axis::Distance => Measure::Distance,
-            Axis::Turn => {
-                let raw = self.motion(second.block).angle - self.motion(first.block).angle;
-                Measure::Turn(self.turn() - raw)
-            }
+            Axis::Turn => Measure::Turn(self.offset()),
         };
         let start = self.island.joints.grips.len();
         for (side, weight) in [(first, -1.0), (second, 1.0)] {
@@ -284,6 +309,15 @@ impl RowWriter<'_> {
             law,
             remembered: self.memory.recall(&key),
         });
+    }
+}
+
+/// What the number along an axis of a joint is.
+fn measured_by(axis: usize, data: &GenericJoint) -> Axis {
+    match axis {
+        ANGULAR => Axis::Turn,
+        _ if data.locked_axes.contains(JointAxesMask::LIN_AXES) => Axis::World(axis),
+        _ => Axis::Frame(axis),
     }
 }
 
@@ -311,12 +345,6 @@ pub(super) fn is_representable_joint(data: &GenericJoint) -> bool {
         .chain(softness)
         .chain(motors)
         .all(|value| value.is_finite())
-}
-
-/// The equivalent angle in [-π, π].
-fn wrap(angle: f64) -> f64 {
-    let turns = (angle / std::f64::consts::TAU).round();
-    angle - turns * std::f64::consts::TAU
 }
 
 /// An impulse to leave on a joint of rapier.

@@ -1,31 +1,24 @@
 //! The loan: what of rapier's bodies, colliders and joints is changed for the length of its full step, and put back after it.
 //!
-//! Claimed bodies are locked and led to where the flexible stage has put them; links get what acted on them as a force on top of the
-//! user's; their contacts and joints with claimed bodies are taken out of rapier's hands. A [`Loan`] has the sets as long as all this is
+//! Claimed bodies are locked, links by their joints, and led to where the flexible stage has put them. A [`Loan`] has the sets as long as all this is
 //! lent, and gives it back when it is dropped: also where a handler of the user's panics within rapier's step.
 
 use super::claim::Claims;
-use super::hand_back::{hand_back, land};
+use super::hand_back::{hand_back, keep, land};
 use super::hooks::{HookBook, HookGate};
 use super::landing::Landing;
-use super::link_gate::Borrowed;
-use super::links::{LinkMemory, Push};
+use super::lent_multibodies::LentMultibodies;
 use super::masters::Masters;
 use super::sets::RapierSets;
-use crate::math::{Vec2, to_rapier};
-use crate::rapier::math::{Real, Vector};
 use crate::rapier::prelude::*;
-use crate::system::Step;
 
 /// What is lent; empty but for the length of a [`Loan`].
 #[derive(Debug, Default)]
 pub(crate) struct Lent {
     /// Axes of claimed bodies that were locked before.
     axes: Vec<(RigidBodyHandle, LockedAxes)>,
-    /// Forces and torques of the user's on links (N, N m).
-    forces: Vec<(RigidBodyHandle, Vector, Real)>,
-    /// Contacts and joints of links.
-    borrowed: Borrowed,
+    /// Joints of claimed multibodies.
+    multibodies: LentMultibodies,
 }
 
 impl Lent {
@@ -43,36 +36,7 @@ impl Lent {
             user,
             book,
             claims,
-            borrowed: &self.borrowed,
             is_full,
-        }
-    }
-
-    /// Adds to the forces of the user's what the flexible stage has found to push links, and takes over the contacts and joints that this
-    /// stands for.
-    fn push_links(
-        &mut self,
-        pushes: &mut Vec<Push>,
-        memory: &LinkMemory,
-        (step, claims): (Step, &Claims),
-        sets: &mut RapierSets<'_>,
-    ) {
-        if memory.is_empty() && pushes.is_empty() {
-            return;
-        }
-        self.borrowed.take(claims, pushes, sets);
-        memory.add_left_ones(pushes, sets);
-        let late = step.late;
-        for push in pushes {
-            let before = memory.lasting(push.handle);
-            let force: [f64; 3] =
-                std::array::from_fn(|i| (push.impulse[i] + late * before[i]) / step.dt);
-            if let Some(body) = sets.bodies.get_mut(push.handle) {
-                self.forces
-                    .push((push.handle, body.user_force(), body.user_torque()));
-                body.add_force(to_rapier(Vec2::new(force[0], force[1])), false);
-                body.add_torque(force[2] as Real, false);
-            }
         }
     }
 
@@ -83,15 +47,7 @@ impl Lent {
                 body.set_locked_axes(axes, false);
             }
         }
-        for (handle, force, torque) in self.forces.drain(..) {
-            if let Some(body) = sets.bodies.get_mut(handle) {
-                body.reset_forces(false);
-                body.reset_torques(false);
-                body.add_force(force, false);
-                body.add_torque(torque, false);
-            }
-        }
-        self.borrowed.give_back(sets);
+        self.multibodies.give_back(sets.multibody_joints);
     }
 }
 
@@ -102,20 +58,11 @@ pub(crate) struct Loan<'s, 'a> {
 }
 
 impl<'s, 'a> Loan<'s, 'a> {
-    /// Lends what leads claimed bodies to where they end, and pushes links.
-    ///
-    /// - `pushes`: links that nothing touches any more are added.
-    pub fn new(
-        lent: &'s mut Lent,
-        (landings, pushes): (&[Landing], &mut Vec<Push>),
-        memory: &LinkMemory,
-        (step, claims): (Step, &Claims),
-        sets: &'s mut RapierSets<'a>,
-    ) -> Self {
+    /// Lends what leads claimed bodies to where they end.
+    pub fn new(lent: &'s mut Lent, landings: &[Landing], sets: &'s mut RapierSets<'a>) -> Self {
         let loan = Self { sets, lent };
         hand_back(landings, &mut loan.lent.axes, loan.sets);
-        loan.lent
-            .push_links(pushes, memory, (step, claims), loan.sets);
+        loan.lent.multibodies.lead(landings, loan.sets);
         loan
     }
 
@@ -132,7 +79,9 @@ impl<'s, 'a> Loan<'s, 'a> {
 
     /// Lands the claimed bodies after rapier's step, and gives everything back.
     pub fn land(self, landings: &[Landing], is_led: bool, masters: &mut Masters) {
-        land(landings, is_led, self.sets, masters);
+        land(landings, is_led, self.sets);
+        self.lent.multibodies.land(self.sets);
+        keep(landings, self.sets, masters);
     }
 }
 
@@ -147,7 +96,7 @@ mod tests {
     use super::*;
     use crate::integrator::Beta2;
     use crate::kkt::LateForce;
-    use crate::system::{RigidBlock, RigidLoad, RigidMotion};
+    use crate::system::{RigidBlock, RigidLoad, RigidMotion, Step};
 
     /// Where a step ends early, as by a panic in a handler, the axes of claimed bodies come back with the sets, whatever was lent.
     #[test]
@@ -163,11 +112,9 @@ mod tests {
         };
         let block = RigidBlock::free(RigidMotion::default(), None, &load, &step);
         let landings = [Landing::new(handle, &block, LateForce::default(), false)];
-        let (claims, memory, mut lent) =
-            (Claims::default(), LinkMemory::default(), Lent::default());
+        let mut lent = Lent::default();
         let mut sets = RapierSets::of_world(&mut world, &(), &());
-        let lending = (&landings[..], &mut Vec::new());
-        let mut loan = Loan::new(&mut lent, lending, &memory, (step, &claims), &mut sets);
+        let mut loan = Loan::new(&mut lent, &landings, &mut sets);
         let all = LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED;
         assert_eq!(loan.sets().bodies[handle].locked_axes(), all);
         drop(loan);

@@ -1,10 +1,9 @@
 //! The `f64` motion of claimed rigid bodies, kept from step to step while rapier's copy is the one we wrote.
 
 use super::landing::Landing;
-use super::shapes::pose_of;
+use super::placed::Placed;
 use crate::kkt::LateForce;
-use crate::math::{HashMap, Vec2, atan2, from_rapier};
-use crate::rapier::math::{Pose, Real, Vector};
+use crate::math::HashMap;
 use crate::rapier::prelude::*;
 use crate::system::RigidMotion;
 
@@ -20,9 +19,7 @@ pub(super) struct Master {
     drive: [f64; 3],
     mass: [f64; 3],
     late: LateForce,
-    pose: Pose,
-    linvel: Vector,
-    angvel: Real,
+    placed: Placed,
 }
 
 impl Master {
@@ -66,19 +63,17 @@ impl Masters {
     pub fn motion(
         &self,
         handle: RigidBodyHandle,
-        body: &RigidBody,
+        (body, placed): (&RigidBody, Placed),
         (drive, inverse_mass): ([f64; 3], [f64; 3]),
         is_within: bool,
     ) -> (RigidMotion, Option<[f64; 3]>) {
         if let Some(master) = self.last.get(&handle) {
             let acceleration = master.acceleration_now(drive, inverse_mass, is_within);
-            let same_pose = master.pose == *body.position();
-            let same_velocity = master.linvel == body.linvel() && master.angvel == body.angvel();
-            if same_pose && same_velocity {
+            if master.placed == placed {
                 return (master.motion, acceleration);
             }
-            if same_pose {
-                let read = read_motion(body);
+            if master.placed.pose == placed.pose {
+                let read = placed.motion(body);
                 let motion = RigidMotion {
                     velocity: read.velocity,
                     spin: read.spin,
@@ -87,7 +82,7 @@ impl Masters {
                 return (motion, acceleration);
             }
         }
-        (read_motion(body), None)
+        (placed.motion(body), None)
     }
 
     /// Bodies that forces of flexible ones are to act on in the next step, and one of these each, by its index.
@@ -100,16 +95,14 @@ impl Masters {
     }
 
     /// Keeps a body's motion after the hand-back.
-    pub fn keep(&mut self, landing: &Landing, motion: RigidMotion, body: &RigidBody) {
+    pub fn keep(&mut self, landing: &Landing, motion: RigidMotion, placed: Placed) {
         let master = Master {
             motion,
             acceleration: landing.acceleration,
             drive: landing.drive,
             mass: landing.mass,
             late: landing.late,
-            pose: *body.position(),
-            linvel: body.linvel(),
-            angvel: body.angvel(),
+            placed,
         };
         self.next.insert(landing.handle, master);
     }
@@ -144,21 +137,4 @@ pub(super) fn cap_speed(
         let fastest = LARGEST_TURN / f64::from(parameters.dt);
         motion.spin = motion.spin.clamp(-fastest, fastest);
     }
-}
-
-/// A body's motion as rapier has it.
-pub(crate) fn read_motion(body: &RigidBody) -> RigidMotion {
-    let pose = pose_of(body.position());
-    let centre = pose.transform(local_centre(body));
-    RigidMotion {
-        centre,
-        angle: atan2(pose.sin, pose.cos),
-        velocity: from_rapier(body.linvel()),
-        spin: f64::from(body.angvel()),
-    }
-}
-
-/// The centre of mass in the body's coordinates.
-pub(crate) fn local_centre(body: &RigidBody) -> Vec2 {
-    from_rapier(body.local_center_of_mass())
 }

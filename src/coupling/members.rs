@@ -1,8 +1,7 @@
 //! Who is solved in one system: the members of a claim and the components they form.
 //!
 //! A member is a flexible body, by its slot in the roster, or a claimed rigid one: these are counted on from the flexible bodies, in the
-//! order in which they were reached. What touches is united; bodies that meet links of one multibody are united too, for its links answer
-//! each other.
+//! order in which they were reached. What touches or is joined is united.
 
 use crate::math::HashMap;
 use crate::rapier::prelude::*;
@@ -17,8 +16,6 @@ pub(super) struct Members {
     place_of: HashMap<RigidBodyHandle, usize>,
     /// A member of the same component with a smaller or the same number; the root itself once the walk has ended.
     parent: Vec<usize>,
-    /// Multibodies that are met, with one of the members that meet them.
-    multibodies: Vec<(MultibodyIndex, usize)>,
 }
 
 impl Members {
@@ -27,7 +24,6 @@ impl Members {
         self.n_flex = n_flex;
         self.rigid.clear();
         self.place_of.clear();
-        self.multibodies.clear();
         self.parent.clear();
         self.parent.extend(0..n_flex);
     }
@@ -59,24 +55,6 @@ impl Members {
         let (one, other) = (self.root(one), self.root(other));
         // The smaller number stays the root, so that components do not depend on the order of unions.
         self.parent[one.max(other)] = one.min(other);
-    }
-
-    /// Unites a member with all others that meet links of the same multibody, if a body is a link.
-    pub fn meet_link(
-        &mut self,
-        joints: &MultibodyJointSet,
-        body: Option<RigidBodyHandle>,
-        member: usize,
-    ) {
-        let link = body.and_then(|body| joints.rigid_body_link(body));
-        let Some(index) = link.map(|link| link.multibody) else {
-            return;
-        };
-        let met = self.multibodies.iter().find(|(one, _)| *one == index);
-        match met.map(|(_, other)| *other) {
-            Some(other) => self.unite(member, other),
-            None => self.multibodies.push((index, member)),
-        }
     }
 
     /// Ends the walk: from here on components are looked up.

@@ -1,7 +1,6 @@
 //! What a step leaves to the next: a snapshot saves it, and nothing else that bears on the motion but the bodies themselves.
 
 use super::hooks::HookBook;
-use super::links::LinkMemory;
 use super::masters::Masters;
 use super::references::References;
 use crate::constraint::contact::{ContactMemory, Owner};
@@ -20,8 +19,6 @@ pub(crate) struct Memory {
     pub hooks: HookBook,
     /// Motions of claimed rigid bodies.
     pub masters: Masters,
-    /// Forces on links of multibodies.
-    pub links: LinkMemory,
 }
 
 impl Memory {

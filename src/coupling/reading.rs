@@ -1,6 +1,6 @@
 //! Reading rapier: loads, prescribed motions and contact laws of rigid bodies, refused if they are not finite.
 
-use super::masters::{local_centre, read_motion};
+use super::placed::{local_centre, read_motion};
 use super::shapes::{ShapeFault, pose_of};
 use super::under_way::Span;
 use crate::body::FlexBodyHandle;
@@ -29,6 +29,12 @@ pub(crate) enum GatherError {
     /// A joint of a claimed body has an anchor, motor or softness that is not finite.
     #[error("{0:?} is not finite")]
     Joint(ImpulseJointHandle),
+    /// A joint of a multibody of which a claimed body is a link, as above.
+    #[error("{0:?} is not finite")]
+    MultibodyJoint(MultibodyJointHandle),
+    /// A coupling of a multibody's coordinates, of which one is no angle, or that is not finite.
+    #[error("the coordinate of {0:?} is coupled by what cannot be solved with")]
+    Coupling(MultibodyJointHandle),
     /// A collider's friction, restitution or skin is not finite.
     #[error("a coefficient of {0:?} is not finite")]
     Coefficient(ColliderHandle),
@@ -65,11 +71,12 @@ pub(super) fn at_rest(pose: &Pose2) -> RigidMotion {
 
 /// A fixed or kinematic body, or one rapier keeps for itself: it moves as rapier says.
 ///
+/// - `is_link`: whether it is a link of a multibody, of which rapier moves no root that is not dynamic.
 /// - `dt`: length of the part of the step (s).
-pub(super) fn prescribed_block(body: &RigidBody, dt: f64, span: Span) -> RigidBlock {
+pub(super) fn prescribed_block(body: &RigidBody, is_link: bool, dt: f64, span: Span) -> RigidBlock {
     let dt = dt / span.share();
     let start = read_motion(body);
-    if body.is_fixed() {
+    if body.is_fixed() || is_link && body.is_kinematic() {
         let rest = RigidMotion {
             velocity: Vec2::zeros(),
             spin: 0.0,
@@ -99,7 +106,7 @@ pub(super) fn prescribed_block(body: &RigidBody, dt: f64, span: Span) -> RigidBl
 /// Share of its inertia by which a body of negative dominance is felt by those that dominate it.
 ///
 /// Mass ratios of a million are solved to full precision, and what falls with all its forces scaled falls as before.
-pub(super) const DOMINATED: Judged = Judged::new("coupling::DOMINATED", 1e-6);
+const DOMINATED: Judged = Judged::new("coupling::DOMINATED", 1e-6);
 
 /// Mass, forces and damping of a dynamic body.
 pub(super) fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
@@ -125,26 +132,6 @@ pub(super) fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
         force: [force.x, force.y, f64::from(body.user_torque())].map(|force| scale * force),
         damping: [linear, linear, angular],
     }
-}
-
-/// Masses along both axes and inertia of a link, and forces of the user's and of gravity, as rapier's multibodies have them: of dominance they know nothing.
-pub(super) fn link_weight_of(body: &RigidBody, gravity: Vec2) -> ([f64; 3], [f64; 3]) {
-    let properties = body.mass_properties();
-    let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
-    let inertias = [
-        f64::from(properties.effective_inv_mass.x),
-        f64::from(properties.effective_inv_mass.y),
-        f64::from(properties.effective_world_inv_inertia),
-    ]
-    .map(inverse);
-    let scale = f64::from(body.gravity_scale());
-    let user = from_rapier(body.user_force());
-    let force = [
-        user.x + inertias[0] * scale * gravity.x,
-        user.y + inertias[1] * scale * gravity.y,
-        f64::from(body.user_torque()),
-    ];
-    (inertias, force)
 }
 
 /// Friction and restitution of a pair, combined by rapier's rules.

@@ -7,7 +7,6 @@ use super::events::EventBook;
 use super::filter::Answers;
 use super::hooks::HookBook;
 use super::joint_changes::{KnownJoints, NotedJoint};
-use super::links::KnownForces;
 use super::masters::Master;
 use super::members::Members;
 use super::memory::Memory;
@@ -190,7 +189,6 @@ pub(crate) struct CouplingRecord {
     events: EventRecord,
     hooks: HookRecord,
     masters: Vec<(RigidBodyHandle, Master)>,
-    links: Vec<(RigidBodyHandle, KnownForces)>,
     references: References,
     joint_memory: JointMemory,
     explicit: Vec<(u32, ExplicitRecord)>,
@@ -204,7 +202,6 @@ impl CouplingRecord {
             events: EventRecord::of(events),
             hooks: HookRecord::of(&memory.hooks),
             masters: listed(&memory.masters.last),
-            links: listed(&memory.links.last),
             references: memory.references.clone(),
             joint_memory: memory.joints.clone(),
             explicit: pool.explicit_records(),
@@ -229,7 +226,6 @@ impl CouplingRecord {
         };
         memory.contacts.list_owners();
         memory.masters.last = self.masters.into_iter().collect();
-        memory.links.last = self.links.into_iter().collect();
         Some((self.claims.build(), self.events.build(), memory, pool))
     }
 }

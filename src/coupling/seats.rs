@@ -1,7 +1,7 @@
 //! Seats: which block of an island a body is.
 
 use super::gather_settings::GatherSettings;
-use super::links::{LinkBlock, Push, foreign_block, pushes_of};
+use super::reading::prescribed_block;
 use super::sets::RapierSets;
 use crate::kkt::Island;
 use crate::math::HashMap;
@@ -16,7 +16,6 @@ pub(crate) struct Seats {
     /// Blocks of rigid bodies, claimed or not.
     rigid: HashMap<RigidBodyHandle, usize>,
     claimed: Vec<(usize, RigidBodyHandle)>,
-    links: Vec<LinkBlock>,
     /// Flexible bodies whose surfaces cross themselves where the step begins, by their slots in the set.
     crossed: Vec<u32>,
 }
@@ -27,18 +26,12 @@ impl Seats {
         self.flex.clear();
         self.rigid.clear();
         self.claimed.clear();
-        self.links.clear();
         self.crossed.clear();
     }
 
     /// Claimed rigid bodies, with their blocks.
     pub fn claimed(&self) -> &[(usize, RigidBodyHandle)] {
         &self.claimed
-    }
-
-    /// Links of multibodies.
-    pub fn links(&self) -> &[LinkBlock] {
-        &self.links
     }
 
     /// Flexible bodies whose surfaces cross themselves where the step begins, by their slots in the set.
@@ -49,11 +42,6 @@ impl Seats {
     /// Notes that the surface of a flexible body crosses itself.
     pub fn add_crossed(&mut self, index: u32) {
         self.crossed.push(index);
-    }
-
-    /// What the island, once solved, has done to its links.
-    pub fn pushes<'a>(&'a self, island: &'a Island) -> impl Iterator<Item = Push> + 'a {
-        pushes_of(&self.links, island)
     }
 
     /// The block of a claimed flexible body.
@@ -86,18 +74,11 @@ impl Seats {
         handle: Option<RigidBodyHandle>,
         island: &mut Island,
     ) -> usize {
-        let is_link = block.link_response().is_some();
         island.blocks.push(Block::Rigid(block));
         island.flex_index.push(None);
         let index = island.blocks.len() - 1;
         if let Some(handle) = handle {
             self.rigid.insert(handle, index);
-            if is_link {
-                self.links.push(LinkBlock {
-                    block: index,
-                    handle,
-                });
-            }
         }
         index
     }
@@ -117,7 +98,10 @@ impl OpenIsland<'_, '_> {
         if let Some(&block) = self.seats.rigid.get(&handle) {
             return Some(block);
         }
-        let block = foreign_block(handle, self.settings, self.sets)?;
+        let GatherSettings { step, span, .. } = *self.settings;
+        let is_link = self.sets.multibody_joints.rigid_body_link(handle).is_some();
+        let body = self.sets.bodies.get(handle)?;
+        let block = prescribed_block(body, is_link, step.dt, span);
         Some(self.seats.add_rigid(block, Some(handle), self.island))
     }
 

@@ -7,7 +7,7 @@
 //! ([`super::trespassers`]).
 
 use super::changes::Changes;
-use super::filter::{claimable_parent, is_free_body};
+use super::filter::{claimable_body, claimable_parent};
 use super::places::{loosened, swept_box, travel_vector};
 use super::roster::Roster;
 use super::sets::RapierSets;
@@ -256,7 +256,7 @@ impl Strikes {
 
     /// Adds a body to a group, if blows pass through it.
     fn join(&mut self, group: usize, body: RigidBodyHandle, sets: &RapierSets<'_>) {
-        if is_free_body(sets, body) && !self.group_of.contains_key(&body) {
+        if claimable_body(sets, body) && !self.group_of.contains_key(&body) {
             self.group_of.insert(body, group);
             self.waiting.push(body);
         }

@@ -52,10 +52,7 @@ impl Trespassers {
         };
         for handle in sets.islands.active_bodies() {
             let body = sets.bodies.get(handle).filter(|body| body.is_dynamic());
-            // Links of multibodies are not claimed, but what they meet is solved with them.
-            let is_link = sets.multibody_joints.rigid_body_link(handle).is_some();
-            let is_solved = is_link || claims.has(handle);
-            let Some(body) = body.filter(|_| !is_solved) else {
+            let Some(body) = body.filter(|_| !claims.has(handle)) else {
                 continue;
             };
             for &collider in body.colliders() {

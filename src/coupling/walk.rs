@@ -1,9 +1,10 @@
 //! The walk: from every flexible body through the contact graph, over dynamic rigid bodies, along attachments and joints.
 //!
-//! All that are reached are claimed. Fixed and kinematic bodies and links of multibodies are met but not passed through.
+//! All that are reached are claimed, of a multibody all links. Fixed and kinematic bodies are met but not passed through.
 
 use super::claim_attachments::Attached;
 use super::claim_joints::ClaimedJoints;
+use super::claim_multibodies::ClaimedMultibodies;
 use super::filter::{Answers, claimable_body, claimable_parent};
 use super::members::Members;
 use super::places::{loosened, order_of_colliders, reach_of, swept_box};
@@ -44,6 +45,7 @@ pub(super) struct Walk {
     /// Pairs that may touch.
     pub pairs: Vec<ClaimedPair>,
     pub joints: ClaimedJoints,
+    pub multibodies: ClaimedMultibodies,
     pub answers: Answers,
     /// Surfaces of flexible bodies that sleep, which claimed rigid bodies may touch.
     pub touched: Vec<ColliderHandle>,
@@ -59,6 +61,7 @@ impl Walk {
         self.members.begin(map.flex.len());
         self.pairs.clear();
         self.joints.clear();
+        self.multibodies.clear();
         self.answers.clear();
         self.touched.clear();
         self.seen.clear();
@@ -85,6 +88,7 @@ impl Walk {
                 }
             }
             self.joints.take_up(sets, handle, &mut self.members);
+            self.multibodies.take_up(sets, handle, &mut self.members);
         }
         self.near = near;
         self.members.settle();
@@ -192,9 +196,6 @@ impl Walk {
         if let Some(parent) = claimable_parent(sets, met) {
             let other = self.members.claim(parent);
             self.members.unite(member, other);
-        } else {
-            self.members
-                .meet_link(sets.multibody_joints, met.parent(), member);
         }
     }
 }

@@ -45,7 +45,7 @@
 //!   themselves. Each other, and rigid bodies with an inside, they touch; what has been folded or crushed keeps the offset from other flexible bodies too.
 //! - **Overlap.** Gaps of a solved step hold to rounding, and to some 1e-6 m where bodies press on edges that they slide to and fro over. See: [`StepReport::gap_violation`]. A step that is not solved may leave centimetres where bodies are
 //!   not led along a path (next entry). It also counts what rapier has left between rigid bodies far from anything flexible, once these are taken over: such pairs part within some steps.
-//! - **Who is led.** Surfaces are stopped before they meet, whatever forces do ([`FlexParameters::feasible_path`]). Not led, and solved by signed gaps, are: pairs shown to hooks; pairs of multibody links;
+//! - **Who is led.** Surfaces are stopped before they meet, whatever forces do ([`FlexParameters::feasible_path`]). Not led, and solved by signed gaps, are: pairs shown to hooks;
 //!   flexible bodies that are inserted with an overlap of more than a twelfth of a cell, rigid ones of more than a sixth of their width; explicit steps; constraint functions. See: of 1,000 random scenes of small strain
 //!   one had a body by over 1 % of its size in another, one a rigid body that passed through the ground, one gained over 1 % of energy; 12 of 2,000 later ones had an unfinished step.
 //! - **Statics between obstacles.** [`ContactStepper`](crate::large::ContactStepper) keeps nodes out of rigid obstacles, each node out of one. See: `LargeError::Wedged` where one would have to stay out of two. Its bodies do not
@@ -93,7 +93,7 @@
 //!
 //! - **Too far apart.** Pins and welds do not pull flexible bodies together over more than half the size of the smaller one. See: [`AttachmentError::TooFar`](crate::body::AttachmentError::TooFar). Do: put them nearer, or take a spring.
 //! - **In contradiction**, joints and attachments are left open, and pins and welds hold their island as long as that lasts. See: [`StepReport::joint_violation`], `Quality::Cut`. Do: leave one of them out.
-//! - **Inside each other.** Rigid bodies that an impulse joint welds to each other, or pins at a point inside both by a millimetre or more, do not press each other where they are solved with flexible ones: contact would pull the joint open, as it does in rapier alone. Do: let links end at their joints, or say `contacts_enabled(false)`.
+//! - **Inside each other.** Rigid bodies that a joint welds to each other, or pins at a point inside both by a millimetre or more, do not press each other where they are solved with flexible ones: contact would pull the joint open, as it does in rapier alone. Do: let links end at their joints, or say `contacts_enabled(false)`.
 //! - **Round and hinged where they touch.** A ball or capsule hinged to a neighbour at the very point where the two touch cannot turn without going into it, so hinge and contact push against each other with forces of any size. See: a gain of some hundredths
 //!   of the energy, more than a fifth in 14 of 660 random scenes; [`Quality::Cut`](crate::pipeline::Quality::Cut). Do: say `contacts_enabled(false)`, or leave half a millimetre between them.
 //! - **Taut chains** sag by a hundredth of their length where they would have to be straight. See: [`StepReport::joint_violation`].
@@ -104,10 +104,9 @@
 //!
 //! # Rapier
 //!
-//! - **Multibody links** are coupled in turns: momentum is kept to rounding (where links turn, as rapier alone keeps it) and forces at rest are exact, but positions at a link miss by `O(dt²)`, at an impact by up to 3/8 of the approach within the step.
-//!   Links rest on the ground as softly as rapier lets them; their islands allocate in every step. A stiff body of small strain that is heavier than the link whose motor holds it may tremble, and arms of several such links swing. What a motor of a link presses on something stiff may gain energy
-//!   without bound, in steps told `Solved` (a slider of 2 kg with a motor of 50 N and a free block of 1e9 Pa: 1,600 J at 1/60 s where there is half a joule). Do: take impulse joints, which do not, or soft motors (a factor of 1e2).
-//!   Do: take impulse joints, which are solved with the rest, where you can.
+//! - **Multibodies** that touch or hold something flexible are solved with it, all links of them, by the rows that impulse joints have. Of their numbers, an armature weighs on the link that the joint moves (the same where the parent stands still; where
+//!   that moves, too little reaches it), a link's locked axes are passed over, and a coupling of two coordinates is solved where both are angles; other couplings are refused ([`StepError::Coupling`](crate::pipeline::StepError::Coupling)). Joints of
+//!   multibodies tell no impulses of motors and limits. Rapier alone does not move a multibody's kinematic root.
 //! - **Contact pairs** of what is solved here tell no impulses: rapier lets nobody else write what `contact_pair(..)` has of them. Do: take [`StepReport::contacts`], or contact force events.
 //! - **Dominance.** A rigid body of positive dominance is met as one that is moved: it goes through what is pinned, and squeezes what lies on something else flat, with energy as from nowhere (a box on a free block of 5e6 Pa: 8 MJ). See: unfinished steps. Do: leave dominance out.
 //! - **Fast spin.** Rapier turns a rigid body by no more than an eighth of a turn in a step, and takes what is more out of its spin: at 1/60 s beyond 47 rad/s. Do: shorten the step.

@@ -98,7 +98,7 @@ pub(super) fn parted(
     let moved = grips.map(|grip| match &blocks[grip.block] {
         Block::Rigid(block) => {
             let wrench = unit_wrench(grip, tie.direction, is_turn);
-            block.mobility_between(wrench, wrenches[grip.block], Response::Velocity)
+            block.mobility_between(wrench, wrenches[grip.block])
         }
         Block::Flex(_) => 0.0,
     });

@@ -41,8 +41,6 @@ pub(super) fn is_sparse(island: &Island, n_rows: usize) -> bool {
         match block {
             Block::Flex(block) if block.is_explicit() => return false,
             Block::Flex(block) => operations += block.factor_operations(),
-            // Links answer together, by no matrix of their own.
-            Block::Rigid(block) if block.link_response().is_some() => return false,
             Block::Rigid(_) => operations += 64.0,
         }
     }

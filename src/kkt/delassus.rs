@@ -78,11 +78,8 @@ pub(super) fn compliance(
             if is_quasi_static && !(moves(a) && moves(b)) {
                 continue;
             }
-            let between = match a.block == b.block {
-                true => Some(blocks[a.block].compliance(a.grip, b.grip, of)),
-                false => blocks[a.block].compliance_across(a.grip, (b.block, b.grip), of),
-            };
-            if let Some(between) = between {
+            if a.block == b.block {
+                let between = blocks[a.block].compliance(a.grip, b.grip, of);
                 let term = a.weight * b.weight * between;
                 sum = Some(sum.map_or(term, |sum| sum + term));
             }

@@ -15,7 +15,7 @@ use super::delassus::RowDirection;
 use super::island::{Island, SolveSettings};
 use super::joints::Among;
 use super::summary::IslandSummary;
-use super::work::{kinetic_energy, momentum_at_most, work_of_driven, work_of_links};
+use super::work::{kinetic_energy, momentum_at_most, work_of_driven};
 use super::{gathered, momentum, together};
 use crate::math::{Vec2, judged::Judged, rounding};
 use crate::system::{Block, Response};
@@ -44,7 +44,7 @@ pub(super) fn limit_energy(
         (true, true) => f64::INFINITY,
     };
     *reserve = reserve.min(kept);
-    let allowance = summary.work + work_of_links(&island.blocks, &island.contacts, settings);
+    let allowance = summary.work;
     let gain = kinetic + elastic - summary.start_energy[0] - summary.start_energy[1] - allowance;
     *reserve -= gain;
     let band = if touches { ROUND_OFF } else { SWING.get() };
@@ -97,7 +97,7 @@ fn seen_energy(island: &Island, dt: f64, kinetic: f64) -> f64 {
     let velocities = of_contacts
         .chain(grips)
         .filter_map(|block| match &island.blocks[block] {
-            Block::Rigid(block) if block.is_driven() && block.link_response().is_none() => {
+            Block::Rigid(block) if block.is_prescribed() => {
                 let [x, y, _] = block.moved();
                 Some(Vec2::new(x, y) / dt)
             }

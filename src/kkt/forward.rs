@@ -47,7 +47,6 @@ pub(super) fn solve_forward(
             block.add_impulse(wrench.map(|value| settings.dt * value));
         }
     }
-    gathered::add_across(island, Response::Velocity, settings.dt);
     weigh_switches(island, settings);
     velocity::impact_rows(island, settings)?;
     momentum::balance_angular_momentum(island);
@@ -137,7 +136,6 @@ fn add_switches(island: &mut Island, scale: f64) {
             Block::Rigid(block) => block.add_impulse(wrench.map(|value| scale * value)),
         }
     }
-    gathered::add_across(island, Response::Velocity, scale);
 }
 
 /// Gain of `H` over the step beyond the work of loads, of prescribed bodies and of friction (J).

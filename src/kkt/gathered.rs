@@ -65,7 +65,6 @@ pub(super) fn add_to_rigid(island: &mut Island, of: Response, scale: f64) {
             }
         }
     }
-    add_across(island, of, scale);
 }
 
 /// Adds a multiple of the responses to the flexible blocks.
@@ -84,26 +83,6 @@ pub(super) fn set_soft_forces(island: &mut Island) {
         {
             block.set_soft_force(*wrench);
         }
-    }
-    let [weight, lasting] = match island.blocks.iter().find_map(Block::soft_weights) {
-        Some(weights) => weights,
-        None => return,
-    };
-    add_across(island, Response::Velocity, weight);
-    add_across(island, Response::Acceleration, lasting);
-}
-
-/// Adds what a wrench on a link does to others of its multibody.
-pub(super) fn push_across(island: &mut Island, of: Response, from: usize, wrench: [f64; 3]) {
-    for block in &mut island.blocks {
-        block.push_across(of, from, wrench);
-    }
-}
-
-/// Adds what the gathered wrenches do to other links of the multibodies that they act on, times a scale.
-pub(super) fn add_across(island: &mut Island, of: Response, scale: f64) {
-    for block in &mut island.blocks {
-        block.add_across(of, &island.wrenches, scale);
     }
 }
 

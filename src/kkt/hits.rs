@@ -63,10 +63,8 @@ fn is_hit(contact: &ActiveContact) -> bool {
 fn note_carried(island: &mut Island) {
     let carried = &mut island.passes.carried;
     carried.clear();
-    carried.extend(island.blocks.iter().map(|block| match block {
-        Block::Rigid(block) => is_still(block) || !block.is_driven(),
-        Block::Flex(_) => false,
-    }));
+    let is_rigid = |block: &Block| matches!(block, Block::Rigid(_));
+    carried.extend(island.blocks.iter().map(is_rigid));
     let stays = |block: &Block| matches!(block, Block::Rigid(block) if is_still(block));
     for tie in &island.joints.ties {
         for grip in &island.joints.grips[tie.row.grips.0..tie.row.grips.1] {
@@ -272,5 +270,5 @@ fn of_rigid(block: &Block, value: impl Fn(&RigidBlock) -> [f64; 3]) -> [f64; 3] 
 
 /// Whether nothing moves a body: its motion is given, or all of its axes are locked.
 fn is_still(block: &RigidBlock) -> bool {
-    block.is_prescribed() || !block.is_driven() && block.moves_along() == [false; 3]
+    block.is_prescribed() || block.moves_along() == [false; 3]
 }

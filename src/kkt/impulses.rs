@@ -254,7 +254,7 @@ pub(super) fn acceleration_rows(
             block.smooth_acceleration(grip)
         });
         for a in row.attachments() {
-            let answer = island.blocks[a.block].acceleration_under(&island.wrenches, a.block);
+            let answer = island.blocks[a.block].acceleration_under(island.wrenches[a.block]);
             acceleration += a.weight * (answer.0 + answer.1 * perp(a.grip.lever));
         }
         let [parting, sliding] = contact.parting.map(|velocity| velocity / settings.dt);

@@ -29,7 +29,7 @@ pub(super) fn are_jammed(
     let driven = contacts.iter().flat_map(|contact| {
         let grips = contact.kinematics.attachments().iter();
         grips.filter_map(|one| match &blocks[one.block] {
-            Block::Rigid(block) if block.is_driven() => Some(block.velocity(one.grip.lever)),
+            Block::Rigid(block) if block.is_prescribed() => Some(block.velocity(one.grip.lever)),
             _ => None,
         })
     });

@@ -121,8 +121,6 @@ fn push_joined_masses(
     impulses::solve_impulses(island, Response::ByMass, settings.dt)?;
     let first = island.problem.rows.len();
     gathered::clear_impulses(island);
-    // Without links it stays empty, and takes no memory.
-    let mut across = Vec::new();
     for slot in 0..island.joints.listed.len() {
         let value = island.problem.multipliers[first + slot];
         let tie = island.joints.ties[island.joints.listed[slot]];
@@ -147,16 +145,10 @@ fn push_joined_masses(
                         Response::Acceleration => block.add_smooth_acceleration(wrench),
                         _ => block.add_impulse(wrench),
                     }
-                    if block.link_response().is_some() {
-                        across.push((grip.block, wrench));
-                    }
                 }
                 _ => {}
             }
         }
-    }
-    for (block, wrench) in across {
-        gathered::push_across(island, of, block, wrench);
     }
     for block in &mut island.blocks {
         if let Block::Flex(block) = block {

@@ -337,7 +337,7 @@ fn row(entries: (u32, u32), law: ConeLaw, free: f64, (share, mobility): (f64, f6
 /// What a unit multiplier moves a row by at one of its grips (1/kg).
 fn own_mobility(blocks: &[Block], (grip, wrench): (&JointGrip, [f64; 3])) -> f64 {
     match &blocks[grip.block] {
-        Block::Rigid(body) => body.mobility_between(wrench, wrench, Response::Position),
+        Block::Rigid(body) => body.mobility_between(wrench, wrench),
         Block::Flex(_) => 0.0,
     }
 }

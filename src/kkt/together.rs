@@ -39,7 +39,7 @@ fn moments_of(block: &Block) -> Result<Moments, RigidMotion> {
         Block::Rigid(body) => {
             let motion = *body.start();
             let is_free = body.moves_along().iter().all(|moves| *moves);
-            if body.is_prescribed() || body.link_response().is_some() || !is_free {
+            if body.is_prescribed() || !is_free {
                 return Err(motion);
             }
             let [mass, _, polar] = body.mass();

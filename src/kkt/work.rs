@@ -71,7 +71,7 @@ pub(super) fn load_energy(blocks: &[Block]) -> f64 {
     energies.sum()
 }
 
-/// Work of applied forces and of the contact forces of driven bodies, prescribed ones and links of multibodies (J).
+/// Work of applied forces and of the contact forces of driven bodies, prescribed ones (J).
 ///
 /// Impulses count that the step has given, times the mean velocity of the driven bodies. Seen from a body that moves evenly that is what the
 /// kinetic energy changes by, so that all that is said of the rest is the same from there.
@@ -87,7 +87,7 @@ pub(super) fn actual_work(
         let impulse = normal * kinematics.normal + tangent * kinematics.tangent();
         for a in kinematics.attachments() {
             let block = &blocks[a.block];
-            if matches!(block, Block::Rigid(block) if block.is_driven()) {
+            if matches!(block, Block::Rigid(block) if block.is_prescribed()) {
                 let moved = block.position(a.grip.point) - block.start_position(a.grip.point);
                 work -= a.weight * impulse.dot(&moved) / settings.dt;
             }
@@ -117,8 +117,7 @@ pub(super) fn joint_work(
     grips: WorkGrips<'_>,
     weights: [f64; 2],
 ) -> JointWork {
-    let is_driven =
-        |grip: &JointGrip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_driven());
+    let is_driven = |grip: &JointGrip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_prescribed());
     let mut sum = JointWork::default();
     for tie in ties {
         let work = work_of(blocks, tie, grips, weights);
@@ -159,7 +158,7 @@ fn work_of(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, [dt, b1]: 
     let works = (first..last).map(|at| {
         let grip = &grips.start[at];
         match &blocks[grip.block] {
-            Block::Rigid(block) if block.is_driven() => 0.0,
+            Block::Rigid(block) if block.is_prescribed() => 0.0,
             Block::Rigid(block) if tie.is_hard => {
                 let mut impulse = [0.0; 3];
                 let kept = unit_wrench(grip, tie.direction, is_turn);
@@ -187,7 +186,7 @@ fn driven_work(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, dt: f6
     };
     let (first, last) = tie.row.grips;
     let works = (first..last).map(|at| match &blocks[grips.start[at].block] {
-        Block::Rigid(block) if block.is_driven() => {
+        Block::Rigid(block) if block.is_prescribed() => {
             let mut impulse = [0.0; 3];
             let kept = unit_wrench(&grips.start[at], tie.direction, is_turn);
             add_wrench(&mut impulse, impulses[0], kept);
@@ -205,41 +204,13 @@ fn driven_work(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, dt: f6
     works.sum::<f64>() / dt
 }
 
-/// What contacts may bring from links of multibodies beyond the work that they are known by (J): rapier moves these, by the way that they would go
-/// without this step's forces.
-pub(super) fn work_of_links(
-    blocks: &[Block],
-    contacts: &[ActiveContact],
-    settings: &SolveSettings,
-) -> f64 {
-    let is_link = |block: usize| matches!(&blocks[block], Block::Rigid(block) if block.link_response().is_some());
-    let works = contacts.iter().map(|contact| {
-        let grips = contact.kinematics.attachments().iter();
-        let moved: Vec2 = grips
-            .filter(|a| is_link(a.block))
-            .map(|a| {
-                let block = &blocks[a.block];
-                a.weight * (block.position(a.grip.point) - block.start_position(a.grip.point))
-            })
-            .sum();
-        let (row, [normal, tangent]) = (&contact.kinematics, contact.given(settings));
-        let impulse = normal * row.normal + tangent * row.tangent();
-        let force = contact.multiplier[0].max(contact.remembered.normal);
-        let drag = contact.multiplier[1]
-            .abs()
-            .max(contact.remembered.tangent.abs());
-        moved.norm() * (force + drag) + impulse.dot(&moved) / settings.dt
-    });
-    works.sum()
-}
-
-/// What wrenches of impulses on driven bodies do on what these meet (J); links answer to them.
+/// What wrenches of impulses on driven bodies do on what these meet (J).
 pub(super) fn work_of_driven(blocks: &[Block], wrenches: &[[f64; 3]], dt: f64) -> f64 {
     let works = blocks
         .iter()
         .zip(wrenches)
         .map(|(block, wrench)| match block {
-            Block::Rigid(block) if block.is_driven() && block.link_response().is_none() => {
+            Block::Rigid(block) if block.is_prescribed() => {
                 let moved = block.moved();
                 wrench.iter().zip(moved).map(|(w, x)| w * x).sum::<f64>()
             }

@@ -8,7 +8,7 @@ use super::island::{ActiveContact, Island, SolveSettings};
 use super::tolerances::{OVERLAPPED, PARTING_RATE};
 use crate::constraint::contact::{ContactMemory, Kinematics};
 use crate::math::{Vec2, exp, rounding};
-use crate::system::{Block, Response};
+use crate::system::Block;
 
 /// Round-off of gaps, relative to the extent of the scene.
 pub(super) const ROUND_OFF: f64 = 2.0 * rounding::SUM;
@@ -133,7 +133,6 @@ pub(super) fn correct(island: &mut Island) -> Turned {
             Block::Rigid(block) => block.set_position_increment(*wrench),
         }
     }
-    gathered::add_across(island, Response::Position, 1.0);
     turned
 }
 

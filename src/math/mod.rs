@@ -27,6 +27,12 @@ pub fn rotation(angle: f64) -> Mat2 {
     Mat2::new(cos, -sin, sin, cos)
 }
 
+/// The equivalent angle in [-π, π] (rad).
+pub fn wrap_angle(angle: f64) -> f64 {
+    let turns = (angle / std::f64::consts::TAU).round();
+    angle - turns * std::f64::consts::TAU
+}
+
 /// The two entries of node `node` in an interleaved dof vector.
 ///
 /// # Panics

@@ -50,9 +50,8 @@ impl Solver {
         outcome
     }
 
-    /// Whether a part of the step of the island that was gathered, which has been cut `n_cuts` times, may be solved in halves. Links of
-    /// multibodies move as rapier moves them, in one piece. What could not be finished in the steps before, as bodies that were put into each other
-    /// for good, is cut once less for each, and for each of the last parts of this one: it would not be finished in all the parts either, and cost their
+    /// Whether a part of the step of the island that was gathered, which has been cut `n_cuts` times, may be solved in halves. What could not be finished
+    /// in the steps before, as bodies that were put into each other for good, is cut once less for each, and for each of the last parts of this one: it would not be finished in all the parts either, and cost their
     /// number. It is tried in all its parts again [now and then](n_cuts_after). What has used up its pivots is not cut any more.
     pub(super) fn may_be_cut(
         &self,
@@ -65,8 +64,7 @@ impl Solver {
         let most = n_cuts_after(self.n_unfinished(flex_bodies), most);
         let most = most.saturating_sub(self.under_way.n_unfinished());
         let is_long = 0.5 * step.dt >= SHORTEST;
-        let has_links = !self.gatherer.seats.links().is_empty();
-        n_cuts < most && !self.is_spent(parameters) && is_long && !step.is_explicit() && !has_links
+        n_cuts < most && !self.is_spent(parameters) && is_long && !step.is_explicit()
     }
 
     /// Solves a part of the step, in halves if it is not solved in one piece.

@@ -7,7 +7,9 @@ use crate::coupling::{GatherError, ShapeFault};
 use crate::integrator::IntegratorError;
 use crate::kkt::KktError;
 use crate::linalg::cholesky::CholeskyError;
-use crate::rapier::prelude::{ColliderHandle, ImpulseJointHandle, RigidBodyHandle};
+use crate::rapier::prelude::{
+    ColliderHandle, ImpulseJointHandle, MultibodyJointHandle, RigidBodyHandle,
+};
 use thiserror::Error;
 
 /// Why a step was not taken. Flexible bodies, rigid bodies and contacts are as they were before it.
@@ -105,6 +107,16 @@ pub enum StepError {
         "{0:?} joins a body that touches a flexible one, and its anchors, motor or softness are not finite: set them anew, or remove it"
     )]
     Joint(ImpulseJointHandle),
+    /// A joint of a multibody that touches a flexible body has anchors, motors, springs, damping or friction that are not finite.
+    #[error(
+        "{0:?} is of a multibody that touches a flexible body, and its anchors, motors, springs, damping or friction are not finite: set them anew, or remove it"
+    )]
+    MultibodyJoint(MultibodyJointHandle),
+    /// Two coordinates of a multibody that touches a flexible body are coupled, of which one is no angle, or by numbers that are not finite.
+    #[error(
+        "the coordinate of {0:?} is coupled to another, its multibody touches a flexible body, and not both are angles, or the numbers are not finite: remove the coupling, and hold the motion by a motor"
+    )]
+    Coupling(MultibodyJointHandle),
     /// A joint holds on to the carrier of a flexible body, which is where rapier keeps its surface and moves with nothing.
     #[error(
         "{0:?} holds on to the carrier of a flexible body, which moves with nothing: remove it and attach the body with `FlexBodySet::attach`"
@@ -150,6 +162,8 @@ impl From<GatherError> for StepError {
             GatherError::Factorization { body, source } => Self::Factorization { body, source },
             GatherError::RigidBody(handle) => Self::RigidBody(handle),
             GatherError::Joint(handle) => Self::Joint(handle),
+            GatherError::MultibodyJoint(handle) => Self::MultibodyJoint(handle),
+            GatherError::Coupling(handle) => Self::Coupling(handle),
             GatherError::Coefficient(handle) => Self::Coefficient(handle),
             GatherError::Shape(collider, ShapeFault { fault, cure }) => Self::Shape {
                 collider,

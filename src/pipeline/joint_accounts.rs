@@ -9,7 +9,7 @@ use crate::body::{AttachmentTarget, FlexBodySet};
 use crate::coupling::RapierSets;
 use crate::kkt::{ActiveJoint, Island};
 use crate::math::{Vec2, cross};
-use crate::rapier::prelude::RigidBody;
+use crate::rapier::prelude::{MultibodyJointHandle, MultibodyLink, RigidBody, RigidBodyHandle};
 
 impl JointReport {
     /// What the joints of a solved part did, one after the other: the rows of each stand together.
@@ -97,15 +97,27 @@ pub(super) fn drop_orphans(sets: &RapierSets<'_>, flex_bodies: &mut FlexBodySet)
 
 /// Whether a joint of rapier holds bodies that sleep, and nothing that moves.
 pub(super) fn joins_sleepers(held: Held, sets: &RapierSets<'_>) -> bool {
-    let Held::Joint(joint) = held else {
-        return false;
+    let bodies = match held {
+        Held::Joint(joint) => {
+            let joint = sets.impulse_joints.get(joint);
+            joint.map(|joint| [joint.body1(), joint.body2()])
+        }
+        Held::MultibodyJoint(joint) => bodies_of(joint, sets),
+        Held::Attachment(_) => None,
     };
-    let joint = sets.impulse_joints.get(joint);
-    joint.is_some_and(|joint| {
-        let bodies = [joint.body1(), joint.body2()].map(|body| sets.bodies.get(body));
+    bodies.is_some_and(|bodies| {
+        let bodies = bodies.map(|body| sets.bodies.get(body));
         let is_still =
             |body: &RigidBody| body.is_sleeping() || body.is_fixed() || !body.is_enabled();
         let sleeps = |body: &&RigidBody| body.is_sleeping();
         bodies.iter().flatten().any(sleeps) && bodies.iter().flatten().all(|body| is_still(body))
     })
+}
+
+/// The bodies that a joint of a multibody joins.
+fn bodies_of(joint: MultibodyJointHandle, sets: &RapierSets<'_>) -> Option<[RigidBodyHandle; 2]> {
+    let (multibody, id) = sets.multibody_joints.get(joint)?;
+    let link = multibody.link(id)?;
+    let parent = multibody.link(link.parent_id()?)?;
+    Some([parent, link].map(MultibodyLink::rigid_body_handle))
 }

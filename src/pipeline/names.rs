@@ -5,7 +5,9 @@ use crate::body::FlexBodySet;
 use crate::constraint::contact::Owner;
 use crate::constraint::joint::JointOwner;
 use crate::coupling::RapierSets;
-use crate::rapier::prelude::{ColliderHandle, ImpulseJointHandle};
+use crate::rapier::prelude::{
+    ColliderHandle, ImpulseJointHandle, MultibodyJointHandle, RigidBodyHandle,
+};
 
 /// Looks owners up.
 #[derive(Clone, Copy)]
@@ -45,6 +47,10 @@ impl Names<'_, '_> {
         match owner {
             JointOwner::Impulse(index, generation) => {
                 Held::Joint(ImpulseJointHandle::from_raw_parts(index, generation))
+            }
+            JointOwner::Multibody(index, generation) => {
+                let body = RigidBodyHandle::from_raw_parts(index, generation);
+                Held::MultibodyJoint(MultibodyJointHandle(body.0))
             }
             JointOwner::Attachment(index, generation) => {
                 let parts = (index, generation);

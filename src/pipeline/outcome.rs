@@ -4,7 +4,7 @@ use super::solved::{Entry, SolvedPart};
 use crate::body::FlexBodySet;
 use crate::constraint::joint::{JointOwner, Measure};
 use crate::coupling::{
-    FlexPool, JointImpulse, Landing, Push, RapierSets, keep_awake, keep_landing_awake, wake_moving,
+    FlexPool, JointImpulse, Landing, RapierSets, keep_awake, keep_landing_awake, wake_moving,
 };
 use crate::kkt::{LateForce, late_forces};
 use crate::rapier::prelude::ImpulseJointHandle;
@@ -28,8 +28,6 @@ pub(super) struct Outcome {
     pub flexible: Vec<FlexEnd>,
     /// Where claimed rigid bodies end.
     pub landings: Vec<Landing>,
-    /// What links of multibodies were pushed by.
-    pub pushes: Vec<Push>,
     /// Impulses on rapier's joints.
     pub joint_impulses: Vec<JointImpulse>,
     /// Forces that act on in the next step, by the blocks of an island: scratch.
@@ -41,7 +39,6 @@ impl Outcome {
     pub fn clear(&mut self) {
         self.flexible.clear();
         self.landings.clear();
-        self.pushes.clear();
         self.joint_impulses.clear();
     }
 
@@ -60,7 +57,6 @@ impl Outcome {
                     .push(Landing::new(handle, block, late, entry.is_unfinished));
             }
         }
-        self.pushes.extend(part.seats.pushes(island));
         let n_flex = island.flex_index.iter().flatten().count().max(1);
         for &index in island.flex_index.iter().flatten() {
             self.flexible.push(FlexEnd {

@@ -1,7 +1,7 @@
 //! What the user knows the sides of contacts and the joints of an island as.
 
 use crate::body::{AttachmentHandle, FlexBodyHandle};
-use crate::rapier::prelude::{ColliderHandle, ImpulseJointHandle};
+use crate::rapier::prelude::{ColliderHandle, ImpulseJointHandle, MultibodyJointHandle};
 
 /// One side of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +25,8 @@ pub enum Participant {
 pub enum Held {
     /// An impulse joint of rapier.
     Joint(ImpulseJointHandle),
+    /// A joint of a multibody.
+    MultibodyJoint(MultibodyJointHandle),
     /// An attachment of a flexible body.
     Attachment(AttachmentHandle),
 }

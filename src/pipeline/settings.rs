@@ -40,7 +40,7 @@ pub struct FlexParameters {
     /// by [`StepReport::quality`](super::StepReport::quality).
     pub max_newton: usize,
     /// How many times the step of an island that is not solved may be cut in halves; 3 by default, so that it is taken in 8 parts at most.
-    /// See [`StepReport::n_parts`](super::StepReport::n_parts). Islands with links of multibodies and explicit steps are not cut.
+    /// See [`StepReport::n_parts`](super::StepReport::n_parts). Explicit steps are not cut.
     pub max_cutbacks: usize,
     /// The same of an island with bodies of large strain, whose equations get easier with every cut; 5 by default. A step after which such a
     /// body might be in more places than one is cut at once.

@@ -184,6 +184,7 @@ impl FlexPipeline {
             }
             self.claims.walk(sets);
         }
+        self.claims.prepare_multibodies(sets);
         self.solver.retain(sets, flex_bodies);
         let notes = notes_of_newcomers(&self.claims, sets, flex_bodies, &mut self.put_together);
         self.report.insertion_notes.extend(notes);
@@ -220,11 +221,8 @@ impl FlexPipeline {
     ) {
         self.outcome
             .keep_awake(self.solver.pool(), sets, flex_bodies);
-        let (landings, pushes) = (&self.outcome.landings, &mut self.outcome.pushes);
-        let links = &self.memory.links;
-        let claimed = (step, &self.claims);
         let events = self.events.gate(sets.events, Some(&self.claims));
-        let mut loan = Loan::new(&mut self.lent, (landings, pushes), links, claimed, sets);
+        let mut loan = Loan::new(&mut self.lent, &self.outcome.landings, sets);
         clock.lap(&mut self.report.times.hand_back);
         loan.step(&self.memory.hooks, &self.claims, &events);
         self.report.note_quarantine(loan.sets());
@@ -233,7 +231,6 @@ impl FlexPipeline {
             .wake_moving(self.solver.pool(), loan.sets(), flex_bodies);
         let is_led = self.parameters.leads(step);
         loan.land(&self.outcome.landings, is_led, &mut self.memory.masters);
-        self.memory.links.keep(&self.outcome.pushes, step, sets);
         write_impulses(&self.outcome.joint_impulses, sets);
     }
 

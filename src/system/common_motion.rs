@@ -18,7 +18,7 @@ impl Block {
     pub fn hold(&self) -> Hold {
         match self {
             Self::Flex(block) => block.pinned_hold(),
-            Self::Rigid(block) if block.is_driven() => Hold::Led,
+            Self::Rigid(block) if block.is_prescribed() => Hold::Led,
             Self::Rigid(block) if block.moves_along().iter().all(|moves| *moves) => Hold::Free,
             Self::Rigid(_) => Hold::Held,
         }

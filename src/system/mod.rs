@@ -5,7 +5,6 @@
 
 mod common_motion;
 mod flex;
-mod link_response;
 mod moments;
 mod pin_rates;
 mod rigid_block;
@@ -18,7 +17,6 @@ pub use common_motion::Hold;
 #[cfg(feature = "serde-serialize")]
 pub(crate) use flex::ExplicitRecord;
 pub use flex::{Balance, FlexBlock};
-pub use link_response::{LinkAnswer, LinkResponse};
 pub use moments::Moments;
 pub use pin_rates::RigidRates;
 pub use rigid_block::RigidBlock;
@@ -59,7 +57,7 @@ pub struct Grip {
 pub enum Block {
     /// A flexible body.
     Flex(Box<FlexBlock>),
-    /// A rigid body: free, prescribed, or a link of a multibody.
+    /// A rigid body, free or prescribed.
     Rigid(RigidBlock),
 }
 
@@ -121,7 +119,7 @@ impl Block {
             (Self::Flex(block), Point::Node(node)) => block.approaching_velocity(node),
             (Self::Rigid(block), Point::Arm(_)) => {
                 // What is moved as it must has the velocity of the way that it goes.
-                let moves = match block.is_prescribed() && block.link_response().is_none() {
+                let moves = match block.is_prescribed() {
                     true => block.current(),
                     false => block.start(),
                 };
@@ -140,84 +138,19 @@ impl Block {
                 block.compliance((node, at.lever), (source, from.lever), of)
             }
             (Self::Rigid(block), Point::Arm(_), Point::Arm(_)) => {
-                block.compliance(at.lever, from.lever, of)
+                block.compliance(at.lever, from.lever)
             }
             _ => mismatch(),
         }
     }
 
-    /// How far a grip on a link moves by a unit force at a grip of another block, if that is a link of the same multibody (1/kg).
-    pub fn compliance_across(&self, at: Grip, other: (usize, Grip), of: Response) -> Option<Mat2> {
-        let (other, from) = other;
-        self.links()?
-            .compliance_across(at.lever, (other, from.lever), of)
-    }
-
-    /// What a unit multiplier of a wrench on another block does along one of this, if both are links of the same multibody.
-    pub fn mobility_across(
-        &self,
-        at: [f64; 3],
-        other: (usize, [f64; 3]),
-        of: Response,
-    ) -> Option<f64> {
-        let (other, from) = other;
-        let moved = self.links()?.answer_from(other, from, of)?;
-        Some(at.iter().zip(moved).map(|(at, moved)| at * moved).sum())
-    }
-
-    /// Whether it is a link that answers together with others.
-    pub fn answers_with_others(&self) -> bool {
-        self.links().is_some()
-    }
-
-    /// The answer of a link that others of its multibody answer with.
-    fn links(&self) -> Option<&LinkResponse> {
-        match self {
-            Self::Rigid(block) => block.link_response().filter(|link| link.has_others()),
-            Self::Flex(_) => None,
-        }
-    }
-
-    /// Acceleration and that of the turn which the wrenches on all blocks give to a rigid one, `own` by its place (m/s², rad/s²).
-    pub fn acceleration_under(&self, wrenches: &[[f64; 3]], own: usize) -> (Vec2, f64) {
+    /// Acceleration and that of the turn which a wrench gives to a rigid block (m/s², rad/s²).
+    pub fn acceleration_under(&self, wrench: [f64; 3]) -> (Vec2, f64) {
         let Self::Rigid(block) = self else {
             return (Vec2::zeros(), 0.0);
         };
-        let [x, y, turn] = block.answer(wrenches[own]);
-        let others = self
-            .links()
-            .map(|link| link.answer_others(wrenches, Response::Acceleration));
-        let [other_x, other_y, other_turn] = others.unwrap_or_default();
-        (Vec2::new(x + other_x, y + other_y), turn + other_turn)
-    }
-
-    /// What a link's soft forces are weighed with in velocities (s) and accelerations (-); `None` if it is none that answers with others.
-    pub fn soft_weights(&self) -> Option<[f64; 2]> {
-        self.links()?;
-        match self {
-            Self::Rigid(block) => Some(block.soft_weights()),
-            Self::Flex(_) => None,
-        }
-    }
-
-    /// Adds what wrenches on other links of its multibody do to a link, by the wrenches on all blocks.
-    pub fn add_across(&mut self, of: Response, wrenches: &[[f64; 3]], scale: f64) {
-        if let Some(link) = self.links() {
-            let change = link.answer_others(wrenches, of).map(|part| scale * part);
-            if let Self::Rigid(block) = self {
-                block.add_change(of, change);
-            }
-        }
-    }
-
-    /// Adds what a wrench on another link does to a link of the same multibody.
-    pub fn push_across(&mut self, of: Response, from: usize, wrench: [f64; 3]) {
-        let change = self
-            .links()
-            .and_then(|link| link.answer_from(from, wrench, of));
-        if let (Some(change), Self::Rigid(block)) = (change, self) {
-            block.add_change(of, change);
-        }
+        let [x, y, turn] = block.answer(wrench);
+        (Vec2::new(x, y), turn)
     }
 
     /// What of [`Block::compliance`] of velocities the springs between a surface without mass and the masses give (1/kg).

@@ -3,29 +3,17 @@
 mod response;
 mod restart;
 
-use super::Response;
-use super::link_response::LinkResponse;
 use super::rigid_load::RigidLoad;
 use super::rigid_motion::RigidMotion;
 use super::step::Step;
 use crate::integrator::Weights;
 use crate::math::{Vec2, perp};
 
-/// What a rigid body is in an island, and how it answers forces.
-#[derive(Clone, Debug)]
-enum Kind {
-    /// Dynamic: by its own mass.
-    Free,
-    /// Fixed or kinematic: not at all, its motion is given.
-    Prescribed,
-    /// A link: by the inverse mass of its multibody; it has no mass of its own.
-    Link(Box<LinkResponse>),
-}
-
-/// A rigid body of an island: free (dynamic), prescribed (fixed and kinematic), or a link of a multibody.
+/// A rigid body of an island: free (dynamic) or prescribed (fixed and kinematic).
 #[derive(Clone, Debug)]
 pub struct RigidBlock {
-    kind: Kind,
+    /// Whether its motion is given, and it answers nothing.
+    is_prescribed: bool,
     pub(super) start: RigidMotion,
     pub(super) current: RigidMotion,
     free: RigidMotion,
@@ -54,7 +42,7 @@ impl RigidBlock {
     /// A body whose motion over the step is given.
     pub fn prescribed(start: RigidMotion, end: RigidMotion) -> Self {
         Self {
-            kind: Kind::Prescribed,
+            is_prescribed: true,
             start,
             current: start,
             free: end,
@@ -120,7 +108,7 @@ impl RigidBlock {
             .inverse_mass
             .map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 });
         Self {
-            kind: Kind::Free,
+            is_prescribed: false,
             start,
             current: start,
             free,
@@ -138,21 +126,6 @@ impl RigidBlock {
             untwisted: [0.0; 2],
             damped_velocity: v,
         }
-    }
-
-    /// A link of a multibody. It keeps its velocity and gives way to nothing until [`RigidBlock::set_link_response`] tells it more.
-    pub fn link(start: RigidMotion, weights: Weights, dt: f64) -> Self {
-        Self {
-            kind: Kind::Link(Box::default()),
-            weights,
-            dt,
-            ..Self::prescribed(start, start)
-        }
-    }
-
-    /// Whether its energy is not that of the island: its motion is given, or another solver's joints drive it.
-    pub fn is_driven(&self) -> bool {
-        !matches!(self.kind, Kind::Free)
     }
 
     /// Motion at the beginning of the step.
@@ -192,7 +165,7 @@ impl RigidBlock {
 
     /// Whether the motion is given.
     pub fn is_prescribed(&self) -> bool {
-        matches!(self.kind, Kind::Prescribed)
+        self.is_prescribed
     }
 
     /// Mass in x, y and inertia (kg, kg, kg m²); zero along locked axes and for prescribed bodies.
@@ -216,22 +189,6 @@ impl RigidBlock {
         Vec2::new(self.smooth_end[0], self.smooth_end[1]) + self.smooth_end[2] * perp(lever)
     }
 
-    /// Adds a change that comes from elsewhere: of acceleration (m/s², rad/s²), of velocity, or of position over the multiplier's weight.
-    pub(super) fn add_change(&mut self, of: Response, change: [f64; 3]) {
-        let [x, y, turn] = change;
-        match of {
-            Response::Position => self
-                .current
-                .shift(change.map(|part| self.position_weight() * part)),
-            Response::Velocity | Response::ByMass => self.add_velocity(Vec2::new(x, y), turn),
-            Response::Acceleration => {
-                for (sum, change) in self.smooth_end.iter_mut().zip(change) {
-                    *sum += change;
-                }
-            }
-        }
-    }
-
     /// What a multiplier is weighed with in positions (s²). With β0 = 0 it is an impulse at the forward increment.
     fn position_weight(&self) -> f64 {
         match self.weights.b0 > 0.0 {
@@ -243,10 +200,7 @@ impl RigidBlock {
     /// Moves the iterate away from the free motion by what a wrench does.
     pub fn set_position_increment(&mut self, wrench: [f64; 3]) {
         let b0 = self.position_weight();
-        let moved: [f64; 3] = match self.link_response() {
-            None => std::array::from_fn(|i| b0 * self.inverse_effective[i] * wrench[i]),
-            Some(link) => link.answer(wrench, Response::Position).map(|way| b0 * way),
-        };
+        let moved = self.answer(wrench).map(|way| b0 * way);
         self.current = self.free;
         self.current.shift(moved);
     }
@@ -278,20 +232,11 @@ impl RigidBlock {
         self.current.centre - self.start.centre + turned * perp(lever)
     }
 
-    /// What soft forces are weighed with in velocities (s) and in accelerations (-).
-    pub(super) fn soft_weights(&self) -> [f64; 2] {
-        let lasts = self.weights != Weights::within(self.dt);
-        [self.weights.b1, if lasts { 1.0 } else { 0.0 }]
-    }
-
     /// Sets velocity and smooth acceleration for the part of the contact forces that acts as (C.5) says.
     pub fn set_soft_force(&mut self, wrench: [f64; 3]) {
         let change = self.answer(wrench);
         let b1 = self.weights.b1;
         let lasts = self.weights != Weights::within(self.dt);
-        if let Kind::Link(link) = &mut self.kind {
-            link.begin(wrench, b1, lasts);
-        }
         self.current.velocity = self.free.velocity + b1 * Vec2::new(change[0], change[1]);
         self.current.spin = self.free.spin + b1 * change[2];
         if lasts {
@@ -304,7 +249,7 @@ impl RigidBlock {
 
     /// Lets damping act on the end velocity as it has become, instead of what it would have been without joints.
     pub fn settle_damping(&mut self) {
-        if self.is_driven() || self.inverse_effective == self.inverse_mass {
+        if self.is_prescribed() || self.inverse_effective == self.inverse_mass {
             return;
         }
         for (i, end) in self.rates().into_iter().enumerate() {
@@ -339,17 +284,11 @@ impl RigidBlock {
     pub fn add_impulse(&mut self, impulse: [f64; 3]) {
         let [x, y, turn] = self.answer(impulse);
         self.add_velocity(Vec2::new(x, y), turn);
-        if let Kind::Link(link) = &mut self.kind {
-            link.add_impulse(impulse);
-        }
     }
 
     /// Adds to the smooth end acceleration the response to a wrench.
     pub fn add_smooth_acceleration(&mut self, wrench: [f64; 3]) {
         let change = self.answer(wrench);
-        if let Kind::Link(link) = &mut self.kind {
-            link.add_lasting(wrench);
-        }
         for (sum, change) in self.smooth_end.iter_mut().zip(change) {
             *sum += change;
         }

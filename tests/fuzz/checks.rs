@@ -91,6 +91,7 @@ impl Play {
         for joint in report.joints() {
             let lives = match joint.joint {
                 Held::Joint(handle) => scene.world.impulse_joints.contains(handle),
+                Held::MultibodyJoint(handle) => scene.world.multibody_joints.get(handle).is_some(),
                 Held::Attachment(handle) => scene.bodies.attachment(handle).is_ok(),
             };
             let numbers = [joint.force[0], joint.force[1], joint.torque];

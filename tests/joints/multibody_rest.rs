@@ -1,5 +1,5 @@
 //! Flexible bodies that lie on links of multibodies: forces at rest, light links under heavy bodies, and the motion of the same thing
-//! built of impulse joints, which is solved in one system.
+//! built of impulse joints.
 
 use crate::common::*;
 
@@ -27,7 +27,8 @@ fn table(
     let (multibody, id) = joints.get_mut(handle).expect("it is there");
     let link = multibody.link_mut(id).expect("it is there");
     link.joint.set_spring(0, real(stiffness), 0.0);
-    multibody.damping_mut()[0] = real((stiffness * mass).sqrt());
+    let rail = link.assembly_id();
+    multibody.damping_mut()[rail] = real((stiffness * mass).sqrt());
     top
 }
 
@@ -51,7 +52,6 @@ fn height(scene: &Scene, body: RigidBodyHandle) -> f64 {
 
 #[test]
 fn a_block_set_on_a_table_rests_with_its_weight_whatever_weighs_more() {
-    // No added-mass instability: what resists at once, springs included, is in the inverse mass that the contact sees.
     for (ours, theirs) in [(100.0, 1.0), (1.0, 1.0), (1.0, 100.0)] {
         for (spring, stiffness) in [(1e5, 1e6), (1e5, 1e8), (1e7, 1e6)] {
             let mut scene = Scene::new(1.0 / 60.0);
@@ -116,7 +116,6 @@ fn bars_on_the_ground(scene: &mut Scene) -> [RigidBodyHandle; 2] {
 
 #[test]
 fn a_block_lies_still_across_two_links_that_rapier_keeps_on_the_ground() {
-    // The links answer as what lies on the ground, which rapier alone knows: neither do they give way, nor does friction push.
     for rate in [60.0, 240.0] {
         let mut scene = Scene::new(1.0 / rate);
         bars_on_the_ground(&mut scene);
@@ -176,14 +175,12 @@ fn fallen(rate: f64, mass: f64, is_pinned: bool, is_link: bool) -> f64 {
 
 #[test]
 fn a_link_falls_with_a_block_as_the_same_body_on_an_impulse_joint() {
-    // One is staggered and moved by rapier's substeps, the other solved in one system: they differ by the first order.
     for (mass, is_pinned) in [(0.9, false), (90.0, false), (0.9, true), (90.0, true)] {
         for rate in [120.0, 240.0, 480.0, 960.0] {
             let [ours, theirs] = [true, false].map(|link| fallen(rate, mass, is_pinned, link));
             let error = (ours - theirs).abs();
-            // Of 0.7 and 1.4 rad; measured 4.5e-3 and below at 120 Hz.
             assert!(
-                error < 0.8 / rate,
+                error < by_precision(1e-6, 1e-10),
                 "{mass} kg, pinned: {is_pinned}, {rate} Hz: {error} rad"
             );
         }
@@ -208,18 +205,14 @@ fn miss(rate: f64, mass: f64) -> f64 {
 }
 
 #[test]
-fn what_touches_a_link_keeps_touching_it_to_the_second_order() {
-    // Rapier moves the link after the contact was solved, and may miss what was foreseen by a share of `a dt²`; nothing adds up. At
-    // 480 Hz it is 1/8 of the fall in a step, 2e-5 m, and rounding.
+fn what_lies_on_a_link_keeps_touching_it() {
     for mass in [0.5, 4.0, 50.0] {
-        let rates = [120.0, 240.0, 480.0];
-        let misses = rates.map(|rate| miss(rate, mass));
-        let order = order(&rates.map(|rate| 1.0 / rate), &misses);
-        assert!(
-            misses[2] < 2.0 * G / (480.0 * 480.0),
-            "{mass} kg: {misses:?} m"
-        );
-        assert!(order > 1.7, "{mass} kg: order {order}");
+        for rate in [120.0, 240.0, 480.0] {
+            let missed = miss(rate, mass);
+            // To rapier's rounding of both places.
+            let rounding = by_precision(5e-7, 1e-9);
+            assert!(missed < rounding, "{mass} kg at {rate} Hz: {missed} m");
+        }
     }
 }
 
@@ -270,7 +263,6 @@ fn chain_on_the_ground(scene: &mut Scene) {
 
 #[test]
 fn a_plank_is_carried_by_eight_links_at_once() {
-    // Each answers with eight times its inverse mass until forces last; then they carry what there is to carry.
     let mut scene = Scene::new(1.0 / 60.0);
     chain_on_the_ground(&mut scene);
     let plank = scene.flexible(
@@ -288,13 +280,11 @@ fn a_plank_is_carried_by_eight_links_at_once() {
     let carried = body.total_contact_force()[1] / (G * body.mass());
     assert!((carried - 1.0).abs() < 1e-3, "{carried} of the weight");
     let [x, y] = body.linvel();
-    // Measured 2e-7 m/s; links themselves keep 2e-5 m/s in rapier.
     assert!(x.hypot(y) < 1e-5, "{x} {y} m/s");
 }
 
 #[test]
 fn a_table_held_by_a_motor_or_lying_on_its_stop_carries_a_block() {
-    // What resists at once is foreseen: without it the block would sink into what gives no way.
     for (name, mass) in [
         ("motor", 1.0),
         ("motor", 50.0),
@@ -358,8 +348,7 @@ fn squeezed(is_one_hand: bool) -> (Scene, FlexBodyHandle) {
 
 #[test]
 fn fingers_of_one_fixed_hand_press_as_if_each_had_a_hand_of_its_own() {
-    // What is fixed hands nothing on, so neither answers with the other's share: they would meet the block as half of what they weigh,
-    // overlap it by centimetres at 6 m/s, and pass each other. Here both are the same sums.
+    // What is fixed hands nothing on.
     let (mut one, in_one) = squeezed(true);
     let (mut two, in_two) = squeezed(false);
     for step in 0..180 {
@@ -376,8 +365,6 @@ fn fingers_of_one_fixed_hand_press_as_if_each_had_a_hand_of_its_own() {
 
 #[test]
 fn what_lies_on_a_link_of_negative_dominance_or_with_locked_axes_lies_still() {
-    // Rapier's multibodies weigh what a body's own locks leave, and all of it whatever its dominance: a link foreseen with another weight
-    // gives the block on it a velocity, though both rest.
     let changes: [fn(&mut RigidBody); 3] = [
         |link| link.set_dominance_group(-1),
         |link| link.set_locked_axes(LockedAxes::TRANSLATION_LOCKED, true),
@@ -392,7 +379,6 @@ fn what_lies_on_a_link_of_negative_dominance_or_with_locked_axes_lies_still() {
         let body = scene.body(block);
         let carried = body.total_contact_force()[1] / (G * body.mass());
         assert!((carried - 1.0).abs() < 1e-4, "{case}: {carried}");
-        // 1.2e-2 m/s of a link that is foreseen to rise.
         let [x, y] = body.linvel();
         assert!(x.hypot(y) < 1e-5, "{case}: {x} {y} m/s");
     }

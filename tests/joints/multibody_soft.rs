@@ -1,4 +1,4 @@
-//! Links of one multibody that press flexible bodies together, or carry one: they answer as one body, as rapier will move them.
+//! Links of one multibody that press flexible bodies together, or carry one.
 
 use crate::common::*;
 

@@ -77,7 +77,6 @@ fn a_run_by_constraint_functions_restored_after_every_step_never_differs() {
     step_by_step(run, 100);
 }
 
-/// Links of a multibody are given in the next step what the forces of this one have left.
 #[test]
 fn a_run_on_links_of_a_multibody_restored_after_every_step_never_differs() {
     let mut run = Run::new();

@@ -69,6 +69,16 @@ impl Pose2 {
         )
     }
 
+    /// What `local` is in the coordinates of this pose, in the world.
+    #[inline]
+    pub fn place(&self, local: &Self) -> Self {
+        Self {
+            translation: self.transform(local.translation),
+            cos: self.cos * local.cos - self.sin * local.sin,
+            sin: self.sin * local.cos + self.cos * local.sin,
+        }
+    }
+
     /// This pose as seen from `base`: maps local points of `self` to local points of `base`.
     #[inline]
     pub fn relative_to(&self, base: &Self) -> Self {

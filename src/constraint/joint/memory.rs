@@ -11,6 +11,8 @@ use crate::math::HashMap;
 pub enum JointOwner {
     /// An impulse joint of rapier, by index and generation.
     Impulse(u32, u32),
+    /// A joint of a multibody, by index and generation of the body that it leads to.
+    Multibody(u32, u32),
     /// An attachment of a flexible body, by index and generation.
     Attachment(u32, u32),
 }

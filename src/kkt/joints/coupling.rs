@@ -7,7 +7,7 @@ use crate::constraint::joint::{JointGrip, unit_wrench};
 use crate::kkt::problem::RowProblem;
 use crate::kkt::settings::SolveSettings;
 use crate::linalg::complementarity::INDEPENDENT;
-use crate::math::{Vec2, cross};
+use crate::math::Vec2;
 use crate::system::{Block, Response};
 
 /// What a row holds on to, its direction, and whether that is an axis of turning.
@@ -182,32 +182,6 @@ impl Joints {
             }
             first = last;
         }
-        self.couple_across(problem, blocks, (of, which));
-    }
-
-    /// Joint rows that hold different links of one multibody.
-    fn couple_across(
-        &self,
-        problem: &mut RowProblem,
-        blocks: &[Block],
-        (of, which): (Response, Rows),
-    ) {
-        if !blocks.iter().any(Block::answers_with_others) {
-            return;
-        }
-        let n = problem.rows.len() + self.listed.len();
-        for i in 0..self.holders.len() {
-            for j in 0..self.holders.len() {
-                let ((block, one), (other, source)) = (self.holders[i], self.holders[j]);
-                let (at, from) = (self.slots[one], self.slots[source]);
-                if block == other || at == usize::MAX || from == usize::MAX {
-                    continue;
-                }
-                let (own, others) = (self.grips_of(one, which), self.grips_of(source, which));
-                problem.delassus[at * n + from] +=
-                    mobility_across(blocks, (block, own), (other, others), of);
-            }
-        }
     }
 
     /// Joint rows with the rows of contacts.
@@ -296,27 +270,6 @@ impl Joints {
     }
 }
 
-/// What of the mobility between two rows goes from one link of a multibody to another (1/kg).
-fn mobility_across(
-    blocks: &[Block],
-    (block, (grips, along, turns)): (usize, Side<'_>),
-    (other, (sources, push, is_turned)): (usize, Side<'_>),
-    of: Response,
-) -> f64 {
-    let mut sum = 0.0;
-    for at in grips.iter().filter(|grip| grip.block == block) {
-        for from in sources.iter().filter(|grip| grip.block == other) {
-            let wrenches = [
-                unit_wrench(at, along, turns),
-                unit_wrench(from, push, is_turned),
-            ];
-            let moved = blocks[block].mobility_across(wrenches[0], (other, wrenches[1]), of);
-            sum += moved.unwrap_or(0.0);
-        }
-    }
-    sum
-}
-
 /// Mobility between two rows through one block (1/kg).
 fn mobility_on(
     blocks: &[Block],
@@ -341,24 +294,12 @@ fn carried(
     of: Response,
 ) -> Vec2 {
     let mut sum = Vec2::zeros();
-    for a in kinematics.attachments().iter().filter(|a| a.block != block) {
-        for from in grips.iter().filter(|grip| grip.block == block) {
-            let pushed = unit_wrench(from, push, is_turn);
-            let along = |axis: Vec2| {
-                let own = [axis.x, axis.y, cross(a.grip.lever, axis)];
-                blocks[a.block].mobility_across(own, (block, pushed), of)
-            };
-            if let (Some(x), Some(y)) = (along(Vec2::x()), along(Vec2::y())) {
-                sum += a.weight * Vec2::new(x, y);
-            }
-        }
-    }
     for a in kinematics.attachments().iter().filter(|a| a.block == block) {
         for from in grips.iter().filter(|grip| grip.block == block) {
             sum += a.weight
                 * match &blocks[block] {
                     Block::Rigid(rigid) => {
-                        rigid.respond(a.grip.lever, unit_wrench(from, push, is_turn), of)
+                        rigid.respond(a.grip.lever, unit_wrench(from, push, is_turn))
                     }
                     Block::Flex(_) => {
                         let compliance = blocks[block].compliance(a.grip, from.grip(), of);

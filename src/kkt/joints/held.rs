@@ -11,7 +11,7 @@ use super::ActiveJoint;
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, JointLaw, unit_wrench};
 use crate::math::{Vec2, cross, rounding};
-use crate::system::{Block, Response};
+use crate::system::Block;
 
 /// Share of its own mobility below which a row is held by others already (-): exact rows leave rounding, and what moves at all moves by levers
 /// of the size of the bodies.
@@ -41,9 +41,6 @@ impl JointHold<'_> {
             let Block::Rigid(block) = &self.blocks[a.block] else {
                 return false;
             };
-            if block.link_response().is_some() {
-                return false;
-            }
             if block.is_prescribed() {
                 continue;
             }
@@ -139,9 +136,7 @@ impl JointHold<'_> {
         let moved = bodies.iter().zip(one.iter().zip(other));
         let terms = moved.map(
             |(body, (one, other))| match body.map(|at| &self.blocks[at]) {
-                Some(Block::Rigid(block)) => {
-                    block.mobility_between(*one, *other, Response::Velocity)
-                }
+                Some(Block::Rigid(block)) => block.mobility_between(*one, *other),
                 _ => 0.0,
             },
         );

@@ -342,7 +342,7 @@ fn total_acceleration(block: &Block, grip: &JointGrip, wrenches: &[[f64; 3]]) ->
     let centripetal = -block.spin() * block.spin() * grip.lever;
     match block {
         Block::Rigid(rigid) => {
-            let (under, turn) = block.acceleration_under(wrenches, grip.block);
+            let (under, turn) = block.acceleration_under(wrenches[grip.block]);
             let [x, y, own] = rigid.smooth_end;
             [
                 x + under.x + centripetal.x,

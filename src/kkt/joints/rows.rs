@@ -381,7 +381,6 @@ pub(super) fn pair_mobility(
         Block::Rigid(block) => block.mobility_between(
             unit_wrench(at, along, turns),
             unit_wrench(from, push, is_turned),
-            of,
         ),
         Block::Flex(_) => {
             let compliance = blocks[at.block].compliance(at.grip(), from.grip(), of);

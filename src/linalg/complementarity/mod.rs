@@ -48,7 +48,7 @@ mod status;
 pub use problem::{ComplementarityError, Problem, RowKind, Status};
 pub use residual::natural_map_residual;
 
-pub(crate) use dense::{factorize_cholesky, solve_cholesky_in_place, solve_lu_in_place};
+pub(crate) use dense::solve_lu_in_place;
 pub(crate) use give::{INDEPENDENT, give};
 
 use crate::math::rounding;

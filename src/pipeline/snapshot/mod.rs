@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Raised with every change of what is written, rapier's own structures included.
-const FORMAT: u32 = 16;
+const FORMAT: u32 = 17;
 
 /// Bits of rapier's numbers.
 const PRECISION: u8 = 8 * size_of::<Real>() as u8;

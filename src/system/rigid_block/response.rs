@@ -1,34 +1,22 @@
 //! What a rigid block answers to forces and impulses.
 
-use super::{Kind, RigidBlock};
+use super::RigidBlock;
 use crate::math::{Mat2, Vec2, perp};
-use crate::system::Response;
-use crate::system::link_response::LinkResponse;
-use crate::system::rigid_motion::RigidMotion;
 
 impl RigidBlock {
     /// What a wrench does, `A⁻¹ f` (m/s², rad/s²).
     #[inline]
     pub(in crate::system) fn answer(&self, wrench: [f64; 3]) -> [f64; 3] {
-        match self.link_response() {
-            None => std::array::from_fn(|i| self.inverse_effective[i] * wrench[i]),
-            Some(link) => link.answer(wrench, Response::Velocity),
-        }
+        std::array::from_fn(|i| self.inverse_effective[i] * wrench[i])
     }
 
     /// See [`crate::system::Block::compliance`], for two levers.
-    pub fn compliance(&self, at: Vec2, from: Vec2, of: Response) -> Mat2 {
-        match self.link_response() {
-            None => mobility(&self.inverse_effective, at, from),
-            Some(link) => link.compliance(at, from, of),
-        }
+    pub fn compliance(&self, at: Vec2, from: Vec2) -> Mat2 {
+        mobility(&self.inverse_effective, at, from)
     }
 
     /// How the unit wrench `at` moves along under the unit wrench `from`, `G A⁻¹ Gᵀ` (1/kg).
-    pub fn mobility_between(&self, at: [f64; 3], from: [f64; 3], of: Response) -> f64 {
-        if let Some(link) = self.link_response() {
-            return link.mobility_between(at, from, of);
-        }
+    pub fn mobility_between(&self, at: [f64; 3], from: [f64; 3]) -> f64 {
         let terms = at.iter().zip(from).zip(&self.inverse_effective);
         terms.map(|((at, from), inverse)| at * inverse * from).sum()
     }
@@ -70,43 +58,14 @@ impl RigidBlock {
     }
 
     /// Acceleration at the end of a lever under a wrench (m/s²).
-    pub fn respond(&self, lever: Vec2, wrench: [f64; 3], of: Response) -> Vec2 {
-        let [x, y, turn] = match self.link_response() {
-            Some(link) => link.answer(wrench, of),
-            None => self.answer(wrench),
-        };
+    pub fn respond(&self, lever: Vec2, wrench: [f64; 3]) -> Vec2 {
+        let [x, y, turn] = self.answer(wrench);
         Vec2::new(x, y) + turn * perp(lever)
     }
 
     /// Mobility of the body as if it were alone, `n·M⁻¹·n` at a lever (1/kg).
     pub fn rigid_mobility(&self, lever: Vec2, direction: Vec2) -> f64 {
-        if let Some(link) = self.link_response() {
-            let between = link.compliance(lever, lever, Response::Velocity);
-            return direction.dot(&(between * direction));
-        }
         direction.dot(&(mobility(&self.inverse_mass, lever, lever) * direction))
-    }
-
-    /// Tells a link where it goes without forces of this step, its acceleration meanwhile, and how it answers forces.
-    pub fn set_link_response(
-        &mut self,
-        free: RigidMotion,
-        acceleration: [f64; 3],
-        response: LinkResponse,
-    ) {
-        self.free = free;
-        self.smooth_start = acceleration;
-        self.smooth_end = acceleration;
-        self.smooth_free = acceleration;
-        self.kind = Kind::Link(Box::new(response));
-    }
-
-    /// How a link answers and what it has been given, if this is one.
-    pub fn link_response(&self) -> Option<&LinkResponse> {
-        match &self.kind {
-            Kind::Link(link) => Some(link),
-            Kind::Free | Kind::Prescribed => None,
-        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Taking a rigid block back within its step, and ending the step elsewhere than forces lead.
 
-use super::{Kind, RigidBlock};
+use super::RigidBlock;
 use crate::math::Vec2;
 use crate::system::{RigidMotion, RigidWay};
 
@@ -57,9 +57,6 @@ impl RigidBlock {
             };
             self.free = self.current;
             self.smooth_end = [0.0; 3];
-            if let Kind::Link(link) = &mut self.kind {
-                link.take_back();
-            }
         }
     }
 }
