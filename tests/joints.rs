@@ -60,6 +60,9 @@ mod welded_twice;
 #[path = "joints/touching.rs"]
 mod touching;
 
+#[path = "joints/light_hub.rs"]
+mod light_hub;
+
 #[path = "joints/stiff_chain.rs"]
 mod stiff_chain;
 

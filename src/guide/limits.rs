@@ -97,8 +97,8 @@
 //! - **Round and hinged where they touch.** A ball or capsule hinged to a neighbour at the very point where the two touch cannot turn without going into it, so hinge and contact push against each other with forces of any size. See: a gain of some hundredths
 //!   of the energy, more than a fifth in 14 of 660 random scenes; [`Quality::Cut`](crate::pipeline::Quality::Cut). Do: say `contacts_enabled(false)`, or leave half a millimetre between them.
 //! - **Taut chains** sag by a hundredth of their length where they would have to be straight. See: [`StepReport::joint_violation`].
-//! - **Light hubs.** A spring or position motor is resolved by the mass of the body that it is at, not of what is welded to that: one of 1,000 N/m at 1/60 s that moves 10 kg is damped away within seconds if its own body has less than 0.07 kg. Do: give
-//!   the hub more mass, or shorten the step.
+//! - **Light hubs.** A spring or position motor at a rigid body that carries flexible bodies of small strain alone is resolved by the mass of the rigid body, not of what is welded to that: one of 1,000 N/m at 1/60 s that moves 10 kg is damped away within
+//!   seconds if its own body has less than 0.07 kg. Do: take large strain, which swings, give the hub more mass, or shorten the step.
 //! - **Sleep.** Attached bodies do not sleep.
 //! - **Carriers.** A joint to the rigid body that carries a flexible one is refused ([`StepError::CarrierJoint`](crate::pipeline::StepError::CarrierJoint)). Do: attach nodes, [`FlexBodySet::attach`](crate::body::FlexBodySet::attach).
 //!

@@ -42,11 +42,11 @@ pub(in crate::kkt) fn put_apart(length_unit: f64) -> f64 {
     RESTING * length_unit
 }
 
-/// The law of a row that measures `start` when the step begins, and has this mobility.
+/// The law of a row that measures `start` when the step begins, has this mobility, and this one with what is attached to its bodies.
 pub(super) fn resolve(
     row: &JointRow,
     is_hard: bool,
-    (start, mobility): (f64, f64),
+    (start, mobility, swinging): (f64, f64, f64),
     settings: &SolveSettings,
 ) -> Resolved {
     // A force over the step, λ, is `scale` times the multiplier.
@@ -101,7 +101,7 @@ pub(super) fn resolve(
             resolve_spring(
                 spring,
                 (is_hard, is_mean),
-                (start, mobility, scale),
+                (start, swinging, scale),
                 settings.dt,
             )
         }

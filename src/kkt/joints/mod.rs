@@ -7,6 +7,7 @@ mod active;
 mod coupling;
 mod held;
 mod joined;
+mod laden;
 mod law;
 mod rates;
 mod rows;
@@ -18,6 +19,7 @@ pub(super) use self::law::{Finish, put_apart};
 pub(super) use self::rows::add_wrench;
 
 use self::joined::Joined;
+use self::laden::Laden;
 use self::twist::Twists;
 use super::active_contact::ActiveContact;
 use crate::constraint::joint::{JointGrip, JointRow, When};
@@ -44,6 +46,7 @@ pub struct Joints {
     answer: Vec<f64>,
     twists: Twists,
     joined: Joined,
+    laden: Laden,
     /// Where in the step the forces of soft rows act.
     acting: When,
 }
