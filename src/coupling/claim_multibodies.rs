@@ -4,7 +4,7 @@ use super::filter::is_movable;
 use super::members::Members;
 use super::multibody::free_axes;
 use super::sets::RapierSets;
-use crate::math::HashMap;
+use crate::math::{HashMap, HashSet};
 use crate::rapier::prelude::*;
 
 /// The multibodies of claimed links.
@@ -12,6 +12,7 @@ use crate::rapier::prelude::*;
 pub(super) struct ClaimedMultibodies {
     /// In the order they were reached.
     taken: Vec<MultibodyIndex>,
+    known: HashSet<MultibodyIndex>,
     /// What all motion that a coordinate makes weighs, of those with motors that count in it (kg or kg m²).
     weights: HashMap<MultibodyIndex, Vec<f64>>,
 }
@@ -20,6 +21,7 @@ impl ClaimedMultibodies {
     /// Begins with none.
     pub fn clear(&mut self) {
         self.taken.clear();
+        self.known.clear();
         self.weights.clear();
     }
 
@@ -37,7 +39,7 @@ impl ClaimedMultibodies {
         let Some(multibody) = joints.get_multibody(index) else {
             return;
         };
-        if self.taken.contains(&index) {
+        if !self.known.insert(index) {
             return;
         }
         self.taken.push(index);

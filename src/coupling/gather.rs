@@ -6,10 +6,12 @@ use super::gather_pairs::PairGatherer;
 use super::gather_settings::GatherSettings;
 use super::masters::{Masters, cap_speed};
 use super::memory::Memory;
-use super::multibody::{link_of, load_of_link};
+use super::multibody::link_of;
 use super::placed::Placed;
 use super::pool::FlexPool;
-use super::reading::{GatherError, is_representable_load, is_representable_motion, load_of};
+use super::reading::{
+    GatherError, is_representable_load, is_representable_motion, load_of, load_of_link,
+};
 use super::rigid_pairs::Agitation;
 use super::seats::{OpenIsland, Seats};
 use super::sets::RapierSets;
@@ -169,10 +171,9 @@ fn claimed_block(
         return Ok(None);
     };
     let link = link_of(handle, sets.multibody_joints);
-    let gravity = from_rapier(sets.gravity);
     let load = match link {
-        Some(link) => load_of_link(link, body, gravity),
-        None => load_of(body, gravity),
+        Some(link) => load_of_link(link, body, sets),
+        None => load_of(body, from_rapier(sets.gravity)),
     };
     let step = &sources.settings.step;
     let (mut motion, acceleration) = match sources.under_way.rigid(handle) {

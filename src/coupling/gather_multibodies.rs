@@ -5,7 +5,6 @@
 
 use super::claim::Claims;
 use super::claim_multibodies::ClaimedMultibodies;
-use super::gather_settings::GatherSettings;
 use super::joints::{RowWriter, Side, is_representable_joint, slot};
 use super::multibody::{ANGULAR, free_axes};
 use super::reading::GatherError;
@@ -32,6 +31,12 @@ pub(super) fn add_multibodies(
         let Some(multibody) = sets.multibody_joints.get_multibody(index) else {
             continue;
         };
+        // All links that move are solved together.
+        let mut links = multibody.links().map(MultibodyLink::rigid_body_handle);
+        let component = links.find_map(|link| claims.component_of_rigid(link));
+        if component != Some(open.settings.component) {
+            continue;
+        }
         let mut gatherer = MultibodyGatherer {
             index,
             multibody,
@@ -39,19 +44,10 @@ pub(super) fn add_multibodies(
             memory,
             open: &mut *open,
         };
-        let holds = |bodies: [RigidBodyHandle; 2], settings: &GatherSettings| {
-            let mut components = bodies
-                .iter()
-                .filter_map(|&body| claims.component_of_rigid(body));
-            components.next() == Some(settings.component)
-        };
         for link in multibody.links() {
             let parent = link.parent_id().and_then(|parent| multibody.link(parent));
-            let Some(parent) = parent else {
-                continue;
-            };
-            let bodies = [parent, link].map(MultibodyLink::rigid_body_handle);
-            if holds(bodies, gatherer.open.settings) {
+            if let Some(parent) = parent {
+                let bodies = [parent, link].map(MultibodyLink::rigid_body_handle);
                 gatherer.add_joint(link, bodies)?;
                 gatherer.add_couplings_of(link)?;
             }

@@ -8,7 +8,7 @@ use super::multibody::{ANGULAR, free_axes};
 use super::placed::pose_after;
 use super::sets::RapierSets;
 use super::shapes::pose_of;
-use crate::math::{HashMap, Vec2, atan2, from_rapier, perp, wrap_angle};
+use crate::math::{HashMap, HashSet, Vec2, atan2, from_rapier, perp, wrap_angle};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use crate::system::RigidMotion;
@@ -50,14 +50,13 @@ impl LentMultibodies {
             .filter(|landing| joints.rigid_body_link(landing.handle).is_some())
             .map(|landing| (landing.handle, landing.motion))
             .collect();
+        let mut known = HashSet::default();
         for landing in landings {
             let link = sets.multibody_joints.rigid_body_link(landing.handle);
-            let Some(index) = link.map(|link| link.multibody) else {
+            let index = link.map(|link| link.multibody);
+            let Some(index) = index.filter(|index| known.insert(*index)) else {
                 continue;
             };
-            if self.all.iter().any(|lent| lent.index == index) {
-                continue;
-            }
             if let Some(multibody) = sets.multibody_joints.get_multibody_mut_internal(index) {
                 // As rapier does when its step begins: then the coordinates are those it will have.
                 multibody.forward_kinematics(sets.bodies, true);

@@ -1,6 +1,8 @@
 //! Reading rapier: loads, prescribed motions and contact laws of rigid bodies, refused if they are not finite.
 
+use super::multibody::{ANGULAR, free_axes};
 use super::placed::{local_centre, read_motion};
+use super::sets::RapierSets;
 use super::shapes::{ShapeFault, pose_of};
 use super::under_way::Span;
 use crate::body::FlexBodyHandle;
@@ -131,6 +133,55 @@ pub(super) fn load_of(body: &RigidBody, gravity: Vec2) -> RigidLoad {
         inverse_mass: inverse_mass.map(|inverse| inverse / scale),
         force: [force.x, force.y, f64::from(body.user_torque())].map(|force| scale * force),
         damping: [linear, linear, angular],
+    }
+}
+
+/// Mass and inertia of a body, whatever is locked (kg, kg m²).
+fn weight_of(body: &RigidBody) -> [f64; 2] {
+    let inertia = body.mass_properties().local_mprops.principal_inertia();
+    [f64::from(body.mass()), f64::from(inertia)]
+}
+
+/// Mass, forces and damping of a link. Rapier's multibodies know nothing of dominance and of the body's own damping, and what a body's locks hold weighs
+/// nothing in them, which nothing can be solved with: it weighs what it does. What weighs nothing at all, as links between two rails do, weighs a
+/// [millionth](DOMINATED) of the multibody, and is not pulled by gravity.
+///
+/// The root's coordinates are those of the body: what damps them and adds to their inertia is the body's. So is what adds to the inertia of a joint,
+/// which is what its link weighs more where its parent stands still.
+pub(super) fn load_of_link(
+    (multibody, id): (&Multibody, usize),
+    body: &RigidBody,
+    sets: &RapierSets<'_>,
+) -> RigidLoad {
+    let [mass, inertia] = weight_of(body);
+    let gravity = mass * f64::from(body.gravity_scale()) * from_rapier(sets.gravity);
+    let force = from_rapier(body.user_force()) + gravity;
+    let mut weights = [mass, mass, inertia];
+    if mass <= 0.0 || inertia <= 0.0 {
+        let links = multibody.links().map(MultibodyLink::rigid_body_handle);
+        let all = links
+            .filter_map(|link| sets.bodies.get(link))
+            .map(weight_of);
+        let sum = all.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
+        let least = [sum[0], sum[0], sum[1]].map(|sum| DOMINATED.get() * sum);
+        weights = std::array::from_fn(|axis| f64::max(weights[axis], least[axis]));
+    }
+    let mut damping = [0.0; 3];
+    if let Some(link) = multibody.link(id) {
+        for (axis, place) in free_axes(link) {
+            let more = f64::from(multibody.armature()[place]);
+            let along = if axis == ANGULAR { ANGULAR..3 } else { 0..2 };
+            weights[along].iter_mut().for_each(|weight| *weight += more);
+            if link.is_root() {
+                damping[axis] = f64::from(multibody.damping()[place]);
+            }
+        }
+    }
+    let inverse_mass = weights.map(|weight| if weight > 0.0 { 1.0 / weight } else { 0.0 });
+    RigidLoad {
+        inverse_mass,
+        force: [force.x, force.y, f64::from(body.user_torque())],
+        damping: std::array::from_fn(|axis| damping[axis] * inverse_mass[axis]),
     }
 }
 

@@ -283,6 +283,40 @@ fn what_only_multibodies_have_acts_as_in_rapier_alone() {
     }
 }
 
+#[test]
+fn a_link_that_weighs_nothing_hands_on_what_it_is_given() {
+    // Two rails across each other, of which a link without collider is the first.
+    let make = |scene: &mut Scene| {
+        let base = scene.world.insert_body(RigidBodyBuilder::fixed());
+        let between = RigidBodyBuilder::dynamic().can_sleep(false);
+        let between = scene.world.insert_body(between);
+        let link = bar(scene, [[-0.2, 0.0], [0.2, 0.0]], 2.0);
+        join(
+            scene,
+            [base, between],
+            PrismaticJointBuilder::new(vec2(1.0, 0.0)),
+            true,
+        );
+        join(
+            scene,
+            [between, link],
+            PrismaticJointBuilder::new(vec2(0.0, 1.0)),
+            true,
+        );
+        scene.world.bodies[link].add_force(vec2(3.0, 2.0), true);
+        link
+    };
+    let mut scene = Scene::new(1.0 / 240.0);
+    let link = make(&mut scene);
+    pad_on(&mut scene, link, 2.0);
+    scene.steps(120);
+    let at = scene.world.bodies[link].translation();
+    let [x, y] = [f64::from(at.x), f64::from(at.y)];
+    let falls = 0.125 * (2.0 / 4.0 - G);
+    assert!((x / (0.125 * 3.0 / 4.0) - 1.0).abs() < 1e-4, "{x} m");
+    assert!((y / falls - 1.0).abs() < 1e-4, "{y} of {falls} m");
+}
+
 /// A hand with two fingers on hinges, of which the second turns as the first is told to.
 fn hand(scene: &mut Scene) -> [RigidBodyHandle; 2] {
     let base = scene.world.insert_body(RigidBodyBuilder::fixed());
