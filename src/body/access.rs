@@ -1,6 +1,7 @@
 //! What a step takes from a body and leaves on it: its loads, its motion, put back if it is only tried, and notes.
 
 use super::flex_body::{FlexBody, sum_of_nodes};
+use super::kept_force::KeptForce;
 use super::state::FlexState;
 use super::stillness::{Rest, unbalance};
 use crate::math::Vec2;
@@ -15,6 +16,7 @@ pub(crate) struct KeptMotion {
     contact_force: Vec<f64>,
     reaction: Vec<f64>,
     energy_reserve: f64,
+    kept_forces: Vec<KeptForce>,
 }
 
 impl KeptMotion {
@@ -33,6 +35,7 @@ impl FlexBody {
             contact_force: self.contact_force.clone(),
             reaction: self.reaction.clone(),
             energy_reserve: self.energy_reserve,
+            kept_forces: self.kept_forces.clone(),
         }
     }
 
@@ -44,12 +47,14 @@ impl FlexBody {
             contact_force,
             reaction,
             energy_reserve,
+            kept_forces,
         } = kept;
         self.state = state;
         self.is_started = is_started;
         self.contact_force = contact_force;
         self.reaction = reaction;
         self.energy_reserve = energy_reserve;
+        self.kept_forces = kept_forces;
     }
 
     /// Whether no step has been taken with the body since it came into the world.
@@ -89,6 +94,18 @@ impl FlexBody {
 
     pub(crate) fn set_energy_reserve(&mut self, reserve: f64) {
         self.energy_reserve = reserve;
+    }
+
+    /// Contact forces on driven bodies that act on in the next step.
+    pub(crate) fn kept_forces(&self) -> &[KeptForce] {
+        &self.kept_forces
+    }
+
+    /// Keeps what a step has left on driven bodies of the forces of the body at this index, among those of others.
+    pub(crate) fn keep_forces(&mut self, index: u32, all: &[(u32, KeptForce)]) {
+        let own = all.iter().filter(|(flex, _)| *flex == index);
+        self.kept_forces.clear();
+        self.kept_forces.extend(own.map(|(_, kept)| *kept));
     }
 
     pub(crate) fn n_unfinished(&self) -> u32 {

@@ -2,6 +2,7 @@
 
 use super::contact_settings::ContactSettings;
 use super::frame::{Arms, Frame};
+use super::kept_force::KeptForce;
 use super::state::{BodyEnergy, FlexState};
 use super::stillness::Stillness;
 use crate::fe::finite_strain::FiniteStrainModel;
@@ -34,6 +35,7 @@ pub struct FlexBody {
     pub(super) contact_force: Vec<f64>,
     pub(super) reaction: Vec<f64>,
     pub(super) energy_reserve: f64,
+    pub(super) kept_forces: Vec<KeptForce>,
     /// Steps on end that were not finished.
     pub(super) n_unfinished: u32,
     pub(super) stillness: Stillness,
@@ -79,6 +81,7 @@ impl FlexBody {
             contact_force: zeros.clone(),
             reaction: zeros,
             energy_reserve: 0.0,
+            kept_forces: Vec::new(),
             n_unfinished: 0,
             stillness: Stillness::default(),
             frequency: OnceLock::new(),

@@ -19,6 +19,7 @@ mod error;
 mod flex_body;
 mod frame;
 mod handle;
+mod kept_force;
 mod materials;
 mod pin;
 mod placing;
@@ -45,6 +46,7 @@ pub use error::{BuildError, FlexBodyError};
 pub use flex_body::FlexBody;
 pub use frame::{Arms, Frame, frame_of};
 pub use handle::FlexBodyHandle;
+pub(crate) use kept_force::KeptForce;
 pub use pin::Pin;
 pub use pre_stretch::PreStretch;
 #[cfg(feature = "serde-serialize")]

@@ -5,6 +5,7 @@ use super::contact_settings::ContactSettings;
 use super::flex_body::FlexBody;
 use super::frame::{Arms, Frame, frame_of};
 use super::handle::FlexBodyHandle;
+use super::kept_force::KeptForce;
 use super::set::{FlexBodySet, Slot};
 use super::state::FlexState;
 use super::stillness::Stillness;
@@ -36,6 +37,7 @@ struct BodyRecord {
     contact_force: Vec<f64>,
     reaction: Vec<f64>,
     energy_reserve: f64,
+    kept_forces: Vec<KeptForce>,
     n_unfinished: u32,
     stillness: Stillness,
     carrier: RigidBodyHandle,
@@ -66,6 +68,7 @@ impl BodyRecord {
             contact_force: body.contact_force.clone(),
             reaction: body.reaction.clone(),
             energy_reserve: body.energy_reserve,
+            kept_forces: body.kept_forces.clone(),
             n_unfinished: body.n_unfinished,
             stillness: body.stillness.clone(),
             carrier: body.carrier,
@@ -142,6 +145,7 @@ impl BodyRecord {
             contact_force: self.contact_force,
             reaction: self.reaction,
             energy_reserve: self.energy_reserve,
+            kept_forces: self.kept_forces,
             n_unfinished: self.n_unfinished,
             stillness: self.stillness,
             frequency: OnceLock::new(),

@@ -103,7 +103,19 @@ impl Gatherer {
         } else {
             &under_way.joints
         };
-        JointGatherer { last, open }.add_all(claims, flex_bodies)
+        let mut joints = JointGatherer { last, open };
+        joints.add_all(claims, flex_bodies)?;
+        let flexible =
+            (0..claims.flex.len()).filter(|&flex| claims.component_of_flex(flex) == component);
+        for flex in flexible {
+            let body = flex_bodies.at_index(claims.flex[flex].index);
+            for kept in body.map_or(&[][..], |(_, body)| body.kept_forces()) {
+                if let Some(block) = joints.open.block_of(kept.on) {
+                    joints.open.island.kept_on.push((block, kept.wrench));
+                }
+            }
+        }
+        Ok(())
     }
 
     fn add_flex(

@@ -3,7 +3,8 @@
 use super::gather_settings::GatherSettings;
 use super::reading::prescribed_block;
 use super::sets::RapierSets;
-use crate::kkt::Island;
+use crate::body::KeptForce;
+use crate::kkt::{Island, LeftOnDriven, left_on_driven};
 use crate::math::HashMap;
 use crate::rapier::prelude::*;
 use crate::system::{Block, FlexBlock, RigidBlock};
@@ -16,6 +17,8 @@ pub(crate) struct Seats {
     /// Blocks of rigid bodies, claimed or not.
     rigid: HashMap<RigidBodyHandle, usize>,
     claimed: Vec<(usize, RigidBodyHandle)>,
+    /// Those that move as rapier says.
+    driven: Vec<(usize, RigidBodyHandle)>,
     /// Flexible bodies whose surfaces cross themselves where the step begins, by their slots in the set.
     crossed: Vec<u32>,
 }
@@ -26,12 +29,29 @@ impl Seats {
         self.flex.clear();
         self.rigid.clear();
         self.claimed.clear();
+        self.driven.clear();
         self.crossed.clear();
     }
 
     /// Claimed rigid bodies, with their blocks.
     pub fn claimed(&self) -> &[(usize, RigidBodyHandle)] {
         &self.claimed
+    }
+
+    /// What the flexible bodies of a solved island keep of their forces on rapier's bodies that move as they must, by the index of each.
+    pub fn kept_forces(&self, island: &Island) -> Vec<(u32, KeptForce)> {
+        let left = left_on_driven(island);
+        let named = left.into_iter().filter_map(
+            |LeftOnDriven {
+                 flex,
+                 block,
+                 wrench,
+             }| {
+                let (_, on) = self.driven.iter().find(|(own, _)| *own == block)?;
+                Some((flex, KeptForce { on: *on, wrench }))
+            },
+        );
+        named.collect()
     }
 
     /// Flexible bodies whose surfaces cross themselves where the step begins, by their slots in the set.
@@ -102,7 +122,11 @@ impl OpenIsland<'_, '_> {
         let is_link = self.sets.multibody_joints.rigid_body_link(handle).is_some();
         let body = self.sets.bodies.get(handle)?;
         let block = prescribed_block(body, is_link, step.dt, span);
-        Some(self.seats.add_rigid(block, Some(handle), self.island))
+        let block = self.seats.add_rigid(block, Some(handle), self.island);
+        if !body.is_fixed() {
+            self.seats.driven.push((block, handle));
+        }
+        Some(block)
     }
 
     /// Adds what moves as a rigid body and is none of rapier's; returns its block.

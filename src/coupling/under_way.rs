@@ -3,7 +3,7 @@
 //! Rapier takes the whole step at once. What is given to it by the user or by rapier itself (kinematic bodies, moved pins, bodies that
 //! are not claimed) goes from where it begins to where it ends in a straight line; a part sees its piece of that.
 
-use crate::body::{FlexBodySet, KeptMotion};
+use crate::body::{FlexBodySet, KeptForce, KeptMotion};
 use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointMemory;
 use crate::kkt::Island;
@@ -69,6 +69,9 @@ impl Span {
         [first, last]
     }
 }
+
+/// Forces that flexible bodies keep, by their indices.
+pub(crate) type KeptForces = [(u32, KeptForce)];
 
 /// The members of an island between two parts of a step.
 #[derive(Debug, Default)]
@@ -142,11 +145,12 @@ impl UnderWay {
     /// Puts the members where the part ends that was solved.
     ///
     /// - `bodies`: claimed ones, by their blocks.
+    /// - `kept`: forces that flexible bodies keep, by their indices.
     /// - `reserve`: energy that contact may return (J).
     pub fn go_on(
         &mut self,
         island: &Island,
-        bodies: &[(usize, RigidBodyHandle)],
+        (bodies, kept): (&[(usize, RigidBodyHandle)], &KeptForces),
         reserve: f64,
         span: Span,
         flex_bodies: &mut FlexBodySet,
@@ -160,6 +164,7 @@ impl UnderWay {
                 block.write_contact_force(body.contact_force_mut());
                 block.write_reactions(body.reaction_mut());
                 body.set_energy_reserve(share);
+                body.keep_forces(*index, kept);
                 self.add_impulse(*index, span.share(), body.contact_force_mut());
             }
         }

@@ -97,17 +97,15 @@ impl ActiveContact {
         }
     }
 
-    /// Impulse that the step has given, normal and tangential (N s): of a force in the stored accelerations, `1 - β1` of the last one and `β1` of
-    /// this one.
+    /// Impulse that the step's own force has given, normal and tangential (N s): of one in the stored accelerations `β1`, for the rest acts in the next step.
     pub(super) fn given(&self, settings: &SolveSettings) -> [f64; 2] {
         if self.is_hard {
             return self.impulse;
         }
-        let (dt, b1) = (settings.dt, settings.b1);
-        let late = if settings.is_explicit { 0.0 } else { dt - b1 };
+        let late = settings.late();
         [0, 1].map(|axis| {
-            let before = self.remembered.lasting[axis] - self.settled[axis];
-            (dt - late) * self.multiplier[axis] + self.impulse[axis] + late * before
+            let acts = (settings.dt - late) * self.multiplier[axis];
+            acts + self.impulse[axis] - late * self.settled[axis]
         })
     }
 

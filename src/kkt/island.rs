@@ -44,6 +44,8 @@ pub struct Island {
     pub(super) sparse: Sparse,
     /// Wrenches gathered on rigid blocks, by block (N, N, N m, or their impulses).
     pub(super) wrenches: Vec<[f64; 3]>,
+    /// What flexible bodies have kept of their forces on driven blocks from the step before, by block (N, N, N m): it acts on in the first part of the step.
+    pub kept_on: Vec<(usize, [f64; 3])>,
     /// For each block the first of those that touch it, directly or by others.
     pub(super) groups: Vec<usize>,
     /// Blocks with contacts of their own surface.
@@ -66,6 +68,7 @@ impl Island {
         self.path.clear();
         self.contacts.clear();
         self.joints.clear();
+        self.kept_on.clear();
     }
 
     /// Forgets what is kept of sparse problems that the step before did not ask for.
@@ -92,7 +95,7 @@ impl Island {
 
     /// Work of applied forces and of the contact forces of driven bodies (J).
     pub(super) fn actual_work(&self, settings: &SolveSettings) -> f64 {
-        work::actual_work(&self.blocks, &self.contacts, settings)
+        work::actual_work(&self.blocks, &self.contacts, &self.kept_on, settings)
     }
 
     /// Work of the joints on what is not driven from outside.

@@ -65,7 +65,7 @@ pub(crate) use gentle::{DOUBLED, GAINED};
 pub use island::{ActiveContact, Island, KktError, SolveSettings};
 pub use joints::{ActiveJoint, Joints};
 pub use momentum::LateForce;
-pub(crate) use momentum::late_forces;
+pub(crate) use momentum::{LeftOnDriven, late_forces, left_on_driven};
 pub use settings::ImpactTreatment;
 pub use summary::IslandSummary;
 pub(crate) use tolerances::FEW_PASSES;

@@ -89,6 +89,54 @@ pub fn late_forces(island: &Island, step: &Step, late: &mut Vec<LateForce>) {
     }
 }
 
+/// What of the forces of a flexible block's contacts acts on in the next step on a block that is moved as it must.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LeftOnDriven {
+    /// Index of the flexible body.
+    pub flex: u32,
+    /// The block that it acts on.
+    pub block: usize,
+    /// Force and torque about its centre (N, N, N m).
+    pub wrench: [f64; 3],
+}
+
+/// Lists what contacts leave to act on driven blocks in the next step: by those of flexible blocks that store accelerations, each pair once.
+pub(crate) fn left_on_driven(island: &Island) -> Vec<LeftOnDriven> {
+    let mut left: Vec<LeftOnDriven> = Vec::new();
+    for contact in island.contacts.iter().filter(|contact| !contact.is_hard) {
+        let kinematics = &contact.kinematics;
+        let [normal, tangent] = contact.lasting();
+        let force = normal * kinematics.normal + tangent * kinematics.tangent();
+        let mut grips = kinematics.attachments().iter();
+        let flex = grips.find_map(|grip| match &island.blocks[grip.block] {
+            Block::Flex(body) if !body.is_large() => island.flex_index[grip.block],
+            _ => None,
+        });
+        let Some(flex) = flex.filter(|_| force != Vec2::zeros()) else {
+            continue;
+        };
+        for grip in kinematics.attachments() {
+            let is_driven =
+                matches!(&island.blocks[grip.block], Block::Rigid(block) if block.is_prescribed());
+            if !is_driven {
+                continue;
+            }
+            let share = grip.weight * force;
+            let wrench = [share.x, share.y, cross(grip.grip.lever, share)];
+            let pair = |one: &&mut LeftOnDriven| one.flex == flex && one.block == grip.block;
+            match left.iter_mut().find(pair) {
+                Some(known) => add_wrench(&mut known.wrench, 1.0, wrench),
+                None => left.push(LeftOnDriven {
+                    flex,
+                    block: grip.block,
+                    wrench,
+                }),
+            }
+        }
+    }
+    left
+}
+
 /// Leaves on every flexible block the contact forces that acted, those of impulses included.
 pub(super) fn publish_forces(island: &mut Island, dt: f64) {
     for block in &mut island.blocks {

@@ -83,3 +83,13 @@ pub struct SolveSettings {
     /// What counts as one unit of length in the scene (m).
     pub length_unit: f64,
 }
+
+impl SolveSettings {
+    /// How long the last step's forces in stored accelerations act on in this one (s).
+    pub(super) fn late(&self) -> f64 {
+        match self.is_explicit {
+            true => 0.0,
+            false => self.dt - self.b1,
+        }
+    }
+}

@@ -78,9 +78,20 @@ pub(super) fn load_energy(blocks: &[Block]) -> f64 {
 pub(super) fn actual_work(
     blocks: &[Block],
     contacts: &[ActiveContact],
+    kept_on: &[(usize, [f64; 3])],
     settings: &SolveSettings,
 ) -> f64 {
     let mut work = applied_work(blocks);
+    // What the step before has left acts on, also of contacts that have opened or are elsewhere now.
+    for &(block, wrench) in kept_on {
+        if let Block::Rigid(block) = &blocks[block]
+            && block.is_prescribed()
+        {
+            let along = wrench.iter().zip(block.moved());
+            let power: f64 = along.map(|(w, x)| w * x).sum();
+            work -= settings.late() / settings.dt * power;
+        }
+    }
     for contact in contacts {
         let [normal, tangent] = contact.given(settings);
         let kinematics = &contact.kinematics;

@@ -130,9 +130,11 @@ impl Solver {
         let names = Names { sets, flex_bodies };
         self.enter_part((part, step), (&summary, reserve), (names, entry), books);
         if !part.span.is_last() {
-            let claimed = self.gatherer.seats.claimed();
+            let seats = &self.gatherer.seats;
+            let kept = seats.kept_forces(&self.island);
+            let left = (seats.claimed(), &kept[..]);
             self.under_way
-                .go_on(&self.island, claimed, reserve, part.span, flex_bodies);
+                .go_on(&self.island, left, reserve, part.span, flex_bodies);
         }
         Ok(Progress::Done)
     }

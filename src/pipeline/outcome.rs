@@ -1,7 +1,7 @@
 //! What the solved islands of a step want to commit, before anything is.
 
 use super::solved::{Entry, SolvedPart};
-use crate::body::FlexBodySet;
+use crate::body::{FlexBodySet, KeptForce};
 use crate::constraint::joint::{JointOwner, Measure};
 use crate::coupling::{
     FlexPool, JointImpulse, Landing, RapierSets, keep_awake, keep_landing_awake, wake_moving,
@@ -28,6 +28,8 @@ pub(super) struct Outcome {
     pub flexible: Vec<FlexEnd>,
     /// Where claimed rigid bodies end.
     pub landings: Vec<Landing>,
+    /// Forces that flexible bodies keep, by their slots in the set.
+    pub kept_forces: Vec<(u32, KeptForce)>,
     /// Impulses on rapier's joints.
     pub joint_impulses: Vec<JointImpulse>,
     /// Forces that act on in the next step, by the blocks of an island: scratch.
@@ -39,6 +41,7 @@ impl Outcome {
     pub fn clear(&mut self) {
         self.flexible.clear();
         self.landings.clear();
+        self.kept_forces.clear();
         self.joint_impulses.clear();
     }
 
@@ -57,6 +60,7 @@ impl Outcome {
                     .push(Landing::new(handle, block, late, entry.is_unfinished));
             }
         }
+        self.kept_forces.extend(part.seats.kept_forces(island));
         let n_flex = island.flex_index.iter().flatten().count().max(1);
         for &index in island.flex_index.iter().flatten() {
             self.flexible.push(FlexEnd {

@@ -250,6 +250,7 @@ impl FlexPipeline {
                 continue;
             };
             body.set_energy_reserve(end.reserve);
+            body.keep_forces(end.index, &self.outcome.kept_forces);
             body.count_step(end.is_unfinished);
             self.solver.commit(end.index, body);
             look_whether_still(body, sets);

@@ -146,16 +146,10 @@ mod tests {
             system[(place, place)] = mass;
         }
         for (slot, point) in points.iter().enumerate() {
-            let levers = [perp(point - about), perp(point - BODY.centre)];
-            for axis in 0..2 {
+            let [hub, body] = [perp(point - about), perp(point - BODY.centre)];
+            for (axis, (hub, body)) in hub.iter().zip(body.iter()).enumerate() {
                 let row = 6 + 2 * slot + axis;
-                let terms = [
-                    (axis, -1.0),
-                    (2, -levers[0][axis]),
-                    (3 + axis, 1.0),
-                    (5, levers[1][axis]),
-                ];
-                for (column, value) in terms {
+                for (column, value) in [(axis, -1.0), (2, -hub), (3 + axis, 1.0), (5, *body)] {
                     system[(row, column)] = value;
                     system[(column, row)] = value;
                 }
