@@ -38,20 +38,26 @@ impl Seats {
         &self.claimed
     }
 
-    /// What the flexible bodies of a solved island keep of their forces on rapier's bodies that move as they must, by the index of each.
-    pub fn kept_forces(&self, island: &Island) -> Vec<(u32, KeptForce)> {
-        let left = left_on_driven(island);
-        let named = left.into_iter().filter_map(
-            |LeftOnDriven {
-                 flex,
-                 block,
-                 wrench,
-             }| {
-                let (_, on) = self.driven.iter().find(|(own, _)| *own == block)?;
-                Some((flex, KeptForce { on: *on, wrench }))
-            },
-        );
-        named.collect()
+    /// Adds what the flexible bodies of a solved island keep of their forces on rapier's bodies that move as they must, by the index of each.
+    pub fn add_kept_forces(&self, island: &Island, all: &mut Vec<(u32, KeptForce)>) {
+        for left in left_on_driven(island) {
+            let LeftOnDriven {
+                flex,
+                block,
+                wrench,
+            } = left;
+            let Some(&(_, on)) = self.driven.iter().find(|(own, _)| *own == block) else {
+                continue;
+            };
+            let pair = |one: &&mut (u32, KeptForce)| one.0 == flex && one.1.on == on;
+            match all.iter_mut().rev().find(pair) {
+                Some((_, known)) => {
+                    let sum = known.wrench.iter_mut().zip(wrench);
+                    sum.for_each(|(sum, part)| *sum += part);
+                }
+                None => all.push((flex, KeptForce { on, wrench })),
+            }
+        }
     }
 
     /// Flexible bodies whose surfaces cross themselves where the step begins, by their slots in the set.

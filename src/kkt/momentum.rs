@@ -100,41 +100,31 @@ pub(crate) struct LeftOnDriven {
     pub wrench: [f64; 3],
 }
 
-/// Lists what contacts leave to act on driven blocks in the next step: by those of flexible blocks that store accelerations, each pair once.
-pub(crate) fn left_on_driven(island: &Island) -> Vec<LeftOnDriven> {
-    let mut left: Vec<LeftOnDriven> = Vec::new();
-    for contact in island.contacts.iter().filter(|contact| !contact.is_hard) {
+/// What contacts of flexible blocks that store accelerations leave to act on driven blocks in the next step, contact by contact.
+pub(crate) fn left_on_driven(island: &Island) -> impl Iterator<Item = LeftOnDriven> + '_ {
+    let stores = |block: usize| match &island.blocks[block] {
+        Block::Flex(body) if !body.is_large() && !body.is_explicit() => island.flex_index[block],
+        _ => None,
+    };
+    let soft = island.contacts.iter().filter(|contact| !contact.is_hard);
+    soft.flat_map(move |contact| {
         let kinematics = &contact.kinematics;
         let [normal, tangent] = contact.lasting();
         let force = normal * kinematics.normal + tangent * kinematics.tangent();
         let mut grips = kinematics.attachments().iter();
-        let flex = grips.find_map(|grip| match &island.blocks[grip.block] {
-            Block::Flex(body) if !body.is_large() => island.flex_index[grip.block],
-            _ => None,
-        });
-        let Some(flex) = flex.filter(|_| force != Vec2::zeros()) else {
-            continue;
-        };
-        for grip in kinematics.attachments() {
+        let flex = grips.find_map(|grip| stores(grip.block));
+        let flex = flex.filter(|_| force != Vec2::zeros());
+        kinematics.attachments().iter().filter_map(move |grip| {
             let is_driven =
                 matches!(&island.blocks[grip.block], Block::Rigid(block) if block.is_prescribed());
-            if !is_driven {
-                continue;
-            }
             let share = grip.weight * force;
-            let wrench = [share.x, share.y, cross(grip.grip.lever, share)];
-            let pair = |one: &&mut LeftOnDriven| one.flex == flex && one.block == grip.block;
-            match left.iter_mut().find(pair) {
-                Some(known) => add_wrench(&mut known.wrench, 1.0, wrench),
-                None => left.push(LeftOnDriven {
-                    flex,
-                    block: grip.block,
-                    wrench,
-                }),
-            }
-        }
-    }
-    left
+            Some(LeftOnDriven {
+                flex: flex.filter(|_| is_driven)?,
+                block: grip.block,
+                wrench: [share.x, share.y, cross(grip.grip.lever, share)],
+            })
+        })
+    })
 }
 
 /// Leaves on every flexible block the contact forces that acted, those of impulses included.

@@ -131,7 +131,8 @@ impl Solver {
         self.enter_part((part, step), (&summary, reserve), (names, entry), books);
         if !part.span.is_last() {
             let seats = &self.gatherer.seats;
-            let kept = seats.kept_forces(&self.island);
+            let mut kept = Vec::new();
+            seats.add_kept_forces(&self.island, &mut kept);
             let left = (seats.claimed(), &kept[..]);
             self.under_way
                 .go_on(&self.island, left, reserve, part.span, flex_bodies);

@@ -60,7 +60,7 @@ impl Outcome {
                     .push(Landing::new(handle, block, late, entry.is_unfinished));
             }
         }
-        self.kept_forces.extend(part.seats.kept_forces(island));
+        part.seats.add_kept_forces(island, &mut self.kept_forces);
         let n_flex = island.flex_index.iter().flatten().count().max(1);
         for &index in island.flex_index.iter().flatten() {
             self.flexible.push(FlexEnd {
