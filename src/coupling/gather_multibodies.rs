@@ -49,8 +49,8 @@ pub(super) fn add_multibodies(
             if let Some(parent) = parent {
                 let bodies = [parent, link].map(MultibodyLink::rigid_body_handle);
                 gatherer.add_joint(link, bodies)?;
-                gatherer.add_couplings_of(link)?;
             }
+            gatherer.add_couplings_of(link)?;
         }
     }
     Ok(())
@@ -160,7 +160,11 @@ impl MultibodyGatherer<'_, '_, '_> {
         let mut own = -offset;
         for (link, weight) in links.into_iter().zip([-factor, 1.0]) {
             let parent = link.parent_id().and_then(|id| self.multibody.link(id));
-            let bodies = [parent.unwrap_or(link), link].map(MultibodyLink::rigid_body_handle);
+            // A root's angle is against the world, of no two bodies.
+            let Some(parent) = parent else {
+                return Err(GatherError::Coupling(handle));
+            };
+            let bodies = [parent, link].map(MultibodyLink::rigid_body_handle);
             let data = &link.joint().data;
             let Some(sides) = self.sides(bodies, [&data.local_frame1, &data.local_frame2]) else {
                 self.open.island.joints.grips.truncate(start);

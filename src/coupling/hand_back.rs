@@ -26,11 +26,7 @@ pub(super) fn hand_back(
             // Rapier knows nothing of attachments and may find an attached body at rest alone.
             sets.islands.wake_up(sets.bodies, landing.handle, true);
         }
-        if sets
-            .multibody_joints
-            .rigid_body_link(landing.handle)
-            .is_some()
-        {
+        if is_link(landing, sets) {
             // Moved by its joints.
             continue;
         }

@@ -40,6 +40,9 @@ impl Seats {
 
     /// Adds what the flexible bodies of a solved island keep of their forces on rapier's bodies that move as they must, by the index of each.
     pub fn add_kept_forces(&self, island: &Island, all: &mut Vec<(u32, KeptForce)>) {
+        if self.driven.is_empty() {
+            return;
+        }
         for left in left_on_driven(island) {
             let LeftOnDriven {
                 flex,

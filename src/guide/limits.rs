@@ -105,7 +105,7 @@
 //! # Rapier
 //!
 //! - **Multibodies** that touch or hold something flexible are solved with it, all links of them, by the rows that impulse joints have. Of their numbers, an armature weighs on the link that the joint moves (the same where the parent stands still; where
-//!   that moves, too little reaches it), a link's locked axes are passed over, one that weighs nothing weighs a millionth of all, and a coupling of two coordinates is solved where both are angles; other couplings are refused ([`StepError::Coupling`](crate::pipeline::StepError::Coupling)). Joints of
+//!   that moves, too little reaches it), a link's locked axes are passed over, one that weighs nothing weighs a millionth of all, and a coupling of two coordinates is solved where both are angles of joints; other couplings are refused ([`StepError::Coupling`](crate::pipeline::StepError::Coupling)). Joints of
 //!   multibodies tell no impulses of motors and limits. Rapier alone does not move a multibody's kinematic root.
 //! - **Contact pairs** of what is solved here tell no impulses: rapier lets nobody else write what `contact_pair(..)` has of them. Do: take [`StepReport::contacts`], or contact force events.
 //! - **Dominance.** A rigid body of positive dominance is met as one that is moved: it goes through what is pinned, and squeezes what lies on something else flat, with energy as from nowhere (a box on a free block of 5e6 Pa: 8 MJ). See: unfinished steps. Do: leave dominance out.

@@ -114,7 +114,7 @@ pub enum StepError {
     MultibodyJoint(MultibodyJointHandle),
     /// Two coordinates of a multibody that touches a flexible body are coupled, of which one is no angle, or by numbers that are not finite.
     #[error(
-        "the coordinate of {0:?} is coupled to another, its multibody touches a flexible body, and not both are angles, or the numbers are not finite: remove the coupling, and hold the motion by a motor"
+        "the coordinate of {0:?} is coupled to another, its multibody touches a flexible body, and not both are angles of joints, or the numbers are not finite: remove the coupling, and hold the motion by a motor"
     )]
     Coupling(MultibodyJointHandle),
     /// A joint holds on to the carrier of a flexible body, which is where rapier keeps its surface and moves with nothing.

@@ -265,6 +265,28 @@ fn what_only_multibodies_have_acts_as_in_rapier_alone() {
             within: 3e-3,
         },
         Case {
+            name: "damping of a root",
+            make: |scene| {
+                let bars = [0.0, 0.6].map(|x| bar(scene, [[x, 0.0], [x + 0.6, 0.0]], 1.0));
+                let hinge = RevoluteJointBuilder::new()
+                    .local_anchor1(vec2(0.3, 0.0))
+                    .local_anchor2(vec2(-0.3, 0.0));
+                let handle = join(scene, bars, hinge, true).expect("a link");
+                let joints = &mut scene.world.multibody_joints;
+                let (multibody, _) = joints.get_mut(handle).expect("it is there");
+                multibody.forward_kinematics(&scene.world.bodies, true);
+                multibody.armature_mut()[2] = 0.1;
+                for (place, damping) in [0.7, 0.2, 0.3].into_iter().enumerate() {
+                    multibody.damping_mut()[place] = damping;
+                }
+                for (place, rate) in [1.0, 0.0, 3.0].into_iter().enumerate() {
+                    multibody.generalized_velocity_mut()[place] = rate;
+                }
+                bars[0]
+            },
+            within: 2e-3,
+        },
+        Case {
             name: "the user's rate",
             make: |scene| {
                 pendulum(scene, |multibody, id| {
@@ -538,6 +560,15 @@ fn joints_that_cannot_be_solved_with_are_refused() {
         multibody.add_dof_coupling(coupling);
     });
     let error = scene.try_step().expect_err("a way is no angle");
+    assert_eq!(error, StepError::Coupling(handle));
+    change(&mut scene, &|multibody, _| {
+        let mut coupling = multibody.remove_dof_coupling(0).expect("it has one");
+        (coupling.link1, coupling.axis1) = (0, 2);
+        multibody.add_dof_coupling(coupling);
+    });
+    let error = scene
+        .try_step()
+        .expect_err("a root turns against the world");
     assert_eq!(error, StepError::Coupling(handle));
     change(&mut scene, &|multibody, _| multibody.clear_dof_couplings());
     scene.step();

@@ -2,7 +2,7 @@
 //!
 //! Whether a step resolves a spring depends on the mass that swings on it: a light hub swings with what is welded to it.
 
-use crate::constraint::joint::{JointGrip, JointLaw, JointRow};
+use crate::constraint::joint::{JointGrip, JointLaw, JointRow, unit_wrench};
 use crate::math::{Vec2, perp};
 use crate::system::{Block, Moments};
 use nalgebra::{Matrix2, Matrix3, Vector3};
@@ -59,13 +59,36 @@ impl Laden {
         }
     }
 
+    /// `G M⁻¹ Gᵀ` of a row between rigid blocks with what is held to them (1/kg), `None` if that is nothing.
+    pub fn row_mobility(
+        &self,
+        blocks: &[Block],
+        (grips, direction, is_turn): (&[JointGrip], Vec2, bool),
+    ) -> Option<f64> {
+        if !grips.iter().any(|grip| self.carries(grip.block)) {
+            return None;
+        }
+        let mut sum = 0.0;
+        for grip in grips {
+            let wrench = unit_wrench(grip, direction, is_turn);
+            sum += match &blocks[grip.block] {
+                Block::Rigid(_) if self.carries(grip.block) => {
+                    self.mobility(grip.block, wrench, blocks)?
+                }
+                Block::Rigid(block) => block.mobility_between(wrench, wrench),
+                Block::Flex(_) => return None,
+            };
+        }
+        Some(sum)
+    }
+
     /// Whether a block carries anything.
-    pub fn carries(&self, block: usize) -> bool {
+    fn carries(&self, block: usize) -> bool {
         self.loads.iter().any(|load| load.hub == block)
     }
 
     /// How a unit wrench on a hub moves along itself (1/kg), with all that is held to it as if that were rigid; `None` of what weighs nothing.
-    pub fn mobility(&self, hub: usize, wrench: [f64; 3], blocks: &[Block]) -> Option<f64> {
+    fn mobility(&self, hub: usize, wrench: [f64; 3], blocks: &[Block]) -> Option<f64> {
         let own = blocks[hub].start_moments();
         let mut mass = Matrix3::from_diagonal(&Vector3::new(own.mass, own.mass, own.inertia));
         for load in self.loads.iter().filter(|load| load.hub == hub) {

@@ -66,7 +66,7 @@ impl Joints {
             let view = (grips, direction, row.measure.is_turn());
             let mobility = own_mobility(blocks, view);
             let across = own_mobility(blocks, (grips, perp(direction), view.2));
-            let swinging = self.laden_mobility(blocks, view).unwrap_or(mobility);
+            let swinging = self.laden.row_mobility(blocks, view).unwrap_or(mobility);
             let resolved = resolve(&row, is_hard, (start, mobility, swinging), settings);
             let status = match resolved.kind {
                 RowKind::Unilateral if row.last_multiplier() <= 0.0 => Status::Open,
@@ -169,29 +169,6 @@ impl Joints {
     }
 
     /// Makes the compliances of a row's nodes known; returns whether there are none.
-    /// `G M⁻¹ Gᵀ` of a row between rigid blocks with what is held to them (1/kg), `None` if that is nothing.
-    fn laden_mobility(
-        &self,
-        blocks: &[Block],
-        (grips, direction, is_turn): (&[JointGrip], Vec2, bool),
-    ) -> Option<f64> {
-        if !grips.iter().any(|grip| self.laden.carries(grip.block)) {
-            return None;
-        }
-        let mut sum = 0.0;
-        for grip in grips {
-            let wrench = unit_wrench(grip, direction, is_turn);
-            sum += match &blocks[grip.block] {
-                Block::Rigid(_) if self.laden.carries(grip.block) => {
-                    self.laden.mobility(grip.block, wrench, blocks)?
-                }
-                Block::Rigid(block) => block.mobility_between(wrench, wrench),
-                Block::Flex(_) => return None,
-            };
-        }
-        Some(sum)
-    }
-
     fn prepare_row(&self, blocks: &mut [Block], row: &JointRow) -> bool {
         let mut is_hard = true;
         for grip in &self.grips[row.grips.0..row.grips.1] {
