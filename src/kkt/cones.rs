@@ -233,7 +233,7 @@ fn state_sparse(island: &Island, sparse: &mut Sparse, asked: Asked) -> Result<()
         // What welds a stiff body by many nodes holds their places to each other too, which a share of the whole body's motion would let go.
         let local = sparse.local_mobility(&island.blocks, own);
         let yielding = match asked.of {
-            Response::Position => (YIELDING * scale).min(LARGE_TOLERANCE * local),
+            Response::Position if !tie.is_hard => (YIELDING * scale).min(LARGE_TOLERANCE * local),
             _ => 0.0,
         };
         let turned = own.iter().map(|grip| {

@@ -215,7 +215,7 @@ fn try_passes(
             island.joints.restiffen_turns(&mut island.blocks, settings);
         }
         let contradicts = is_idle && pass >= FEW_PASSES && !settings.may_be_cut;
-        if consistent::share_out_overlaps(island, listing.slop, contradicts, settings.b0).is_err() {
+        if consistent::share_out_overlaps(island, listing.slop, contradicts).is_err() {
             return Passed::Stopped;
         }
         has_left = note_left(island);

@@ -15,12 +15,12 @@
 //! missing.
 //!
 //! Joints hold in that motion. Those that the step began with apart, or that passes do not close, close as far as that costs no more than what is
-//! missing, and open no farther. What hangs straight then is held by forces without bound all the same: such rows yield to theirs.
+//! missing, and open no farther.
 
 use super::active_contact::ActiveContact;
 use super::delassus::compliance;
 use super::joints::ActiveJoint;
-use super::tolerances::{SOFTNESS, YIELDING};
+use super::tolerances::SOFTNESS;
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, unit_wrench};
 use crate::linalg::block_matrix::BlockMatrix;
@@ -57,7 +57,6 @@ impl Parting {
     ///
     /// - `slop`: how far a joint may be open, or an overlap deep, to count as none (m or rad).
     /// - `contradicts`: whether passes do not bring the laws to hold, so that joints may be asked that the step began with closed.
-    /// - `b0`: what a multiplier moves, over the mobility (s²).
     /// - `began`: the gap of a contact that the step began with, along the row as it is (m).
     ///
     /// # Errors
@@ -67,7 +66,7 @@ impl Parting {
         blocks: &[Block],
         contacts: &mut [ActiveContact],
         joints: (&mut [ActiveJoint], &[JointGrip]),
-        (slop, contradicts, b0): (f64, bool, f64),
+        (slop, contradicts): (f64, bool),
         began: impl Fn(&ActiveContact) -> f64,
     ) -> Result<(), ConeError> {
         let (ties, grips) = joints;
@@ -129,7 +128,6 @@ impl Parting {
             let row = &rows[row];
             let open = row.free[0] + problem.motion(row, motion)[0];
             let tie = &mut ties[index];
-            tie.yielding = b0 * YIELDING * row.scale[0];
             let open = match row.law {
                 ConeLaw::Unilateral => open.min(0.0),
                 _ => open,

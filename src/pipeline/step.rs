@@ -184,7 +184,6 @@ impl FlexPipeline {
             }
             self.claims.walk(sets);
         }
-        self.claims.prepare_multibodies(sets);
         self.solver.retain(sets, flex_bodies);
         let notes = notes_of_newcomers(&self.claims, sets, flex_bodies, &mut self.put_together);
         self.report.insertion_notes.extend(notes);

@@ -92,7 +92,6 @@ pub(super) fn share_out_overlaps(
     island: &mut Island,
     slop: f64,
     contradicts: bool,
-    b0: f64,
 ) -> Result<(), ConeError> {
     let scene = scene(&island.blocks, &island.parts, &island.segments);
     let candidates = &island.candidates;
@@ -108,7 +107,7 @@ pub(super) fn share_out_overlaps(
         &island.blocks,
         &mut island.contacts,
         joints,
-        (slop, contradicts, b0),
+        (slop, contradicts),
         began,
     )
 }

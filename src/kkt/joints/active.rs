@@ -121,7 +121,9 @@ impl ActiveJoint {
         if !self.is_hard || self.give > 0.0 || is_driven {
             return false;
         }
-        let began = self.off(self.start - self.asked[0]);
+        // What its own force has opened it by is no gap that was there.
+        let yielded = -self.yielding * self.row.last_multiplier();
+        let began = self.off(self.start - self.asked[0] - yielded);
         self.asked[1] != 0.0 || began > slop || contradicts && self.error() > slop
     }
 

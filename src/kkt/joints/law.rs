@@ -42,11 +42,12 @@ pub(in crate::kkt) fn put_apart(length_unit: f64) -> f64 {
     RESTING * length_unit
 }
 
-/// The law of a row that measures `start` when the step begins, has this mobility, and this one with what is attached to its bodies.
+/// The law of a row that measures `start` when the step begins, of which its force explains that it is off by `yielded`; it has this mobility, and this
+/// one with what is attached to its bodies.
 pub(super) fn resolve(
     row: &JointRow,
     is_hard: bool,
-    (start, mobility, swinging): (f64, f64, f64),
+    ([start, yielded], mobility, swinging): ([f64; 2], f64, f64),
     settings: &SolveSettings,
 ) -> Resolved {
     // A force over the step, λ, is `scale` times the multiplier.
@@ -64,7 +65,8 @@ pub(super) fn resolve(
         JointLaw::Rigid { goal, rate } => {
             let (goal, rate) = (row.sign * goal, row.sign * rate);
             let off = start + settings.dt * rate - goal;
-            let [left, closing] = closed(row, off, off.abs() > slack, settings.dt);
+            let is_far = (off - yielded).abs() > slack;
+            let [left, closing] = closed(row, off, is_far, settings.dt);
             Resolved {
                 goal: goal + left,
                 target: goal,
@@ -77,7 +79,8 @@ pub(super) fn resolve(
         JointLaw::Limit { bound } => {
             let bound = row.sign * bound;
             let off = start - bound;
-            let [left, closing] = closed(row, off.min(0.0), off < -slack, settings.dt);
+            let is_far = off - yielded < -slack;
+            let [left, closing] = closed(row, off.min(0.0), is_far, settings.dt);
             Resolved {
                 goal: bound + left,
                 target: bound,

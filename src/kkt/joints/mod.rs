@@ -12,6 +12,7 @@ mod law;
 mod rates;
 mod rows;
 mod twist;
+mod yielding;
 
 pub use self::active::ActiveJoint;
 pub(super) use self::joined::JOINED;
@@ -21,6 +22,7 @@ pub(super) use self::rows::add_wrench;
 use self::joined::Joined;
 use self::laden::Laden;
 use self::twist::Twists;
+use self::yielding::Yielding;
 use super::active_contact::ActiveContact;
 use crate::constraint::joint::{JointGrip, JointRow, When};
 use crate::system::Block;
@@ -47,6 +49,7 @@ pub struct Joints {
     twists: Twists,
     joined: Joined,
     laden: Laden,
+    yielding: Yielding,
     /// Where in the step the forces of soft rows act.
     acting: When,
 }

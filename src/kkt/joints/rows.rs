@@ -53,6 +53,7 @@ impl Joints {
             &[]
         };
         self.laden.find(rows, &self.grips, blocks);
+        self.yielding.find(&self.rows, &self.grips, blocks);
         for slot in 0..self.rows.len() {
             let row = self.rows[slot];
             let is_hard = self.prepare_row(blocks, &row);
@@ -67,7 +68,12 @@ impl Joints {
             let mobility = own_mobility(blocks, view);
             let across = own_mobility(blocks, (grips, perp(direction), view.2));
             let swinging = self.laden.row_mobility(blocks, view).unwrap_or(mobility);
-            let resolved = resolve(&row, is_hard, (start, mobility, swinging), settings);
+            let yielding = match is_hard {
+                true => self.yielding.of(&row, blocks, (grips, mobility), settings),
+                false => 0.0,
+            };
+            let places = [start, -yielding * row.last_multiplier()];
+            let resolved = resolve(&row, is_hard, (places, mobility, swinging), settings);
             let status = match resolved.kind {
                 RowKind::Unilateral if row.last_multiplier() <= 0.0 => Status::Open,
                 _ => Status::Stick,
@@ -82,7 +88,7 @@ impl Joints {
                 goal: resolved.goal,
                 target: resolved.target,
                 give: resolved.give,
-                yielding: 0.0,
+                yielding,
                 kind: resolved.kind,
                 gap: start - resolved.goal,
                 direction,

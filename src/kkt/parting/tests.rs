@@ -49,13 +49,7 @@ fn contact(
 fn share_out(blocks: &[Block], contacts: &mut [ActiveContact]) {
     let mut parting = Parting::default();
     let none = (&mut [][..], &[][..]);
-    let shared = parting.share_out(
-        blocks,
-        contacts,
-        none,
-        (0.0, false, 1.0),
-        ActiveContact::gap,
-    );
+    let shared = parting.share_out(blocks, contacts, none, (0.0, false), ActiveContact::gap);
     assert!(shared.is_ok());
 }
 
