@@ -96,7 +96,8 @@
 //! - **Inside each other.** Rigid bodies that a joint welds to each other, or pins at a point inside both by a millimetre or more, do not press each other where they are solved with flexible ones: contact would pull the joint open, as it does in rapier alone. Do: let links end at their joints, or say `contacts_enabled(false)`.
 //! - **Round and hinged where they touch.** A ball or capsule hinged to a neighbour at the very point where the two touch cannot turn without going into it, so hinge and contact push against each other with forces of any size. See: a gain of some hundredths
 //!   of the energy, more than a fifth in 14 of 660 random scenes; [`Quality::Cut`](crate::pipeline::Quality::Cut). Do: say `contacts_enabled(false)`, or leave half a millimetre between them.
-//! - **Taut chains** sag by a hundredth of their length where they would have to be straight. See: [`StepReport::joint_violation`].
+//! - **Taut chains.** A joint between rigid bodies that carries all which is joined with it opens by 1e-5 of the way that this falls within a step (1.4e-8 m at 1/60 s). What would have to be straight so hangs by some hundredths or thousandths of its length:
+//!   ten planks between posts that are as far apart as these are long, 3 m, by 4 mm at 1/60 s and 1.6 mm at 1/240 s. One that is too short is left open. See: [`StepReport::joint_violation`].
 //! - **Light hubs.** A spring or position motor at a rigid body that carries flexible bodies of small strain alone is resolved by the mass of the rigid body, not of what is welded to that: one of 1,000 N/m at 1/60 s that moves 10 kg is damped away within
 //!   seconds if its own body has less than 0.07 kg. Do: take large strain, which swings, give the hub more mass, or shorten the step.
 //! - **Sleep.** Attached bodies do not sleep.
@@ -106,7 +107,8 @@
 //!
 //! - **Multibodies** that touch or hold something flexible are solved with it, all links of them, by the rows that impulse joints have. Of their numbers, an armature weighs on the link that the joint moves (the same where the parent stands still; where
 //!   that moves, too little reaches it), a link's locked axes are passed over, one that weighs nothing weighs a millionth of all, and a coupling of two coordinates is solved where both are angles of joints; other couplings are refused ([`StepError::Coupling`](crate::pipeline::StepError::Coupling)). Joints of
-//!   multibodies tell no impulses of motors and limits. Rapier alone does not move a multibody's kinematic root.
+//!   multibodies tell no impulses of motors and limits. Rapier alone does not move a multibody's kinematic root, and moves what
+//!   hangs on it twice as far as its velocities say; solved here, it swings as on a fixed one. Rope and spring joints of multibodies hold here, in rapier alone they do not.
 //! - **Contact pairs** of what is solved here tell no impulses: rapier lets nobody else write what `contact_pair(..)` has of them. Do: take [`StepReport::contacts`], or contact force events.
 //! - **Dominance.** A rigid body of positive dominance is met as one that is moved: it goes through what is pinned, and squeezes what lies on something else flat, with energy as from nowhere (a box on a free block of 5e6 Pa: 8 MJ). See: unfinished steps. Do: leave dominance out.
 //! - **Fast spin.** Rapier turns a rigid body by no more than an eighth of a turn in a step, and takes what is more out of its spin: at 1/60 s beyond 47 rad/s. Do: shorten the step.

@@ -23,7 +23,7 @@ pub struct ActiveJoint {
     pub(in crate::kkt) goal: f64,
     /// How far a unit multiplier lets the row give way (m/N or rad/(N m)).
     pub(in crate::kkt) give: f64,
-    /// The same where rows contradict each other (m/N or rad/(N m)).
+    /// The same of a joint that nothing bounds, see `yielding` (m/N or rad/(N m)).
     pub(in crate::kkt) yielding: f64,
     pub(in crate::kkt) kind: RowKind,
     /// Distance from the goal at the last iterate (m or rad).
