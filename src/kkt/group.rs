@@ -36,6 +36,11 @@ impl Group {
         self.moment / self.mass
     }
 
+    /// Inertia about that (kg m²).
+    pub fn polar(&self) -> f64 {
+        self.polar
+    }
+
     /// Adds the momentum that loads bring (N s).
     pub fn push(&mut self, impulse: Vec2) {
         self.momentum += impulse;

@@ -123,10 +123,10 @@ fn a_closed_frame_of_welds_hangs_still() {
     scene.steps(600);
     for (bar, at) in bars.iter().zip(places) {
         let [x, y] = position(&scene, *bar);
-        assert!(
-            (x - at[0]).hypot(y - at[1]) < by_precision(1e-5, 1e-9),
-            "{x} {y}"
-        );
+        // The weight of all opens the hinge by 1e-5 of its fall in a step, that of some the welds by less.
+        let opened = 1e-5 * 0.5 * G * DT * DT;
+        let missed = (x - at[0]).hypot(y - at[1]);
+        assert!(missed < by_precision(1e-5, 3.0 * opened), "{x} {y}");
     }
     let hung = scene
         .report()

@@ -117,8 +117,9 @@ fn a_four_bar_linkage_stays_closed_and_keeps_its_energy() {
         (low, high) = (low.min(now), high.max(now));
     }
     println!("open by {open:e}; energy {start} in [{low}, {high}]");
-    // Rapier's own poses in f32 hold 1e-7 of the coordinates.
-    assert!(open < by_precision(2e-6, 1e-8));
+    // Rapier's own poses in f32 hold 1e-7 of the coordinates; forces of some times the weight open joints by 1e-5 of the fall in a step each.
+    let opened = 10.0 * 1e-5 * 0.5 * G * scene.dt().powi(2);
+    assert!(open < by_precision(2e-6, opened));
     // RATTLE's energy swings by (ω dt)² of the kinetic energy, some 5 J, and does not drift: ω of the crank is 10 rad/s.
     assert!(high - low < 0.1, "energy moved by {}", high - low);
 }

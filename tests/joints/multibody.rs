@@ -115,7 +115,7 @@ fn drift(scene: &mut Scene, links: &[RigidBodyHandle]) -> (f64, bool) {
 /// of a hundred rounds once.
 fn rounding() -> f64 {
     // A body of large strain knows its velocities as far as its positions in the world: `ε x / dt`.
-    9.0 * by_precision(100.0 * 6e-8, 1e-12)
+    9.0 * by_precision(100.0 * 6e-8, 2e-12)
 }
 
 #[test]
@@ -210,7 +210,8 @@ fn an_impulse_joint_from_a_claimed_body_to_a_link_pulls_both() {
         let ends = [(bars[1], anchors[0]), (hung, anchors[1])];
         let ends = ends.map(|(body, at)| scene.world.bodies[body].position() * at);
         let missed = f64::from((ends[0] - ends[1]).length());
-        assert!(missed < by_precision(1e-6, 1e-8), "step {step}: {missed} m");
+        // A blow of some kN on 13 kg opens it by 1e-5 of the way that it would send them in the step.
+        assert!(missed < by_precision(1e-6, 5e-8), "step {step}: {missed} m");
     }
     let pulled = of_rigid(&scene, &bars).linear[0];
     assert!(pulled < -0.5, "{pulled} N s");

@@ -163,9 +163,9 @@ fn free(scene: &mut Scene, is_link: bool) -> Vec<RigidBodyHandle> {
 fn multibodies_move_as_the_same_thing_on_impulse_joints() {
     // What is free also falls: by 5 m, on which errors of the solver add up.
     let all: [(&str, Mechanism, f64); 4] = [
-        ("arm", arm, 1e-9),
-        ("carriage", carriage, 1e-9),
-        ("slide", slide, 1e-9),
+        ("arm", arm, 0.0),
+        ("carriage", carriage, 0.0),
+        ("slide", slide, 0.0),
         ("free", free, 5e-6),
     ];
     for (name, make, double) in all {
@@ -189,8 +189,10 @@ fn multibodies_move_as_the_same_thing_on_impulse_joints() {
                     assert!(missed < rounding, "{name}, {rate} Hz: {missed} m/s");
                 }
             }
-            // Both are solved by the same rows; rapier keeps the one in coordinates of joints, to its own rounding.
-            let rounding = by_precision(2e-5, double);
+            // Both are solved by the same rows; rapier keeps the one in coordinates of joints, to its own rounding, and these do not open. What stops
+            // 2 m/s within the step opens a joint by 1e-5 of the half of that way.
+            let opened = 1e-5 * 0.5 * 2.5 / rate;
+            let rounding = by_precision(2e-5, double + opened);
             assert!(apart < rounding, "{name}, {rate} Hz: {apart}");
         }
     }
@@ -415,7 +417,7 @@ fn coupled_angles_stay_coupled() {
             fingers.map(|finger| f64::from(scene.world.bodies[finger].rotation().angle()));
         let missed = (second + 2.0 * first).abs();
         assert!(
-            missed < by_precision(1e-5, 1e-9),
+            missed < by_precision(1e-5, 5e-9),
             "step {step}: {missed} rad"
         );
         turned = turned.max(first.abs());

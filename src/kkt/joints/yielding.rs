@@ -1,14 +1,15 @@
 //! By how much joints between rigid bodies yield to their forces.
 //!
 //! A chain that is as long as what it hangs between is apart is held straight by forces without bound, and what it may sag by before they are there is
-//! less than any step moves it by: passes ended in forces that pushed it up as well as down, or in none. So joints are as stiff as steel is, and no
-//! stiffer: a row yields like a spring of `M / (s b0)`, with `M` all that is joined together and `b0` that of the whole step, whatever part of it
-//! is solved. What hangs on a single joint opens it by `s` of the way that it would fall within the step.
+//! less than any step moves it by: passes ended in forces that pushed it up as well as down, or in none. So joints are stiff springs, and no stiffer:
+//! a row yields by `s b0 / M`, an angle by `s b0 / J`, with `M` and `J` the mass and the inertia of all that is joined together and `b0` that of the
+//! whole step, whatever part of it is solved. What hangs on a single joint opens it by `s` of the way that it would fall within the step.
 
 use crate::constraint::joint::{JointGrip, JointLaw, JointRow};
+use crate::kkt::group::Group;
 use crate::kkt::settings::SolveSettings;
 use crate::math::judged::Judged;
-use crate::system::Block;
+use crate::system::{Block, Moments};
 
 /// Share of the way that all which is joined together would fall in a step, by which a joint that carries it opens (-).
 ///
@@ -17,13 +18,13 @@ use crate::system::Block;
 /// what it had brought, and with ten times as much half of its steps are told as left open.
 const JOINT_YIELDING: Judged = Judged::new("kkt::JOINT_YIELDING", 1e-5);
 
-/// What is joined together, by the masses of the blocks.
+/// What is joined together.
 #[derive(Debug, Default)]
 pub(super) struct Yielding {
-    /// A block that it is joined with, of every block: itself, or one before it.
+    /// Of every block the first one of those that it is joined with.
     leaders: Vec<usize>,
-    /// Mass of all that a leader leads (kg).
-    masses: Vec<f64>,
+    /// All that a leader leads, as one body.
+    groups: Vec<Group>,
 }
 
 impl Yielding {
@@ -43,11 +44,19 @@ impl Yielding {
                 self.leaders[high] = low;
             }
         }
-        self.masses.clear();
-        self.masses.resize(blocks.len(), 0.0);
+        self.groups.clear();
+        self.groups.resize(blocks.len(), Group::default());
         for (index, block) in blocks.iter().enumerate() {
-            let leader = self.leader_of(index);
-            self.masses[leader] += mass_of(block);
+            // Leaders come first, so theirs is known.
+            self.leaders[index] = self.leaders[self.leaders[index]];
+            if let Some(own) = moments_of(block) {
+                self.groups[self.leaders[index]].add(&own);
+            }
+        }
+        for (block, &leader) in blocks.iter().zip(&self.leaders) {
+            if let Some(own) = moments_of(block) {
+                self.groups[leader].add_turning(&own);
+            }
         }
     }
 
@@ -68,24 +77,34 @@ impl Yielding {
         (grips, mobility): (&[JointGrip], f64),
         settings: &SolveSettings,
     ) -> f64 {
-        if !holds(row) {
+        // What is driven from where the step begins would lag further behind in every one.
+        if !holds(row) || matches!(row.law, JointLaw::Drive { .. }) {
             return 0.0;
         }
         let parts = settings.whole / settings.dt;
         let share = JOINT_YIELDING * settings.b0 * parts * parts;
-        let free = |grip: &&JointGrip| mass_of(&blocks[grip.block]) > 0.0;
-        let Some(first) = grips.iter().find(free) else {
-            return share * mobility;
-        };
-        let all = self.masses[self.leader_of(first.block)];
-        if !row.measure.is_turn() {
-            return share / all;
+        let mut held = grips.iter().map(|grip| grip.block);
+        let first = held.find(|&block| mass_of(&blocks[block]) > 0.0);
+        let group = first.map(|first| &self.groups[self.leaders[first]]);
+        let weight = group.map(|group| match row.measure.is_turn() {
+            true => group.polar(),
+            false => group.mass,
+        });
+        // What only turns, or never does, has no other measure than its own.
+        match weight.filter(|weight| *weight > 0.0) {
+            Some(weight) => share / weight,
+            None => share * mobility,
         }
-        // An angle weighs as much more than its own bodies as all does.
-        let inverse = |grip: &JointGrip| 1.0 / mass_of(&blocks[grip.block]);
-        let inverse: f64 = grips.iter().filter(free).map(inverse).sum();
-        share * mobility / (inverse * all)
     }
+}
+
+/// What a block that a step moves weighs, where it is.
+fn moments_of(block: &Block) -> Option<Moments> {
+    let mass = mass_of(block);
+    (mass > 0.0).then(|| Moments {
+        mass,
+        ..block.start_moments()
+    })
 }
 
 /// Mass of what a step moves (kg): zero of what is driven, or only turns.
@@ -108,18 +127,19 @@ fn holds(row: &JointRow) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::constraint::joint::Measure;
     use crate::integrator::Beta2;
     use crate::kkt::calm::tests::join;
     use crate::kkt::closing::tests::SETTINGS;
     use crate::kkt::island::Island;
-    use crate::math::judged::tests::with;
+    use crate::math::{Vec2, judged::tests::with};
     use crate::system::{RigidBlock, RigidLoad, RigidMotion, Step};
 
     const DT: f64 = 0.02;
 
-    /// An island of bodies of these masses, each joined to the next, and how far what hangs on the first of them opens its joint under its weight, over the
-    /// way that it would fall in the step.
-    fn opened(masses: &[f64], n_parts: f64) -> f64 {
+    /// Bodies of these masses in a row, a metre apart, each joined to the next: how far their weight opens the first joint if it carries all of it, over the way
+    /// that they would fall in the step; and the same of an angle, a torque and how far that would turn them as one body.
+    fn opened(masses: &[f64], n_parts: f64) -> [f64; 2] {
         let mut island = Island::default();
         let step = Step::new(&Beta2::default(), DT / n_parts);
         for &mass in masses {
@@ -128,7 +148,11 @@ mod tests {
                 force: [0.0; 3],
                 damping: [0.0; 3],
             };
-            let body = RigidBlock::free(RigidMotion::default(), None, &load, &step);
+            let motion = RigidMotion {
+                centre: Vec2::new(island.blocks.len() as f64, 0.0),
+                ..RigidMotion::default()
+            };
+            let body = RigidBlock::free(motion, None, &load, &step);
             island.blocks.push(Block::Rigid(body));
         }
         for first in 1..masses.len() {
@@ -145,10 +169,19 @@ mod tests {
             b0: 0.5 * dt * dt,
             ..SETTINGS
         };
-        let own = (&grips[..2], 1.0 / masses[0]);
-        let compliance = yielding.of(&rows[0], &island.blocks, own, &settings);
-        let weight = masses.iter().sum::<f64>() * 9.81;
-        compliance * weight / (0.5 * 9.81 * DT * DT)
+        let angle = JointRow {
+            measure: Measure::Turn(0.0),
+            ..rows[0]
+        };
+        let mass: f64 = masses.iter().sum();
+        let places = || masses.iter().enumerate().map(|(i, m)| (i as f64, m));
+        let centre = places().map(|(x, m)| x * m).sum::<f64>() / mass;
+        let polar: f64 = places().map(|(x, m)| m * (x - centre).powi(2) + 1.0).sum();
+        [(rows[0], mass), (angle, polar)].map(|(row, inertia)| {
+            let own = (&grips[..2], 1.0 / masses[0]);
+            let compliance = yielding.of(&row, &island.blocks, own, &settings);
+            compliance * inertia / (0.5 * DT * DT)
+        })
     }
 
     /// Whatever hangs on a joint opens it by the same share of the way that it would fall, in one part or in many, as long as the share is small.
@@ -159,11 +192,10 @@ mod tests {
                 for n_parts in [1.0, 8.0] {
                     let scaled = Some(("kkt::JOINT_YIELDING", scale));
                     let (opened, _) = with(scaled, || opened(masses, n_parts));
-                    let expected = scale * 1e-5;
-                    assert!(
-                        (opened - expected).abs() < 1e-12 * expected.max(1.0),
-                        "{masses:?}, {n_parts} parts: {opened}"
-                    );
+                    for opened in opened {
+                        let off = opened / (scale * 1e-5) - 1.0;
+                        assert!(off.abs() < 1e-12, "{masses:?}, {n_parts} parts: {opened}");
+                    }
                 }
             }
         }
