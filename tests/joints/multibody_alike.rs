@@ -185,7 +185,8 @@ fn multibodies_move_as_the_same_thing_on_impulse_joints() {
                 for &link in &links {
                     let missed = velocity_missed(&one, link);
                     let speed = f64::from(one.world.bodies[link].linvel().length());
-                    let rounding = by_precision(4e-6, 1e-13) * (1.0 + speed);
+                    // Ends that are open by 1e-8 m turn.
+                    let rounding = by_precision(4e-6, 1e-9) * (1.0 + speed);
                     assert!(missed < rounding, "{name}, {rate} Hz: {missed} m/s");
                 }
             }
