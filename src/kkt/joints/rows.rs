@@ -3,7 +3,8 @@
 //! *Hard* rows, between rigid blocks only, follow RATTLE (Andersen 1983): the force `λ` of the position stage acts along the rows
 //! of the step's beginning and gives the velocity `dt/2 M⁻¹G₀ᵀλ`; the velocity stage adds `dt/2 M⁻¹G'ᵀμ` along those of the end,
 //! with `G'v' = 0`. That is second order, symmetric, keeps momentum and angular momentum exactly and energy within a band, and
-//! leaves no force in the stored accelerations. As the position stage moves by `b0 M⁻¹G₀ᵀp`, `λ = 2 b0 p / dt²`.
+//! leaves no force in the stored accelerations. As the position stage moves by `b0 M⁻¹G₀ᵀp`, `λ = 2 b0 p / dt²`. Those that nothing bounds yield a little to it, see
+//! `yielding`.
 //!
 //! *Soft* rows, with a flexible block, act as (C.5) says, along rows that follow the iterates as those of contacts do.
 
