@@ -97,7 +97,8 @@
 //! - **Round and hinged where they touch.** A ball or capsule hinged to a neighbour at the very point where the two touch cannot turn without going into it, so hinge and contact push against each other with forces of any size. See: a gain of some hundredths
 //!   of the energy, more than a fifth in 14 of 660 random scenes; [`Quality::Cut`](crate::pipeline::Quality::Cut). Do: say `contacts_enabled(false)`, or leave half a millimetre between them.
 //! - **Taut chains.** A joint between rigid bodies that carries all which is joined with it opens by 1e-5 of the way that this falls within a step (1.4e-8 m at 1/60 s). What would have to be straight so hangs by some hundredths or thousandths of its length:
-//!   ten planks between posts that are as far apart as these are long, 3 m, by 4 mm at 1/60 s and 1.6 mm at 1/240 s. One that is too short is left open. See: [`StepReport::joint_violation`].
+//!   ten planks between posts that are as far apart as these are long, 3 m, by 4 mm at 1/60 s and 1.6 mm at 1/240 s. One that is too short is left open. See: [`StepReport::joint_violation`]. Levers multiply it: an arm of 4 m on two hinges 2 cm apart sags by 0.8 mm at its end at 1/60 s, by 0.05 mm
+//!   at 1/240 s, by 5e-6 m if they are 20 cm apart. Do: shorten the step, or weld by `FixedJoint` (8e-8 m at 1/60 s).
 //! - **Light hubs.** A spring or position motor at a rigid body that carries flexible bodies of small strain alone is resolved by the mass of the rigid body, not of what is welded to that: one of 1,000 N/m at 1/60 s that moves 10 kg is damped away within
 //!   seconds if its own body has less than 0.07 kg. Do: take large strain, which swings, give the hub more mass, or shorten the step.
 //! - **Sleep.** Attached bodies do not sleep.
