@@ -110,17 +110,19 @@ impl LentMultibodies {
             };
             let is_asleep = |link: &MultibodyLink| {
                 let body = sets.bodies.get(link.rigid_body_handle());
-                body.is_some_and(RigidBody::is_sleeping)
+                body.is_some_and(|body| body.is_dynamic() && body.is_sleeping())
             };
             // What rapier has just put to sleep stays where it is.
             if multibody.links().any(is_asleep) {
                 continue;
             }
             let ways = ways_to(multibody, &ends, sets.bodies);
-            let coordinates = multibody
-                .links()
-                .flat_map(|link| <[Real; 3]>::from(link.joint().coords()));
-            let size = coordinates.fold(1.0, |size: Real, x| size.max(x.abs()));
+            let sizes = multibody.links().flat_map(|link| {
+                let [x, y, angle] = <[Real; 3]>::from(link.joint().coords());
+                let at = link.local_to_world().translation;
+                [x, y, angle, at.x, at.y]
+            });
+            let size = sizes.fold(1.0, |size: Real, x| size.max(x.abs()));
             let rounding = LANDED as Real * Real::EPSILON * size;
             if ways.iter().any(|way| way.abs() > rounding) {
                 multibody.apply_displacements(&ways);

@@ -72,5 +72,5 @@ pub(super) fn solve_positions(
     island.joints.prepare(&mut island.blocks);
     summary.gap_violation = working_set::gap_violation(island, summary.is_unsolved());
     summary.slip_violation = working_set::slip_violation(island);
-    summary.joint_violation = follow::joint_violation(island);
+    summary.joint_violation = follow::joint_violation(island, settings.length_unit);
 }

@@ -123,7 +123,8 @@ impl StepReport {
     }
 
     /// Largest distance from where they should be that joints and attachments were left at as they contradict each other (m, or rad of what keeps an angle):
-    /// as of a body that is welded to two places which are farther apart than it is long. What was only put there closes over some steps and does not count.
+    /// as of a body that is welded to two places which are farther apart than it is long; or that joints of rigid bodies yield by, if that is more than 1e-4 of rapier's length unit (or
+    /// rad). What was only put there closes over some steps and does not count.
     pub fn joint_violation(&self) -> f64 {
         self.joint_violation
     }

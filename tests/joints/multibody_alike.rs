@@ -416,6 +416,7 @@ fn coupled_angles_stay_coupled() {
         scene.step();
         let [first, second] =
             fingers.map(|finger| f64::from(scene.world.bodies[finger].rotation().angle()));
+        // In f64 what the coupling yields by to the weight.
         let missed = (second + 2.0 * first).abs();
         assert!(
             missed < by_precision(1e-5, 5e-9),

@@ -116,6 +116,36 @@ fn links_that_land_are_where_their_coordinates_are() {
     }
 }
 
+/// The same of an arm on a fixed root that swings onto the ground.
+#[test]
+fn an_arm_that_swings_onto_the_ground_is_where_its_coordinate_is() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    scene.ground(0.5);
+    let root = RigidBodyBuilder::fixed().translation(vec2(-0.21, 0.3));
+    let root = scene.world.insert_body(root);
+    let arm = link(&mut scene, [0.0, 0.3]);
+    let joint = hinge(0.0, -0.21);
+    join(&mut scene, [root, arm], joint);
+    pad_on(&mut scene, arm, 1e6, [0.0; 2]);
+    let joints = &mut scene.world.multibody_joints;
+    let index = joints.rigid_body_link(arm).expect("a link").multibody;
+    let multibody = joints
+        .get_multibody_mut_internal(index)
+        .expect("it is there");
+    multibody.forward_kinematics(&scene.world.bodies, true);
+    multibody.generalized_velocity_mut()[0] = -30.0;
+    for step in 0..60 {
+        scene.step();
+        let joints = &scene.world.multibody_joints;
+        let id = joints.rigid_body_link(arm).expect("a link");
+        let multibody = joints.get_multibody(id.multibody).expect("it is there");
+        let pose = multibody.link(id.id).expect("it is there").local_to_world();
+        let apart = pose.translation - scene.world.bodies[arm].translation();
+        let apart = f64::from(apart.length());
+        assert!(apart < 1e-6, "{step}: {apart} m");
+    }
+}
+
 /// What a coordinate weighs was forgotten where a step is looked at again, and its motor held it fast.
 #[test]
 fn motors_that_count_by_what_they_move_do_so_in_steps_that_are_looked_at_again() {

@@ -23,7 +23,7 @@ mod segment_query;
 mod separation;
 
 pub use convex_part::{ConvexPart, Feature};
-pub(crate) use depth::{DEEP, RESTING};
+pub(crate) use depth::{DEEP, RESTING, RESTING_THIN};
 pub use entered::{crossing_overlap, entered_separation, start_separation};
 pub use polygon_pair::{FaceOrVertex, PairContact, PairContacts, PairReference, polygon_pair};
 pub use pose::Pose2;

@@ -12,6 +12,7 @@
 //! holds a corner in a notch against itself slips by a thousandth of what the force alone would move it, and there is one answer.
 
 use super::Island;
+use crate::constraint::geometry::RESTING_THIN;
 use crate::kkt::active_contact::ActiveContact;
 use crate::kkt::delassus::compliance;
 use crate::kkt::island::SolveSettings;
@@ -127,14 +128,24 @@ pub(super) fn leave_immovable(island: &mut Island) {
     }
 }
 
-/// How far from where they are to be in the end joints and attachments were left open at most (m or rad).
-pub(in crate::kkt) fn joint_violation(island: &Island) -> f64 {
-    let left = island
-        .joints
-        .ties
-        .iter()
-        .filter(|tie| tie.is_left || tie.is_out_of_reach);
-    let off = left.map(|tie| (tie.goal + tie.gap - tie.target).abs());
+/// How far from where they are to be in the end joints and attachments were left open at most (m or rad), or yield to their forces by more than a
+/// tenth of what would count as put apart.
+pub(in crate::kkt) fn joint_violation(island: &Island, length_unit: f64) -> f64 {
+    let ties = island.joints.ties.iter();
+    let off = ties.map(|tie| {
+        let yielded = (tie.yielding * tie.multiplier).abs();
+        let unit = match tie.row.measure.is_turn() {
+            true => 1.0,
+            false => length_unit,
+        };
+        if tie.is_left || tie.is_out_of_reach {
+            (tie.goal + tie.gap - tie.target).abs()
+        } else if yielded > RESTING_THIN * unit {
+            yielded
+        } else {
+            0.0
+        }
+    });
     off.fold(0.0, f64::max)
 }
 

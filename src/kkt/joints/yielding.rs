@@ -14,8 +14,8 @@ use crate::system::{Block, Moments};
 /// Share of the way that all which is joined together would fall in a step, by which a joint that carries it opens (-).
 ///
 /// Joints are meant to hold: of 1/60 s that is `1.4e-8` m. Straight bridges of 7 planks under a soft block (36 stiffnesses, steps and kinds of joints) are
-/// solved in every step from a tenth of it to ten times as much; with a tenth a ball of 1.6 t on one of 160 kg threw that up, by a twentieth of
-/// what it had brought, and with ten times as much half of its steps are told as left open.
+/// solved in every step from a tenth of it to ten times as much; with a tenth a ball of 1.6 t that falls onto one of 160 kg gains a
+/// twentieth of what was there, and with ten times as much most steps of that are told as left open (small strain, 1/60 s).
 const JOINT_YIELDING: Judged = Judged::new("kkt::JOINT_YIELDING", 1e-5);
 
 /// What is joined together.
