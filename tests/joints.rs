@@ -70,6 +70,8 @@ mod stiff_chain;
 
 #[path = "joints/taut.rs"]
 mod taut;
+#[path = "joints/taut_links.rs"]
+mod taut_links;
 
 #[path = "joints/inside.rs"]
 mod inside;

@@ -235,9 +235,10 @@ fn a_pile_wakes_with_the_forces_it_fell_asleep_with_while_others_were_solved() {
     assert_eq!(now.len(), each.len(), "the same points touch");
     let single = off(now.as_flattened(), each.as_flattened());
     // Of redundant contacts, shares are what is remembered: forgotten, they differ by 5e-5 of the largest force. The rest is the motion
-    // that is left when a body falls asleep, 1e-8 of its size in the time until then.
-    assert!(sums < 1e-7, "sums differ by {sums:e}");
-    assert!(single < 1e-7, "single forces differ by {single:e}");
+    // that is left when a body falls asleep, 1e-8 of its size in the time until then, and what forces that are kept may miss: a millionth of the margin
+    // between the bodies, here a ten-millionth of what they are pressed together by.
+    assert!(sums < 5e-7, "sums differ by {sums:e}");
+    assert!(single < 5e-7, "single forces differ by {single:e}");
 }
 
 #[test]

@@ -112,10 +112,9 @@ pub(super) fn closes(island: &Island) -> bool {
 
 /// Elastic energy that closing has stored, no more than its forces have done on their way: who has put ends apart has brought it (J).
 pub(super) fn stretched_by_closing(island: &Island, summary: &IslandSummary) -> f64 {
-    let ties = island.joints.ties.iter().filter(|tie| tie.closing != 0.0);
-    let works = ties.map(|tie| {
+    let works = island.joints.ties.iter().map(|tie| {
         let force = tie.multiplier.abs().max(tie.row.last_multiplier().abs());
-        force * tie.closing.abs()
+        force * tie.closes_by()
     });
     let stored = summary.end_energy[1] - summary.start_energy[1];
     stored.min(works.sum()).max(0.0)

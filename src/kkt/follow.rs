@@ -7,6 +7,7 @@
 
 mod arrival;
 mod consistent;
+mod fineness;
 mod listing;
 mod parted;
 mod trend;
@@ -15,6 +16,7 @@ pub(super) use self::arrival::return_to_first_stop;
 pub(super) use self::consistent::joint_violation;
 pub(super) use self::parted::{end_losses, list_parted};
 
+use self::fineness::{enough, n_exact_passes, note_start, still};
 use self::listing::Listing;
 use self::trend::Trend;
 use super::cones;
@@ -26,16 +28,12 @@ use super::tolerances::{
 };
 use super::working_set::{self, Turned};
 use crate::constraint::contact::ContactMemory;
-use crate::linalg::cone::SETTLING;
-use crate::math::{REAL_EPSILON, exp, is_held};
+use crate::math::{exp, is_held};
 use crate::system::Block;
 
 /// Passes of a step that stop short of where the forces lead. Every one of them goes on with forces that do not know what comes after: bodies
 /// that are stopped that often meet in ways that the step does not resolve.
 const MOST_STOPS: usize = 20;
-
-/// Share of the margin within which the laws hold where bodies of large strain find their equilibrium to a residual (-).
-const CURVED_TOLERANCE: f64 = 1e-6;
 
 /// Passes that count as one iteration. In the second half of them the laws need only hold to [`CLOSE_ENOUGH`].
 const PASSES_PER_ITERATION: usize = 2;
@@ -163,7 +161,7 @@ fn try_passes(
         let has_more = !misleads && working_set::add_violated(island, tolerance, kept, memory);
         // Forces of the last step that are kept must be right, or what rests creeps.
         let enough = if is_guess {
-            tolerance
+            still(island, tolerance)
         } else {
             enough(island, is_eased, tolerance)
         };
@@ -283,41 +281,6 @@ pub(super) fn is_in_range(island: &Island) -> bool {
         Block::Flex(block) => block.positions().iter().all(|x| is_held(*x)),
         Block::Rigid(block) => block.current().centre.iter().all(|x| is_held(*x)),
     })
-}
-
-/// Whether the contacts at hand are so many that they are solved as a sparse problem.
-fn has_many_rows(island: &Island) -> bool {
-    cones::is_sparse(island, 2 * island.contacts.len() + island.joints.ties.len())
-}
-
-/// Passes in which the laws have to hold as well as they can be made to.
-fn n_exact_passes(island: &Island, settings: &SolveSettings) -> usize {
-    if has_many_rows(island) {
-        FEW_PASSES.min(settings.max_newton)
-    } else {
-        settings.max_newton
-    }
-}
-
-/// Notes how fine the laws are to hold at the least: by what the multipliers of the last step miss, if there are any, as far down as rapier's
-/// numbers hold positions. With a tolerance of lengths alone, what rests in an `f64` world may tremble for good.
-fn note_start(island: &mut Island, guessed: Option<f64>, settings: &SolveSettings) {
-    let of_guess = guessed.map_or(f64::INFINITY, |guessed| SETTLING.get() * guessed);
-    island.passes.finest = of_guess.max(REAL_EPSILON * working_set::extent(island, settings));
-}
-
-/// How far the laws may be from holding at the end of a pass (m).
-fn enough(island: &Island, is_eased: bool, tolerance: f64) -> f64 {
-    let margin = island.passes.margin;
-    if is_eased {
-        CLOSE_ENOUGH * margin
-    } else if has_many_rows(island) {
-        tolerance.max((LARGE_TOLERANCE * margin).min(island.passes.finest))
-    } else if island.has_large() {
-        tolerance.max((CURVED_TOLERANCE * margin).min(island.passes.finest))
-    } else {
-        tolerance
-    }
 }
 
 /// Goes back to where the step begins, with the contacts that are near there.

@@ -54,8 +54,10 @@ pub(super) struct Passes {
     pub margin: f64,
     /// What joints may miss besides where contacts press what they hold (m or rad): what would count as put apart in the next step.
     pub slack: f64,
-    /// How fine the laws are to hold at the least, by what the step began with (m).
-    pub finest: f64,
+    /// What the laws missed under the multipliers of the last step (m).
+    pub guessed: f64,
+    /// How well rapier's numbers hold positions (m).
+    pub held: f64,
     /// Impacts of rigid bodies within the step, and the blocks that may go on from there.
     pub hits: Vec<Hit>,
     pub carried: Vec<bool>,

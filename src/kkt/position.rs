@@ -56,7 +56,7 @@ pub(super) fn solve_positions(
         follow::list_parted(island);
     } else if summary.is_stopped && !settings.may_be_cut {
         // No path tells how far the bodies may go.
-        together::end_together(island, settings.dt, summary);
+        together::end_together(island, (settings.dt, settings.length_unit), summary);
     }
     if !island.joints.ties.is_empty() {
         island.joints.prepare(&mut island.blocks);
@@ -72,5 +72,8 @@ pub(super) fn solve_positions(
     island.joints.prepare(&mut island.blocks);
     summary.gap_violation = working_set::gap_violation(island, summary.is_unsolved());
     summary.slip_violation = working_set::slip_violation(island);
-    summary.joint_violation = follow::joint_violation(island, settings.length_unit);
+    // Where all end together that is told already.
+    if !island.joints.ties.is_empty() {
+        summary.joint_violation = follow::joint_violation(island, settings.length_unit, false);
+    }
 }

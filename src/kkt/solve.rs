@@ -1,5 +1,6 @@
 //! The step of an island, on one page: its stages, in order.
 
+use super::follow::joint_violation;
 use super::gentle::GAINED;
 use super::island::Island;
 use super::settings::{KktError, SolveSettings};
@@ -88,7 +89,7 @@ fn solve_stages(
         gentle::end_gently(island, settings, memory, &mut summary)?;
     }
     if is_thrown && !has_path || gentle::has_gained(island, settings, &summary) {
-        together::end_together(island, settings.dt, &mut summary);
+        together::end_together(island, (settings.dt, settings.length_unit), &mut summary);
         together::measure_ended(island, settings, &mut summary);
     }
     if treatment.limits_energy() {
@@ -98,6 +99,10 @@ fn solve_stages(
             // What such a step has lost is lost.
             *reserve = reserve.min(stored);
         }
+    }
+    if summary.is_unsolved() && !island.joints.ties.is_empty() {
+        island.joints.measure(&island.blocks);
+        summary.joint_violation = joint_violation(island, settings.length_unit, true);
     }
     momentum::count_late_forces(island, settings);
     momentum::publish_forces(island, settings.dt);

@@ -6,6 +6,7 @@
 //! join nobody. Where nobody else is near they go that way under their loads, as one body: what was put into
 //! each other and finds no way out flies and falls.
 
+use super::follow::joint_violation;
 use super::group::Group;
 use super::island::{Island, SolveSettings};
 use super::joints::ActiveJoint;
@@ -80,7 +81,13 @@ fn rates_of(motion: &RigidMotion) -> RigidRates {
 /// Ends the step where it began; returns whether it does.
 ///
 /// Not if loads beyond all measure are to blame: then the step is to be refused.
-pub(super) fn end_together(island: &mut Island, dt: f64, summary: &mut IslandSummary) -> bool {
+///
+/// - `dt`, `length_unit`: see [`SolveSettings`](super::SolveSettings) (s, m).
+pub(super) fn end_together(
+    island: &mut Island,
+    (dt, length_unit): (f64, f64),
+    summary: &mut IslandSummary,
+) -> bool {
     let is_overloaded =
         |block: &Block| matches!(block, Block::Flex(block) if block.is_overloaded());
     if island.blocks.iter().any(is_overloaded) {
@@ -118,7 +125,7 @@ pub(super) fn end_together(island: &mut Island, dt: f64, summary: &mut IslandSum
     }
     island.contacts.clear();
     island.pressed_before.clear();
-    island.joints.ties.clear();
+    let ties = std::mem::take(&mut island.joints.ties);
     for (block, &leader) in island.blocks.iter_mut().zip(&leaders) {
         let own = moments_of(block);
         let centre = own
@@ -154,6 +161,10 @@ pub(super) fn end_together(island: &mut Island, dt: f64, summary: &mut IslandSum
             }
         }
     }
+    island.joints.ties = ties;
+    island.joints.measure(&island.blocks);
+    summary.joint_violation = joint_violation(island, length_unit, true);
+    island.joints.ties.clear();
     true
 }
 

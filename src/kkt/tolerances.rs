@@ -17,7 +17,8 @@ pub(super) const LARGE_TOLERANCE: f64 = 1e-3;
 /// Passes after which laws of many contacts need only hold to [`CLOSE_ENOUGH`], and passes of what has used up its budget.
 pub(crate) const FEW_PASSES: usize = 6;
 
-/// Share of its way's margin by which a true gap or slip may miss what the law asks for (-).
+/// Share of its way's margin by which a true gap or slip may miss what the law asks for (-), and of what many contacts missed with the forces of the
+/// last step.
 pub(super) const CLOSE_ENOUGH: f64 = 0.05;
 
 /// Shares of its own mobility that a contact gives way by, one after the other (-): the first costs a pass three digits.

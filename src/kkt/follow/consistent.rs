@@ -129,21 +129,21 @@ pub(super) fn leave_immovable(island: &mut Island) {
 }
 
 /// How far from where they are to be in the end joints and attachments were left open at most (m or rad), or yield to their forces by more than a
-/// tenth of what would count as put apart.
-pub(in crate::kkt) fn joint_violation(island: &Island, length_unit: f64) -> f64 {
+/// tenth of what would count as put apart. Of a step that `is_unsolved`, whose forces mean nothing, all of them that are open by so much.
+pub(in crate::kkt) fn joint_violation(island: &Island, length_unit: f64, is_unsolved: bool) -> f64 {
     let ties = island.joints.ties.iter();
     let off = ties.map(|tie| {
-        let yielded = (tie.yielding * tie.multiplier).abs();
         let unit = match tie.row.measure.is_turn() {
             true => 1.0,
             false => length_unit,
         };
-        if tie.is_left || tie.is_out_of_reach {
+        let counts = |off: f64| if off > RESTING_THIN * unit { off } else { 0.0 };
+        if is_unsolved {
+            counts(tie.open())
+        } else if tie.is_left || tie.is_out_of_reach {
             (tie.goal + tie.gap - tie.target).abs()
-        } else if yielded > RESTING_THIN * unit {
-            yielded
         } else {
-            0.0
+            counts((tie.yielding * tie.multiplier).abs())
         }
     });
     off.fold(0.0, f64::max)

@@ -136,6 +136,15 @@ impl ActiveJoint {
         }
     }
 
+    /// How far the step brings its ends nearer to where they are to be (m or rad): all at once where that is next to nothing.
+    pub(in crate::kkt) fn closes_by(&self) -> f64 {
+        let is_still = matches!(self.finish, Finish::Hold { rate: 0.0 });
+        match self.closing {
+            0.0 if is_still && self.holds() => (self.start - self.goal).abs(),
+            closing => closing.abs(),
+        }
+    }
+
     /// Whether its ends move against each other in the step, drawn together or left elsewhere than where they are to be.
     pub(in crate::kkt) fn moves_apart(&self) -> bool {
         self.closing != 0.0 || self.is_hard && self.goal != self.target
@@ -225,7 +234,17 @@ impl ActiveJoint {
 
     /// Whether the row has held what it measures in this step.
     pub(in crate::kkt) fn holds(&self) -> bool {
-        let is_law = matches!(self.finish, Finish::Hold { .. } | Finish::Limit);
-        is_law && self.is_movable && !self.is_left && self.is_closed()
+        self.is_law() && self.is_movable && !self.is_left && self.is_closed()
+    }
+
+    /// Whether the row is to hold what it measures, as joints and limits do.
+    fn is_law(&self) -> bool {
+        matches!(self.finish, Finish::Hold { .. } | Finish::Limit)
+    }
+
+    /// How far from where it is to be in the end the last iterate has left it (m or rad).
+    pub(in crate::kkt) fn open(&self) -> f64 {
+        let from = self.goal + self.gap - self.target;
+        if self.is_law() { self.off(from) } else { 0.0 }
     }
 }

@@ -129,7 +129,7 @@ pub(in crate::kkt) fn island_of(blocks: Vec<(Block, Sums)>) -> (Island, Vec<Sums
 fn ended(island: &mut Island) -> Vec<Sums> {
     assert!(together::end_together(
         island,
-        DT,
+        (DT, 1.0),
         &mut IslandSummary::default()
     ));
     island.blocks.iter_mut().map(at_end).collect()

@@ -139,7 +139,8 @@ impl Touch {
 
     /// Looks which equations hold, up to a force (N) and a way (m) that count for nothing; returns whether others do than before.
     ///
-    /// Without these a flat part that lies on an obstacle and presses nowhere would open and close by rounding for ever.
+    /// Without these a flat part that lies on an obstacle and presses nowhere would open and close by rounding for ever. Where forces tell nothing yet,
+    /// `no_force` without end, what touches is held: the obstacle may be all that holds the body.
     pub(super) fn revise(
         &mut self,
         obstacles: &[Obstacle],
@@ -153,13 +154,17 @@ impl Touch {
         let friction = obstacles[self.obstacle].friction();
         let slides = self.free_axis.is_some() || friction == 0.0;
         let most = friction * held.force.max(0.0) + no_force;
+        let touching = if no_force.is_finite() {
+            -no_way
+        } else {
+            no_way
+        };
+        let closes = held.beside.gap < touching;
         let next = match self.hold {
-            Hold::Open if held.beside.gap < -no_way && self.is_kept_out(held.beside.normal) => {
-                match slides {
-                    true => Hold::Slides(0.0),
-                    false => Hold::Sticks,
-                }
-            }
+            Hold::Open if closes && self.is_kept_out(held.beside.normal) => match slides {
+                true => Hold::Slides(0.0),
+                false => Hold::Sticks,
+            },
             Hold::Open => Hold::Open,
             _ if held.force < -no_force => Hold::Open,
             Hold::Sticks if held.friction.abs() > most => Hold::Slides(held.friction.signum()),

@@ -73,7 +73,7 @@ const LEVELS: [f64; 3] = [1e2, 1e4, 1e6];
 /// Factorizations allowed to warm proximal steps until the residual is lower by [`GAIN`](proximal); few if they have failed the last time.
 const N_WARM: [usize; 2] = [12, 3];
 
-/// The part of the error at the start that may be left (-), here and in the passes of a step: what comes to rest is solved the finer the less it
+/// The part of the error at the start that may be left (-), here and in passes of large strain: what comes to rest is solved the finer the less it
 /// moves, and comes to rest.
 pub(crate) const SETTLING: Judged = Judged::new("linalg::SETTLING", 5e-4);
 

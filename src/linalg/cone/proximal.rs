@@ -133,6 +133,7 @@ impl Proximal {
         }
         self.status.clone_from(&state.status);
         let (mut level, mut is_lowered) = (self.first_level(problem, reduced, system), false);
+        let (rests, mut n_refining) = (refined.is_some(), 1);
         self.slips.forget();
         let mut completed = Measure {
             residual: f64::INFINITY,
@@ -140,9 +141,9 @@ impl Proximal {
         };
         for _ in 0..MOST_STEPS {
             let n_before = system.n_changes;
-            // what is solved is only refined as far as the factor at hand, or a first one, goes
+            // what is solved is only refined as far as the factor at hand, or a first one of a penalty, goes
             let most = match &refined {
-                Some(_) => (start + 1).min(limit).max(system.spent()),
+                Some(_) => (start + n_refining).min(limit).max(system.spent()),
                 None => limit,
             };
             self.place(problem, reduced, state);
@@ -227,6 +228,11 @@ impl Proximal {
                 level += 1;
                 self.penalize(reduced, LEVELS[level]);
                 (last, n_idle) = (f64::INFINITY, 0);
+            }
+            // softer ones leave much of it where many bodies lie on each other, which tremble by that for good
+            if rests && n_idle == 0 && !is_lowered && level + 1 < LEVELS.len() {
+                (level, n_refining) = (LEVELS.len() - 1, 2);
+                self.penalize(reduced, LEVELS[level]);
             }
             if measure.is_dilated
                 || refined.is_some()

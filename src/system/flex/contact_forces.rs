@@ -12,6 +12,8 @@ pub(super) struct ContactForces {
     pub total: Vec2,
     /// Their moment about the centre, by the levers they were given with (N m).
     pub moment: f64,
+    /// `Σ lever·force`: by as much a radian they turn a body back that they stretch, and on one that they press (N m).
+    pub stretch: f64,
 }
 
 impl ContactForces {
@@ -27,7 +29,7 @@ impl ContactForces {
             self.nodal.fill(0.0);
             self.is_used = false;
         }
-        (self.total, self.moment) = (Vec2::zeros(), 0.0);
+        (self.total, self.moment, self.stretch) = (Vec2::zeros(), 0.0, 0.0);
     }
 
     /// Adds a force at a node (N) that acts at a lever from the centre (m).
@@ -36,5 +38,6 @@ impl ContactForces {
         self.is_used = true;
         self.total += force;
         self.moment += cross(lever, force);
+        self.stretch += lever.dot(&force);
     }
 }

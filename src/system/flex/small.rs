@@ -262,3 +262,6 @@ fn check_rigid_motion(shared: &mut Shared, factor: f64) -> Result<(), CholeskyEr
         Err(CholeskyError::IllConditioned { error })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,7 +5,7 @@ use super::solve::{AT_REST, largest_displacement};
 use crate::body::{FlexState, Frame, FrameMotion};
 use crate::fe::model::MassMatrix;
 use crate::integrator::Weights;
-use crate::math::{Mat2, Vec2, node_vec, perp, rotation, set_node_vec};
+use crate::math::{Mat2, Vec2, cos, node_vec, perp, rotation, set_node_vec};
 use crate::system::flex::impulse::Gathered;
 use crate::system::flex::shared::Shared;
 use crate::system::rigid_way::RigidWay;
@@ -68,13 +68,15 @@ impl SmallStrain {
     /// Share of its size by which a turn of the frame that [`solve`](Self::solve) has found changes the places that it found (-).
     ///
     /// Forces have turned against the displacements, as far as these reach, and the spin has changed with the turn by `2 δθ/dt`: what it
-    /// presses outwards by answers within `dt²/4 · 2 ω 2δθ/dt · r = dt ω δθ r`, with Coriolis' forces by less than four times that.
+    /// presses outwards by answers within `dt²/4 · 2 ω 2δθ/dt · r = dt ω δθ r`, with Coriolis' forces by less than four times that. What stretches the
+    /// body turns it back.
     pub fn turning_share(shared: &Shared) -> f64 {
         let turn = shared.step.dt * shared.now.frame.spin.abs();
         if turn <= AT_REST {
             return 1.0;
         }
-        (largest_displacement(shared) / shared.shape.size + 2.0 * turn).min(1.0)
+        let levers = turned_back(shared);
+        (largest_displacement(shared) / shared.shape.size + 2.0 * turn + levers).min(1.0)
     }
 
     /// Adds a multiple of an acceleration's response; the centre's is `mean` (m/s²).
@@ -294,17 +296,34 @@ impl SmallStrain {
 }
 
 /// What turns a node beyond the answer of `A⁻¹`, per couple by the levers of forces and by their reference arms (1/(kg m²)).
+///
+/// Forces that stretch the body turn it back: their levers turn with it. That is as much of a position's answer as inertia is, `(ω dt)²` times as much
+/// where they would swing it at `ω`.
 fn turning(shared: &Shared, of: Response) -> [f64; 2] {
     let damped = 1.0 + shared.shape.model.rayleigh().mass * shared.step.weights.b1;
     let by_arms = 1.0 / (shared.shape.arms.polar * damped);
     // Beta-2 gives an angle `b0` per acceleration, the mean of two spins gives `dt b1 / 2`.
     let Weights { b0, b1 } = shared.step.weights;
     let mean = 0.5 * shared.step.dt * b1 / b0;
-    let share = match of {
-        Response::Position => mean / damped,
-        _ => 1.0,
+    let inertia = shared.now.inertia;
+    let by_levers = match of {
+        Response::Position => mean / (damped * inertia + mean * b0 * back(shared)),
+        _ => inertia.recip(),
     };
-    [share / shared.now.inertia, by_arms]
+    [by_levers, by_arms]
+}
+
+/// What a turn of the frame takes from the moment of the forces that stretch the body (N m): the less the farther the step turns it, and nothing from a
+/// quarter turn on. What forces press is stiff by its own inertia.
+pub(super) fn back(shared: &Shared) -> f64 {
+    let turn = shared.now.frame.angle - shared.start.frame.angle;
+    shared.contact.stretch.max(0.0) * cos(turn).max(0.0)
+}
+
+/// Share of a turn of the frame by which the forces that stretch the body turn it back within the step (-).
+pub(super) fn turned_back(shared: &Shared) -> f64 {
+    let [by_levers, _] = turning(shared, Response::Position);
+    shared.step.weights.b0 * by_levers * back(shared)
 }
 
 /// Gives massless nodes in contact the velocity they moved with: the trapezoidal rule would let it alternate for ever

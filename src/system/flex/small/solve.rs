@@ -17,6 +17,7 @@
 //! The angle obeys the balance of angular momentum instead of its row of (C.5), which is exact for finite displacements too.
 
 use super::SmallStrain;
+use super::end::{back, turned_back};
 use crate::body::Frame;
 use crate::integrator::Weights;
 use crate::math::{Vec2, add_node_vec, cross, node_vec, perp, rounding, set_node_vec};
@@ -176,14 +177,15 @@ impl SmallStrain {
             .shape
             .arms
             .split(shared.shape.kind, &mut self.increment);
-        let angle = shared.now.frame.angle;
+        let (angle, back) = (shared.now.frame.angle, back(shared));
         self.advance(shared, turn);
-        self.balance_angular_momentum(shared);
+        self.balance_angular_momentum(shared, (angle, back));
         let turned = (shared.now.frame.angle - angle).abs();
         if shared.step.dt * shared.now.frame.spin.abs() > AT_REST {
             return turned;
         }
-        turned * (largest_displacement(shared) / shared.shape.size).min(1.0)
+        let share = largest_displacement(shared) / shared.shape.size + turned_back(shared);
+        turned * share.min(1.0)
     }
 
     /// Applies the increments to displacements and rates in the frame.
@@ -226,7 +228,10 @@ impl SmallStrain {
     }
 
     /// Corrects the turn so that angular momentum grows by the impulse of the torques.
-    fn balance_angular_momentum(&mut self, shared: &mut Shared) {
+    ///
+    /// Levers of contact forces are those of the iterate before, at the angle `seen`: where they stretch the body they are taken to turn on with
+    /// it, and [`back`], or iterates of what is taut would swing ever farther. It makes no difference in the end, where the angle stays.
+    fn balance_angular_momentum(&mut self, shared: &mut Shared, (seen, back): (f64, f64)) {
         let mut torque = shared.contact.moment;
         if shared.shape.kind != Frame::Free || shared.loads.uniform.is_none() {
             shared.now.place(&shared.shape);
@@ -244,15 +249,17 @@ impl SmallStrain {
         if let Frame::Hinged(_) = shared.shape.kind {
             torque -= hinge_torque(shared);
         }
-        self.torque = torque;
         let Weights { b1, .. } = shared.step.weights;
+        torque -= back * (shared.now.frame.angle - seen);
         let impulse = (shared.step.dt - b1) * shared.start.torque + b1 * torque;
         let missing = shared.start.momentum + impulse - momentum;
         let damped = 1.0 + shared.shape.model.rayleigh().mass * b1;
         shared.now.inertia = shared.shape.inertia_of(&shared.now.displacement);
-        let change = missing / (shared.now.inertia * damped);
+        let half = 0.5 * shared.step.dt;
+        let change = missing / (shared.now.inertia * damped + half * b1 * back);
+        self.torque = torque - half * change * back;
         shared.now.frame.spin += change;
-        shared.now.frame.angle += 0.5 * shared.step.dt * change;
+        shared.now.frame.angle += half * change;
         shared.now.frame.spin_rate += change / shared.step.dt;
         shared.now.place(&shared.shape);
     }

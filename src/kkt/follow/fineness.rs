@@ -1,0 +1,62 @@
+//! How finely the laws are asked to hold in a pass.
+
+use crate::kkt::cones;
+use crate::kkt::island::{Island, SolveSettings};
+use crate::kkt::tolerances::{CLOSE_ENOUGH, FEW_PASSES, LARGE_TOLERANCE};
+use crate::kkt::working_set;
+use crate::linalg::cone::SETTLING;
+use crate::math::REAL_EPSILON;
+
+/// Share of the margin within which the laws hold where bodies of large strain find their equilibrium to a residual (-).
+const CURVED_TOLERANCE: f64 = 1e-6;
+
+/// Whether the contacts at hand are so many that they are solved as a sparse problem.
+fn has_many_rows(island: &Island) -> bool {
+    cones::is_sparse(island, 2 * island.contacts.len() + island.joints.ties.len())
+}
+
+/// Passes in which the laws have to hold as well as they can be made to.
+pub(super) fn n_exact_passes(island: &Island, settings: &SolveSettings) -> usize {
+    if has_many_rows(island) {
+        FEW_PASSES.min(settings.max_newton)
+    } else {
+        settings.max_newton
+    }
+}
+
+/// Notes what the multipliers of the last step miss, if there are any, and how well rapier's numbers hold positions: with a tolerance of lengths
+/// alone what rests may tremble by it for good, as vertices that roll on each other do from step to step.
+pub(super) fn note_start(island: &mut Island, guessed: Option<f64>, settings: &SolveSettings) {
+    island.passes.guessed = guessed.unwrap_or(f64::INFINITY);
+    island.passes.held = REAL_EPSILON * working_set::extent(island, settings);
+}
+
+/// What forces of the last step may miss and be kept: where contacts alone are many, what is nothing to that which is nothing to the margin (m). What rests
+/// creeps by no more in a step.
+pub(super) fn still(island: &Island, tolerance: f64) -> f64 {
+    if has_many_rows(island) && island.joints.ties.is_empty() {
+        tolerance.max(LARGE_TOLERANCE * LARGE_TOLERANCE * island.passes.margin)
+    } else {
+        tolerance
+    }
+}
+
+/// How far the laws may be from holding at the end of a pass (m).
+pub(super) fn enough(island: &Island, is_eased: bool, tolerance: f64) -> f64 {
+    let margin = island.passes.margin;
+    // Of what large strain or joints hold errors are forces of what is stiff.
+    let curved = || {
+        let settled = (SETTLING.get() * island.passes.guessed).max(island.passes.held);
+        tolerance.max((CURVED_TOLERANCE * margin).min(settled))
+    };
+    if is_eased {
+        CLOSE_ENOUGH * margin
+    } else if has_many_rows(island) && island.joints.ties.is_empty() {
+        let left = CLOSE_ENOUGH * island.passes.guessed.max(still(island, tolerance));
+        tolerance.max((LARGE_TOLERANCE * margin).min(left))
+    } else if has_many_rows(island) || island.has_large() {
+        curved()
+    } else {
+        tolerance
+    }
+}
