@@ -219,6 +219,63 @@ fn what_slides_pulls_with_its_coefficient_and_sticks_when_it_turns_round() {
     }
 }
 
+/// A plate that touches its support, or begins a little inside it, is held by that alone, whatever holds it along: a load of its own balances what the
+/// support gives, on a slope too where friction holds it.
+#[test]
+fn what_lies_on_its_support_is_loaded_there() {
+    for (depth, slope, friction, is_guided) in [
+        (0.0, 0.0, 0.0, true),
+        (0.0, 0.0, 0.5, true),
+        (0.0, 0.0, 0.5, false),
+        (0.0, 0.3, 0.5, false),
+        (1e-3, 0.3, 0.5, false),
+    ] {
+        let mesh = rectangle([1.0, 0.5], [8, 4], CellKind::Quad4).expect("a grid");
+        let law = NeoHookean::plane_strain(1e5, 0.3);
+        let description = FiniteStrainDescription::new(mesh, law, 1000.0);
+        let model = FiniteStrainModel::assemble(description).expect("a plate");
+        let rest = model.rest_positions().to_vec();
+        let n = rest.len() / 2;
+        let is_held: Vec<bool> = rest
+            .chunks_exact(2)
+            .flat_map(|p| [is_guided && p[0] == 0.0, false])
+            .collect();
+        let (sin, cos) = f64::sin_cos(slope);
+        let (weight, none) = (1000.0, vec![0.0; rest.len()]);
+        let load = [weight * sin / n as f64, -weight * cos / n as f64].repeat(n);
+        let case = ContactCase {
+            load: LoadCase {
+                from: &none,
+                to: &load,
+                is_held: &is_held,
+                places: &rest,
+                n_increments: 10,
+            },
+            obstacles: &[Obstacle::half_plane([0.0, depth], [0.0, 1.0]).with_friction(friction)],
+        };
+        let mut stepper = ContactStepper::new(model, exactly()).expect("good settings");
+        let mut positions = rest.clone();
+        let context =
+            format!("{depth} m deep, {slope} rad, friction {friction}, guided {is_guided}");
+        let report = stepper.solve(case, &mut positions);
+        report.unwrap_or_else(|error| panic!("{context}: {error}"));
+        let contacts = stepper.contacts();
+        let normal: f64 = contacts.iter().map(|c| c.normal_force).sum();
+        let along: f64 = contacts.iter().map(|c| c.friction_force.abs()).sum();
+        assert!(
+            (normal - weight * cos).abs() < 1e-5 * weight,
+            "{context}: {normal} N"
+        );
+        assert!(friction > 0.0 || along < 1e-6, "{context}: {along} N along");
+        let total: f64 = contacts.iter().map(|c| c.friction_force).sum();
+        let expected = if is_guided { total } else { weight * sin };
+        assert!(
+            (total - expected).abs() < 1e-5 * weight,
+            "{context}: {total} N along"
+        );
+    }
+}
+
 #[test]
 fn obstacles_that_are_none_and_nodes_between_two_are_refused_and_nothing_moves() {
     let model = plate(
