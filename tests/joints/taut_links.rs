@@ -93,7 +93,7 @@ fn hinged(scene: &mut Scene, (modulus, gap): (f64, f64), is_small: bool) -> Vec<
 #[test]
 fn what_is_drawn_straight_stores_what_was_brought() {
     let mut findings = Findings::default();
-    // Drawn out by up to a hundredth of their length, by 150 kN each but for one.
+    // Drawn out by up to a hundredth of their length, by 15 to 3,000 kN.
     for (modulus, gap) in [
         (1e8, 5e-3),
         (1e9, 5e-3),
@@ -113,10 +113,10 @@ fn what_is_drawn_straight_stores_what_was_brought() {
                     };
                     // Hubs share the gaps as the links do.
                     let brought = stored(links.len(), modulus, gap);
-                    let (mut most, mut energy, mut uns) = (0.0f64, 0.0, 0);
+                    let (mut most, mut energy, mut n_unsolved) = (0.0f64, 0.0, 0);
                     for _ in 0..(2.0 * rate) as usize {
-                        let report = scene.try_step().expect("input");
-                        uns += usize::from(!is_solved(report));
+                        let report = scene.try_step().expect("the input is right");
+                        n_unsolved += usize::from(!is_solved(report));
                         let of = report.energy();
                         energy = of.kinetic + of.elastic;
                         most = most.max(energy);
@@ -125,9 +125,11 @@ fn what_is_drawn_straight_stores_what_was_brought() {
                     // They swing by .1 rad/s in the beginning: .02 J of every link.
                     let more = 0.03 * links.len() as f64 + 0.01 * brought;
                     let holds = most <= brought + more && (energy / brought - 1.0).abs() < 0.02;
-                    findings.check(uns == 0 && holds && given > -more, || {
+                    // Damped bodies of large strain turn what closes them at once into heat.
+                    let is_told = given > -more && (!is_small || given < 2.0 * more);
+                    findings.check(n_unsolved == 0 && holds && is_told, || {
                         format!(
-                            "{modulus:e} Pa, {gap} m, {rate} Hz, small {is_small}, {n} links: brought {brought} J, at most {most}, in the end {energy}, dissipated {given}, unsolved {uns}"
+                            "{modulus:e} Pa, {gap} m, {rate} Hz, small {is_small}, {n} links: brought {brought} J, at most {most}, in the end {energy}, dissipated {given}, unsolved {n_unsolved}"
                         )
                     });
                 }

@@ -31,14 +31,18 @@ pub(super) fn note_start(island: &mut Island, guessed: Option<f64>, settings: &S
     island.passes.held = REAL_EPSILON * working_set::extent(island, settings);
 }
 
-/// What forces of the last step may miss and be kept: where contacts alone are many, what is nothing to that which is nothing to the margin (m). What rests
-/// creeps by no more in a step.
+/// What forces of the last step may miss and be kept (m).
 pub(super) fn still(island: &Island, tolerance: f64) -> f64 {
-    if has_many_rows(island) && island.joints.ties.is_empty() {
-        tolerance.max(LARGE_TOLERANCE * LARGE_TOLERANCE * island.passes.margin)
+    if island.joints.ties.is_empty() && has_many_rows(island) {
+        next_to_nothing(island, tolerance)
     } else {
         tolerance
     }
+}
+
+/// Where contacts alone are many, what is nothing to that which is nothing to the margin (m). What rests creeps by no more in a step.
+fn next_to_nothing(island: &Island, tolerance: f64) -> f64 {
+    tolerance.max(LARGE_TOLERANCE * LARGE_TOLERANCE * island.passes.margin)
 }
 
 /// How far the laws may be from holding at the end of a pass (m).
@@ -51,12 +55,19 @@ pub(super) fn enough(island: &Island, is_eased: bool, tolerance: f64) -> f64 {
     };
     if is_eased {
         CLOSE_ENOUGH * margin
-    } else if has_many_rows(island) && island.joints.ties.is_empty() {
-        let left = CLOSE_ENOUGH * island.passes.guessed.max(still(island, tolerance));
-        tolerance.max((LARGE_TOLERANCE * margin).min(left))
-    } else if has_many_rows(island) || island.has_large() {
-        curved()
+    } else if !has_many_rows(island) {
+        if island.has_large() {
+            curved()
+        } else {
+            tolerance
+        }
+    } else if island.joints.ties.is_empty() {
+        let missed = island
+            .passes
+            .guessed
+            .max(next_to_nothing(island, tolerance));
+        tolerance.max((LARGE_TOLERANCE * margin).min(CLOSE_ENOUGH * missed))
     } else {
-        tolerance
+        curved()
     }
 }

@@ -136,11 +136,13 @@ impl ActiveJoint {
         }
     }
 
-    /// How far the step brings its ends nearer to where they are to be (m or rad): all at once where that is next to nothing.
+    /// How far the step brings its ends nearer to where they are to be (m or rad): all at once, as it is made, where that is next
+    /// to nothing.
     pub(in crate::kkt) fn closes_by(&self) -> f64 {
         let is_still = matches!(self.finish, Finish::Hold { rate: 0.0 });
+        let is_new = self.row.last_multiplier() == 0.0;
         match self.closing {
-            0.0 if is_still && self.holds() => (self.start - self.goal).abs(),
+            0.0 if is_new && is_still && self.holds() => (self.start - self.goal).abs(),
             closing => closing.abs(),
         }
     }

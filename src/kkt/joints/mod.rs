@@ -11,6 +11,7 @@ mod laden;
 mod law;
 mod rates;
 mod rows;
+mod stretch;
 mod twist;
 mod yielding;
 

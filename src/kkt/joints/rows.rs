@@ -10,6 +10,7 @@
 
 use super::held::JointHold;
 use super::law::resolve;
+use super::stretch::tell_stretch;
 use super::{ActiveJoint, Finish, Joints};
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, JointRow, When, unit_wrench};
@@ -246,6 +247,7 @@ impl Joints {
                 }
             }
         }
+        tell_stretch(&self.ties, &self.grips, blocks);
     }
 
     /// Gathers the joints' part of a solution as impulses on flexible blocks and wrenches on rigid ones; of accelerations only

@@ -244,6 +244,11 @@ impl FlexBlock {
         }
     }
 
+    /// Adds to what the forces at hand stretch the body by, `Σ lever·force` (N m): a body of small strain is turned back by that.
+    pub fn stretch_by(&mut self, stretch: f64) {
+        self.shared.contact.stretch += stretch;
+    }
+
     /// Puts the iterate back to the beginning of the step.
     pub fn restart(&mut self) {
         let shared = &mut self.shared;

@@ -12,7 +12,8 @@ pub(super) struct ContactForces {
     pub total: Vec2,
     /// Their moment about the centre, by the levers they were given with (N m).
     pub moment: f64,
-    /// `Σ lever·force`: by as much a radian they turn a body back that they stretch, and on one that they press (N m).
+    /// `Σ lever·force` of what holds the body and pulls at it: by as much a radian it turns the body back that it stretches, and on one that it
+    /// presses (N m).
     pub stretch: f64,
 }
 
@@ -38,6 +39,5 @@ impl ContactForces {
         self.is_used = true;
         self.total += force;
         self.moment += cross(lever, force);
-        self.stretch += lever.dot(&force);
     }
 }

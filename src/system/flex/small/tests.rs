@@ -67,6 +67,7 @@ fn settle(block: &mut FlexBlock, forces: [Vec2; 2]) -> usize {
         for (node, force) in ends.into_iter().zip(forces) {
             let lever = block.position(node) - block.centre();
             block.add_contact_force(node, force, lever);
+            block.stretch_by(lever.dot(&force));
         }
         block.solve();
         let now = ends.map(|node| block.position(node));
