@@ -56,8 +56,8 @@ pub(super) struct Passes {
     pub slack: f64,
     /// What the laws missed under the multipliers of the last step (m).
     pub guessed: f64,
-    /// How well rapier's numbers hold positions (m).
-    pub held: f64,
+    /// Rounding of positions in rapier's numbers (m).
+    pub rounding: f64,
     /// Impacts of rigid bodies within the step, and the blocks that may go on from there.
     pub hits: Vec<Hit>,
     pub carried: Vec<bool>,

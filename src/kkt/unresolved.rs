@@ -80,8 +80,8 @@ mod tests {
     use crate::fe::material::LinearElastic;
     use crate::integrator::Beta2;
     use crate::math::Vec2;
-    use crate::system::{FlexBlock, FlexLoad, Grip, Point, Step};
-    use std::sync::Arc;
+    use crate::system::samples::{body_of, predicted};
+    use crate::system::{Grip, Point};
 
     const DT: f64 = 1e-2;
 
@@ -93,23 +93,9 @@ mod tests {
         let plate = FlexBodyBuilder::rectangle([1.0, 0.8], [8, 6])
             .small_strain()
             .material(material)
-            .pin_where(|[_, y]| y < 1e-9, Pin::both())
-            .build();
-        let Ok(body) = plate else {
-            panic!("a plain rectangle")
-        };
-        let fixed = body.fixed_dofs().to_vec();
-        let mut block = FlexBlock::new(Arc::clone(body.model()), fixed, body.frame());
-        let step = Step::new(&Beta2::default(), DT);
-        let load = FlexLoad {
-            force: body.nodal_forces(),
-            gravity: Vec2::zeros(),
-            prescribed: body.prescribed(),
-            reaction: body.reactions(),
-        };
-        let mut state = body.state().clone();
-        let started = block.start(step, &mut state, &load);
-        assert!(started.is_ok() && block.predict(step, &state, &load).is_ok());
+            .pin_where(|[_, y]| y < 1e-9, Pin::both());
+        let body = body_of(plate);
+        let mut block = predicted(&body, DT);
         let rest = body.model().placed_positions();
         let upper = (0..body.model().n_nodes()).filter(|node| rest[2 * node + 1] > 0.8 - 1e-9);
         let middle = upper.min_by(|a, b| {

@@ -124,7 +124,7 @@ impl StepReport {
 
     /// Largest distance from where they should be that joints and attachments were left at as they contradict each other (m, or rad of what keeps an angle):
     /// as of a body that is welded to two places which are farther apart than it is long; or that joints of rigid bodies yield by, if that is more than 1e-4 of rapier's length unit (or
-    /// rad). What was only put there closes over some steps and does not count.
+    /// rad). What was only put there closes over some steps and does not count. Of an island whose step is not finished all count that are open by more than that.
     pub fn joint_violation(&self) -> f64 {
         self.joint_violation
     }

@@ -11,6 +11,8 @@ mod rigid_block;
 mod rigid_load;
 mod rigid_motion;
 mod rigid_way;
+#[cfg(test)]
+pub(crate) mod samples;
 mod step;
 
 pub use common_motion::Hold;

@@ -138,3 +138,53 @@ fn what_is_drawn_straight_stores_what_was_brought() {
     }
     findings.report();
 }
+
+/// A link on a pin that a spring pulls taut is longer by `F L / E A` and swings no farther than at first: both hold on to the world, which does not turn
+/// with it.
+#[test]
+fn a_link_that_a_spring_pulls_taut_swings_no_farther() {
+    let [length, height, thickness] = LINK;
+    for (modulus, stiffness) in [(1e9, 1e5), (1e9, 1e6), (1e10, 1e7)] {
+        for rate in [60.0, 240.0] {
+            let mut scene = Scene::in_free_space(1.0 / rate);
+            let body = scene.flexible(link(modulus, 0.0, true).angvel(0.1));
+            let end = |x: f64| move |[at, _]: [f64; 2]| at == x;
+            let pin = AttachmentBuilder::pin(body).where_(end(0.0)).to_world();
+            let spring = AttachmentBuilder::spring_damper(body, stiffness, 1e-2 * stiffness)
+                .where_(end(length))
+                .rest_length(0.4)
+                .to_world()
+                .at_point([length + 0.5, 0.0]);
+            for attachment in [pin.at_point([0.0, 0.0]), spring] {
+                let attached = scene.bodies.attach(attachment, &scene.world.bodies);
+                attached.expect("nodes of an edge");
+            }
+            let own = modulus * height * thickness / length;
+            let expected = 0.1 * stiffness / (own + stiffness);
+            let (mut swings, mut longer) = ([0.0f64; 2], 0.0);
+            for half in &mut swings {
+                for _ in 0..rate as usize {
+                    scene.step();
+                    let body = scene.body(body);
+                    let places = (0..body.n_nodes()).map(|node| body.position(node));
+                    let right: Vec<[f64; 2]> = places.filter(|x| x[0] > 0.99 * length).collect();
+                    let sum = right
+                        .iter()
+                        .fold([0.0; 2], |sum, x| [sum[0] + x[0], sum[1] + x[1]]);
+                    let [x, y] = sum.map(|sum| sum / right.len() as f64);
+                    *half = half.max(y.abs());
+                    longer = x.hypot(y) - length;
+                }
+            }
+            let context = format!("{modulus:e} Pa, {stiffness:e} N/m, {rate} Hz");
+            assert!(
+                (longer - expected).abs() < 1e-2 * expected,
+                "{context}: longer by {longer} m, not {expected}"
+            );
+            assert!(
+                swings[1] <= 1.05 * swings[0] && swings[0] < 0.02,
+                "{context}: swings by {swings:?} m"
+            );
+        }
+    }
+}

@@ -28,7 +28,7 @@ pub(super) fn n_exact_passes(island: &Island, settings: &SolveSettings) -> usize
 /// alone what rests may tremble by it for good, as vertices that roll on each other do from step to step.
 pub(super) fn note_start(island: &mut Island, guessed: Option<f64>, settings: &SolveSettings) {
     island.passes.guessed = guessed.unwrap_or(f64::INFINITY);
-    island.passes.held = REAL_EPSILON * working_set::extent(island, settings);
+    island.passes.rounding = REAL_EPSILON * working_set::extent(island, settings);
 }
 
 /// What forces of the last step may miss and be kept (m).
@@ -50,7 +50,7 @@ pub(super) fn enough(island: &Island, is_eased: bool, tolerance: f64) -> f64 {
     let margin = island.passes.margin;
     // Of what large strain or joints hold errors are forces of what is stiff.
     let curved = || {
-        let settled = (SETTLING.get() * island.passes.guessed).max(island.passes.held);
+        let settled = (SETTLING.get() * island.passes.guessed).max(island.passes.rounding);
         tolerance.max((CURVED_TOLERANCE * margin).min(settled))
     };
     if is_eased {

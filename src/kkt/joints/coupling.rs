@@ -1,6 +1,6 @@
 //! Joint rows in the Delassus matrix: they follow those of the contacts.
 
-use super::rows::pair_mobility;
+use super::mobility::pair_mobility;
 use super::{Among, Joints, Rows};
 use crate::constraint::contact::Kinematics;
 use crate::constraint::joint::{JointGrip, unit_wrench};

@@ -9,6 +9,7 @@ mod held;
 mod joined;
 mod laden;
 mod law;
+mod mobility;
 mod rates;
 mod rows;
 mod stretch;

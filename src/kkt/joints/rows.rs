@@ -10,6 +10,7 @@
 
 use super::held::JointHold;
 use super::law::resolve;
+use super::mobility::own_mobility;
 use super::stretch::tell_stretch;
 use super::{ActiveJoint, Finish, Joints};
 use crate::constraint::contact::Kinematics;
@@ -18,7 +19,7 @@ use crate::kkt::active_contact::ActiveContact;
 use crate::kkt::problem::RowProblem;
 use crate::kkt::settings::SolveSettings;
 use crate::linalg::complementarity::{RowKind, Status};
-use crate::math::{Vec2, perp, rounding};
+use crate::math::{perp, rounding};
 use crate::system::{Block, Point, Response};
 
 /// Mobility of a row, relative to that across it, up to which nothing moves it (-): the square of a lever's rounding. Forces of any size would
@@ -369,40 +370,5 @@ impl Joints {
 pub(in crate::kkt) fn add_wrench(sum: &mut [f64; 3], factor: f64, wrench: [f64; 3]) {
     for (sum, value) in sum.iter_mut().zip(wrench) {
         *sum += factor * value;
-    }
-}
-
-/// `G A⁻¹ Gᵀ` of one row (1/kg).
-fn own_mobility(blocks: &[Block], (grips, direction, is_turn): (&[JointGrip], Vec2, bool)) -> f64 {
-    let mut sum = 0.0;
-    for at in grips {
-        for from in grips.iter().filter(|from| from.block == at.block) {
-            sum += pair_mobility(
-                blocks,
-                (at, direction, is_turn),
-                (from, direction, is_turn),
-                Response::Position,
-            );
-        }
-    }
-    sum
-}
-
-/// How a grip of one row moves by a unit multiplier at a grip of another, on the same block (1/kg).
-pub(super) fn pair_mobility(
-    blocks: &[Block],
-    (at, along, turns): (&JointGrip, Vec2, bool),
-    (from, push, is_turned): (&JointGrip, Vec2, bool),
-    of: Response,
-) -> f64 {
-    match &blocks[at.block] {
-        Block::Rigid(block) => block.mobility_between(
-            unit_wrench(at, along, turns),
-            unit_wrench(from, push, is_turned),
-        ),
-        Block::Flex(_) => {
-            let compliance = blocks[at.block].compliance(at.grip(), from.grip(), of);
-            at.weight * from.weight * along.dot(&(compliance * push))
-        }
     }
 }

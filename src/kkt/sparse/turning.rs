@@ -67,8 +67,8 @@ mod tests {
     use crate::integrator::Beta2;
     use crate::math::cross;
     use crate::path::samples::Random;
-    use crate::system::{FlexBlock, FlexLoad, Step};
-    use std::sync::Arc;
+    use crate::system::FlexBlock;
+    use crate::system::samples::{body_of, predicted};
 
     const DT: f64 = 1e-3;
     /// Nodes that forces act at.
@@ -77,32 +77,13 @@ mod tests {
     /// A rectangle one cell thick, all of whose nodes are on its surface, that flies and turns slowly.
     fn rectangle(random: &mut Random) -> FlexBlock {
         let material = LinearElastic::plane_stress(1e4, 0.3).density(10.0);
-        let built = FlexBodyBuilder::rectangle([1.0, 0.4], [4, 1])
+        let builder = FlexBodyBuilder::rectangle([1.0, 0.4], [4, 1])
             .small_strain()
             .material(material)
             .rotation(random.within(3.0))
             .linvel(random.point(1.0).into())
-            .angvel(random.within(0.1))
-            .build();
-        let body = match built {
-            Ok(body) => body,
-            Err(error) => panic!("a plain rectangle: {error}"),
-        };
-        let mut block = FlexBlock::new(
-            Arc::clone(body.model()),
-            body.fixed_dofs().to_vec(),
-            body.frame(),
-        );
-        let step = Step::new(&Beta2::default(), DT);
-        let load = FlexLoad {
-            force: body.nodal_forces(),
-            gravity: Vec2::zeros(),
-            prescribed: body.prescribed(),
-            reaction: body.reactions(),
-        };
-        let mut state = body.state().clone();
-        let started = block.start(step, &mut state, &load);
-        assert!(started.is_ok() && block.predict(step, &state, &load).is_ok());
+            .angvel(random.within(0.1));
+        let mut block = predicted(&body_of(builder), DT);
         for node in 0..block.model().n_nodes() {
             block.prepare_compliance(node);
         }

@@ -11,8 +11,8 @@ use crate::kkt::joints::Finish;
 use crate::kkt::together;
 use crate::math::{cross, perp};
 use crate::path::samples::Random;
-use crate::system::{FlexBlock, FlexLoad, Point, RigidBlock, RigidLoad, Step};
-use std::sync::Arc;
+use crate::system::samples::{body_of, predicted};
+use crate::system::{Point, RigidBlock, RigidLoad, Step};
 
 const DT: f64 = 1e-2;
 
@@ -59,22 +59,8 @@ pub(in crate::kkt) fn flexible(
             .linvel(random.point(4.0).into())
             .angvel(random.within(6.0))
     };
-    let body = match builder.build() {
-        Ok(body) => body,
-        Err(error) => panic!("a plain rectangle: {error}"),
-    };
-    let fixed = body.fixed_dofs().to_vec();
-    let mut block = FlexBlock::new(Arc::clone(body.model()), fixed, body.frame());
-    let step = Step::new(&Beta2::default(), DT);
-    let load = FlexLoad {
-        force: body.nodal_forces(),
-        gravity: Vec2::zeros(),
-        prescribed: body.prescribed(),
-        reaction: body.reactions(),
-    };
-    let mut state = body.state().clone();
-    let started = block.start(step, &mut state, &load);
-    assert!(started.is_ok() && block.predict(step, &state, &load).is_ok());
+    let body = body_of(builder);
+    let block = predicted(&body, DT);
     let [x, y] = body.momentum();
     let start = [x, y, body.angular_momentum([0.0; 2]), body.energy().kinetic];
     (Block::Flex(Box::new(block)), start)
