@@ -1,6 +1,8 @@
 //! Bodies of large strain in a pipeline: the steps they take by themselves, contact, what is conserved, and what is refused.
 
 mod common;
+#[path = "large_contact/round.rs"]
+mod round;
 
 use common::*;
 use foil2d::body::BuildError;

@@ -154,6 +154,13 @@ impl FlexBody {
         contact_offset(self.model(), extent)
     }
 
+    /// The shortest boundary edge of a body (m) so far from the origin that rapier's numbers hold twice its usual
+    /// [`contact_offset`](Self::contact_offset) no more.
+    pub(crate) fn edge_beside_rounding(&self) -> Option<f64> {
+        let edge = shortest_edge(self.model());
+        (self.contact_offset() > 2.0 * OFFSET.get() * edge).then_some(edge)
+    }
+
     /// Sets how the surface meets others, from the next step on.
     ///
     /// Rapier's collider is given what differs from the settings before; what the user has set on the collider itself stays.

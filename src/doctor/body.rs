@@ -27,9 +27,6 @@ const SAG: f64 = 0.1;
 /// Densities of solids, aerogel to osmium with room to spare (kg/m³).
 const DENSITIES: [f64; 2] = [0.1, 3e4];
 
-/// Share of its shortest edge by which a body is kept off terrain where rapier's numbers are fine.
-const FINE: f64 = 1e-2;
-
 /// Steps over which a body that is damped beyond the critical ratio creeps to where a load takes it: seen as creeping. Rubber of games is damped
 /// critically, and follows in one or two.
 const CREEPS: f64 = 20.0;
@@ -148,8 +145,7 @@ impl Patient<'_> {
         if sizes > 1.0 {
             findings.push(Finding::Fast { body, sizes });
         }
-        let edge = self.body.model().shortest_edge();
-        if self.body.contact_offset() > 2.0 * FINE * edge {
+        if let Some(edge) = self.body.edge_beside_rounding() {
             let distance = low.norm().max(high.norm());
             findings.push(Finding::FarAway {
                 body,

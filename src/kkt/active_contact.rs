@@ -22,6 +22,10 @@ pub struct ActiveContact {
     pub multiplier: [f64; 2],
     /// Impulse of the velocity stage, normal and tangential (N s).
     pub impulse: [f64; 2],
+    /// What the force gives beyond that along its row as it [acts midway](super::midway) through the step, along its normal and its tangent (N s).
+    pub(super) midway: [f64; 2],
+    /// How far its place has come against the rigid body of the pair since then (m).
+    pub(super) since_midway: Vec2,
     /// What the lasting force counts beyond its time (N s).
     pub(super) late: [f64; 2],
     /// Force of the acceleration stage (N).
@@ -105,8 +109,13 @@ impl ActiveContact {
         let late = settings.late();
         [0, 1].map(|axis| {
             let acts = (settings.dt - late) * self.multiplier[axis];
-            acts + self.impulse[axis] - late * self.settled[axis]
+            acts + self.impulse[axis] + self.midway[axis] - late * self.settled[axis]
         })
+    }
+
+    /// What has been taken of its force, or added, since its normal turned on the way, times how far it has slid (N s m).
+    pub(super) fn pushed_along(&self) -> f64 {
+        (self.midway[1] * self.slip).abs()
     }
 
     /// Velocity along the normal and the tangent at which the bodies came to where they are (m/s), see [`Block::approaching_velocity`].

@@ -10,6 +10,7 @@
 //! than that, and velocities that are changed against it make it grow. Their debts are taken from any step, as are those of
 //! bodies that are parted.
 
+use super::active_contact::ActiveContact;
 use super::calm::remove_relative_motion;
 use super::delassus::RowDirection;
 use super::island::{Island, SolveSettings};
@@ -65,14 +66,25 @@ pub(super) fn limit_energy(
         return;
     }
     let mut taken = 0.0;
-    if touches {
-        let driven;
-        [taken, driven] = remove_along_contacts(island, debt, settings);
+    let mut take_along = |island: &mut Island, axis: usize, excess: f64| {
+        let [removed, driven] = remove_along_contacts(island, axis, excess, settings);
         summary.work += driven;
         summary.end_energy[0] += driven;
+        removed
+    };
+    if touches {
+        taken = take_along(island, 0, debt);
     }
     if taken < debt {
         taken += remove_vibration(island, debt - taken);
+    }
+    if taken < debt {
+        // By what sliding contacts may have pushed along.
+        let pushed = island.contacts.iter().map(ActiveContact::pushed_along);
+        let most = pushed.sum::<f64>() / settings.dt;
+        if most > 0.0 {
+            taken += take_along(island, 1, most.min(debt - taken));
+        }
     }
     if taken < debt && (swings || island.presses_joined()) {
         let leaders = together::groups_of(island, |block| !block.is_prescribed());
@@ -117,18 +129,34 @@ fn seen_energy(island: &Island, dt: f64, kinetic: f64) -> f64 {
 
 /// Changes the end velocity along the response to the contact forces until `excess` (J) is gone, or as far as that
 /// direction carries energy; returns what was removed, and what driven bodies did with it (J).
-fn remove_along_contacts(island: &mut Island, excess: f64, settings: &SolveSettings) -> [f64; 2] {
+///
+/// - `axis`: along the normals (0), or against what slides, as friction would (1): what lies taut around something has no normal motion.
+fn remove_along_contacts(
+    island: &mut Island,
+    axis: usize,
+    excess: f64,
+    settings: &SolveSettings,
+) -> [f64; 2] {
     island.problem.rows.clear();
     island.problem.multipliers.clear();
     for (index, contact) in island.contacts.iter().enumerate() {
         let force = contact.multiplier[0].max(contact.remembered.normal);
-        if force > 0.0 && !contact.is_hard {
+        let counts = axis == 0 || contact.pushed_along() > 0.0;
+        if force > 0.0 && !contact.is_hard && counts {
+            let row = &contact.kinematics;
+            let (direction, along) = match axis {
+                0 => (row.normal, 1.0),
+                _ => {
+                    let velocity = row.relative(&island.blocks, |block, grip| block.velocity(grip));
+                    (row.tangent(), -velocity.dot(&row.tangent()).signum())
+                }
+            };
             island.problem.rows.push(RowDirection {
                 contact: index,
-                axis: 0,
-                direction: contact.kinematics.normal,
+                axis,
+                direction,
             });
-            island.problem.multipliers.push(force * settings.dt);
+            island.problem.multipliers.push(along * force * settings.dt);
         }
     }
     if island.problem.rows.is_empty() {
@@ -160,13 +188,14 @@ fn remove_along_contacts(island: &mut Island, excess: f64, settings: &SolveSetti
     // undo it and bring all that moves to rest.
     let pressed: f64 = island.problem.multipliers[..island.problem.rows.len()]
         .iter()
+        .map(|impulse| impulse.abs())
         .sum();
     let most = 1.0 + momentum_at_most(&island.blocks) / pressed;
     let step = step_of_parabola(curvature, slope, excess)
         .min(most)
         .max(-most);
     for (row, impulse) in island.problem.rows.iter().zip(&island.problem.multipliers) {
-        island.contacts[row.contact].impulse[0] += step * impulse;
+        island.contacts[row.contact].impulse[row.axis] += step * impulse;
     }
     let of_joints = &island.problem.multipliers[island.problem.rows.len()..];
     for (&row, impulse) in island.joints.listed.iter().zip(of_joints) {

@@ -8,6 +8,7 @@ mod own;
 mod retreat;
 mod rows;
 mod straight;
+mod turn;
 
 pub(super) use self::kept::KeptBase;
 use self::meetings::Meeting;
@@ -16,6 +17,7 @@ use self::members::{BlockBase, Carrier, SurfacePoint};
 use self::own::OwnWay;
 use self::retreat::LastWay;
 use self::straight::straight_part;
+pub(super) use self::turn::turn;
 use crate::constraint::contact::ContactMemory;
 use crate::math::{Vec2, rotation};
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};

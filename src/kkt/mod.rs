@@ -39,6 +39,7 @@ mod island;
 mod jammed;
 mod joint_mass;
 mod joints;
+mod midway;
 mod momentum;
 mod multipliers;
 mod parting;

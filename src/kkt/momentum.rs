@@ -135,7 +135,8 @@ pub(super) fn publish_forces(island: &mut Island, dt: f64) {
         }
     }
     for contact in &island.contacts {
-        let force = contact.force(dt);
+        let [told, midway] = [contact.force(dt), contact.midway];
+        let force = [0, 1].map(|axis| told[axis] + midway[axis] / dt);
         gathered::spread(
             &mut island.blocks,
             &contact.kinematics,

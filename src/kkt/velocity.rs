@@ -15,7 +15,7 @@ use super::impulses;
 use super::island::{Island, KktError, SolveSettings};
 use super::multipliers::prepare;
 use super::unresolved::unresolved_shares;
-use super::{answers, closing, gathered, hits, joint_mass, restitution};
+use super::{answers, closing, gathered, hits, joint_mass, midway, restitution};
 use crate::system::Response;
 
 pub(super) fn solve_velocities(
@@ -23,6 +23,7 @@ pub(super) fn solve_velocities(
     settings: &SolveSettings,
 ) -> Result<(), KktError> {
     take_out_hard_forces(island);
+    midway::act_midway(island, settings);
     for index in 0..island.contacts.len() {
         if island.contacts[index].is_closed() {
             // Newton's iterations may have ended without asking for a compliance.

@@ -93,14 +93,18 @@ pub(super) fn actual_work(
         }
     }
     for contact in contacts {
-        let [normal, tangent] = contact.given(settings);
         let kinematics = &contact.kinematics;
-        let impulse = normal * kinematics.normal + tangent * kinematics.tangent();
+        let along = |[n, t]: [f64; 2]| n * kinematics.normal + t * kinematics.tangent();
+        let (impulse, at_end) = (along(contact.given(settings)), along(contact.impulse));
         for a in kinematics.attachments() {
-            let block = &blocks[a.block];
-            if matches!(block, Block::Rigid(block) if block.is_prescribed()) {
-                let moved = block.position(a.grip.point) - block.start_position(a.grip.point);
-                work -= a.weight * impulse.dot(&moved) / settings.dt;
+            if let Block::Rigid(block) = &blocks[a.block]
+                && block.is_prescribed()
+            {
+                // What the velocity stage adds acts at the end.
+                let late = block.displacement(a.grip.lever);
+                let midway = block.displacement(a.grip.lever - contact.since_midway);
+                let power = (impulse - at_end).dot(&midway) + at_end.dot(&late);
+                work -= a.weight * power / settings.dt;
             }
         }
     }

@@ -17,6 +17,7 @@ pub struct ContactReport {
     pub gap: f64,
     /// Compressive force on the contactor along the normal (N): the impulse that the step adds to the bodies over its length. The
     /// part `1 - β1` of a force that lasts acts in the next step, so that sums over time, not single steps, balance momentum.
+    /// On a body of large strain it acts along the normal midway through the step, turned back by half of the way that this has turned.
     /// Negative where energy that the last step's force had added is taken back; at a contact that has just opened, only
     /// [`FlexBody::total_contact_force`](crate::body::FlexBody::total_contact_force) knows of that.
     pub normal_force: f64,

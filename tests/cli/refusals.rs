@@ -108,6 +108,9 @@ fn numbers_that_no_world_has_are_refused_where_they_stand() {
         jointed("kind = \"fixed\"\nbetween = [\"a\", \"a\"]\nat = [0.0, 0.0]"),
         jointed("kind = \"fixed\"\nbetween = [\"a\", \"b\"]\nat = [nan, 0.0]"),
         jointed("kind.prismatic.axis = [0.0, 0.0]\nbetween = [\"a\", \"b\"]\nat = [0.0, 0.0]"),
+        format!(
+            "{STEEL}{BEAM}[[attachment]]\nbody = \"beam\"\nnodes.near = [1.0, 0.0]\nkind.spring = {{ stiffness = 1e30, damping = 0.0 }}\n"
+        ),
     ];
     for text in cases {
         std::fs::write(folder.join("scene.toml"), &text).expect("a scene");

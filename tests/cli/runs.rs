@@ -242,3 +242,79 @@ fn what_has_no_law_for_large_strains_is_asked_to_be_a_body_of_small_ones() {
     let ran = told(&["run", "scene.toml", "--quiet"], &folder);
     assert!(ran.contains("6 steps, 0 cut, 0 unfinished"), "{ran}");
 }
+
+/// What sleeps has energy, and so has what rapier moves alone.
+#[test]
+fn energies_are_those_of_all_bodies() {
+    let folder = folder("energies");
+    let scene = format!(
+        "[world]\nduration = 3.0\ngravity = [0.0, 0.0]\n{STEEL}{BEAM}\
+         force = [{{ nodes.box = [[1.0, -inf], [inf, inf]], force = [0.0, -10.0] }}]\n\
+         [[rigid]]\nname = \"ball\"\nshape.ball.radius = 0.1\ndensity = 1000.0\ntranslation = [0.0, 9.0]\nlinvel = [2.0, 0.0]\n"
+    );
+    let scene = scene.replace("rayleigh = 1e-3", "rayleigh = 1e-2");
+    std::fs::write(folder.join("scene.toml"), scene).expect("a scene");
+    let told = told(&["run", "scene.toml", "--quiet"], &folder);
+    let row = last_row(&folder.join("out"));
+    let stiffness = 3.0 * 2.1e11 * 0.05 * 0.02_f64.powi(3) / 12.0;
+    let stored = 0.5 * 100.0 / stiffness;
+    let elastic = column(&row, "elastic_J");
+    assert!(
+        (elastic / stored - 1.0).abs() < 0.01,
+        "{elastic} J, {stored} J"
+    );
+    let mass = 1000.0 * std::f64::consts::PI * 0.01;
+    let kinetic = column(&row, "kinetic_J");
+    assert!((kinetic / (2.0 * mass) - 1.0).abs() < 1e-3, "{kinetic} J");
+    assert!(told.contains("6.2834e1 J at the end"), "{told}");
+}
+
+/// A ground far larger than the picture costs the PNG, and nothing else.
+#[test]
+fn what_cannot_be_painted_is_told_and_the_rest_is_written() {
+    let folder = folder("tiny");
+    let scene = "[world]\nduration = 0.02\n[materials.m]\nyoung = 1e6\npoisson = 0.3\ndensity = 1000.0\n\
+        [[flexible]]\nname = \"disc\"\nmaterial = \"m\"\nshape.disc = { radius = 0.005, edge = 0.00125 }\ntranslation = [0.0, 0.0051]\n\
+        [[rigid]]\nkind = \"fixed\"\nshape.halfspace.normal = [0.0, 1.0]\n";
+    std::fs::write(folder.join("scene.toml"), scene).expect("a scene");
+    let output = super::foil2d(&["run", "scene.toml"], &folder);
+    let [told, notes] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
+    assert!(output.status.success(), "{notes}");
+    assert!(
+        told.contains("replay.html") && told.contains("history.csv"),
+        "{told}"
+    );
+    let is_painted = folder.join("out/still.png").exists();
+    assert_eq!(is_painted, told.contains("still.png"), "{told}");
+    assert_ne!(
+        is_painted,
+        notes.contains("still.png is left out"),
+        "{notes}"
+    );
+}
+
+#[test]
+fn a_run_without_a_finished_step_fails() {
+    let folder = folder("unfinished");
+    let force = "force = [{ nodes.near = [1.0, 0.0], force = [0.0, 1e12] }]\n";
+    let scene = format!("[world]\nduration = 0.05\n{STEEL}{BEAM}{force}");
+    std::fs::write(folder.join("scene.toml"), scene).expect("a scene");
+    let complaint = complaint(&["run", "scene.toml", "--quiet"], &folder);
+    assert!(complaint.contains("no step was finished"), "{complaint}");
+    assert!(complaint.contains("3 unfinished") && folder.join("out/history.csv").exists());
+}
+
+/// An axis is a direction, however short.
+#[test]
+fn a_slide_along_a_tiny_axis_holds() {
+    let folder = folder("slide");
+    let scene = "[world]\nduration = 0.5\n\
+        [[rigid]]\nname = \"post\"\nkind = \"fixed\"\nshape.ball.radius = 0.1\n\
+        [[rigid]]\nname = \"cart\"\nshape.ball.radius = 0.1\ntranslation = [1.0, 0.0]\n\
+        [[joint]]\nkind.prismatic.axis = [1e-300, 0.0]\nbetween = [\"post\", \"cart\"]\nat = [0.0, 0.0]\n\
+        [[output.history]]\nbody = \"cart\"\nwhat = \"position\"\n";
+    std::fs::write(folder.join("scene.toml"), scene).expect("a scene");
+    told(&["run", "scene.toml", "--quiet"], &folder);
+    let height = column(&last_row(&folder.join("out")), "cart_y_m");
+    assert!(height.abs() < 1e-3, "{height} m");
+}

@@ -17,6 +17,10 @@ use foil2d::pipeline::{InsertionNote, Participant};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+/// Nodes of all shapes up to which a run of the default length takes some seconds, and how many there are to the square of an edge, about (-).
+const MANY_NODES: f64 = 6000.0;
+const NODES_BY_AREA: f64 = 5.0;
+
 #[derive(Args)]
 pub struct Options {
     /// A drawing: SVG, or GeoJSON (.json, .geojson).
@@ -27,7 +31,7 @@ pub struct Options {
     /// Only the shapes of this id, or of a group (layer) of this id; may be given several times.
     #[arg(long)]
     layer: Vec<String>,
-    /// Length of the cells' edges (m); a fifteenth of the largest shape without.
+    /// Length of the cells' edges (m); a fifteenth of the largest shape without, longer where the shapes are many.
     #[arg(long)]
     edge: Option<f64>,
     /// Young's modulus (Pa).
@@ -59,15 +63,19 @@ pub fn drop_outline(options: &Options) -> Result<(), Problem> {
     let path = options.out.join("scene.toml");
     let mut drawing = Drawing::read(options)?;
     check_writable(std::slice::from_ref(&path))?;
+    if std::fs::read_to_string(&path).is_ok_and(|before| is_changed(&before)) {
+        let what = "somebody has changed this scene: run it by `foil2d run`, remove it, or choose another folder by --out";
+        return Err(Problem::of_file(what, &path));
+    }
     let (source, mut built) = loop {
-        write(&path, &drawing.scene(options))?;
-        let mut source = Source::read(&path)?;
+        let mut source = Source::parse(&path, drawing.scene(options))?;
         source.title = stem_of(&options.outline);
         let built = build(&source)?;
         if !drawing.part(&built) {
             break (source, built);
         }
     };
+    write(&path, &signed(&drawing.scene(options)))?;
     for shape in drawing.shapes.iter().filter(|shape| shape.lift > 0.0) {
         note(&format!(
             "`{}` lies on another shape of the drawing: it falls from {:.3} m higher",
@@ -78,6 +86,30 @@ pub fn drop_outline(options: &Options) -> Result<(), Problem> {
     let n_steps = n_steps(&source.scene);
     let told = take_steps(&mut built, outputs, n_steps, options.quiet)?;
     print(&format!("wrote {}\n{told}", path.display()))
+}
+
+/// What stands before the sum of a scene's bytes, in its first line.
+const SIGNED: &str = "# by `foil2d drop`, ";
+
+/// A scene under a line that tells whether it has been changed.
+fn signed(scene: &str) -> String {
+    format!("{SIGNED}{:016x}\n{scene}", sum_of(scene))
+}
+
+/// Whether a scene is another one than was written.
+fn is_changed(scene: &str) -> bool {
+    let signed = scene
+        .strip_prefix(SIGNED)
+        .and_then(|rest| rest.split_once('\n'));
+    !signed.is_some_and(|(sum, scene)| u64::from_str_radix(sum, 16) == Ok(sum_of(scene)))
+}
+
+/// FNV-1a of the bytes of a text.
+fn sum_of(text: &str) -> u64 {
+    let bytes = text.bytes();
+    bytes.fold(0xcbf2_9ce4_8422_2325, |sum, byte| {
+        (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Problem> {
@@ -144,7 +176,9 @@ impl Drawing {
         // How large the shapes are says how finely their curves are read.
         let coarse = read(1e3 * options.scale)?;
         let size = coarse.iter().map(size_of).fold(0.0, f64::max);
-        let edge = options.edge.unwrap_or(size / 15.0);
+        let area: f64 = coarse.iter().map(area_of).sum();
+        let affordable = (NODES_BY_AREA * area / MANY_NODES).sqrt();
+        let edge = options.edge.unwrap_or(affordable.max(size / 15.0));
         let mut shapes: Vec<Falling> = Vec::new();
         let mut nodes_left = options.most_nodes;
         for (index, outline) in read(edge)?.into_iter().enumerate() {
@@ -251,6 +285,19 @@ fn extent(outline: &Outline, axis: usize) -> [f64; 2] {
     all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
         [low.min(x), high.max(x)]
     })
+}
+
+/// What is inside the outline (m²).
+fn area_of(outline: &Outline) -> f64 {
+    let area = |ring: &Vec<[f64; 2]>| {
+        let next = ring.iter().cycle().skip(1);
+        let cross = ring
+            .iter()
+            .zip(next)
+            .map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
+        0.5 * cross.sum::<f64>().abs()
+    };
+    area(&outline.outer) - outline.holes.iter().map(area).sum::<f64>()
 }
 
 fn size_of(outline: &Outline) -> f64 {

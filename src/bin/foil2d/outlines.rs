@@ -37,8 +37,16 @@ impl From<Refused> for Problem {
 
 /// The outlines of an SVG or JSON file.
 pub fn outlines(path: &Path, wanted: &Wanted<'_>) -> Result<Vec<Outline>, Refused> {
-    let text = read_text(path).map_err(Refused::File)?;
     let ending = path.extension().and_then(|ending| ending.to_str());
+    let other = match ending {
+        Some("msh") => Some("this is a mesh: name it in a scene, `shape.msh.file = \"...\"`"),
+        Some("toml") => Some("this is a scene: run it by `foil2d run`"),
+        _ => None,
+    };
+    if let Some(what) = other {
+        return Err(Refused::File(Problem::of_file(what, path)));
+    }
+    let text = read_text(path).map_err(Refused::File)?;
     let is_json = ending
         .is_some_and(|ending| ["json", "geojson"].contains(&ending.to_ascii_lowercase().as_str()));
     let found = match is_json {

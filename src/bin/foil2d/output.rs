@@ -1,11 +1,11 @@
 //! What a run writes.
 
 use super::build::Built;
-use super::files::check_writable;
+use super::files::{check_writable, note};
 use super::probe::{Probe, probes};
 use super::problem::Problem;
 use super::source::Source;
-use foil2d::io::{History, Replay, Scene, VtuSeries, write_still, write_still_png};
+use foil2d::io::{History, OutputError, Replay, Scene, VtuSeries, write_still, write_still_png};
 use std::path::PathBuf;
 
 /// Width of the picture as PNG (px).
@@ -21,6 +21,31 @@ pub struct Outputs {
     has_png: bool,
     history: History,
     probes: Vec<Probe>,
+    /// Of all bodies, after the first step and after the last (J).
+    energy: [f64; 2],
+}
+
+/// Kinetic, elastic and potential energy of all bodies, asleep or awake, in an island or not (J).
+fn energies(built: &Built) -> [f64; 3] {
+    let gravity = built.world.gravity;
+    let gravity = [f64::from(gravity.x), f64::from(gravity.y)];
+    let mut sum = [0.0; 3];
+    for (_, body) in built.flex_bodies.iter() {
+        let (own, [x, y]) = (body.energy(), body.centre_of_mass());
+        let lifted = body.gravity_scale() * body.mass() * (gravity[0] * x + gravity[1] * y);
+        for (sum, value) in sum.iter_mut().zip([own.kinetic, own.elastic, -lifted]) {
+            *sum += value;
+        }
+    }
+    let dynamic = built.world.bodies.iter().map(|(_, body)| body);
+    for body in dynamic.filter(|body| body.is_dynamic()) {
+        let centre = body.center_of_mass();
+        let [x, y] = [f64::from(centre.x), f64::from(centre.y)];
+        let weight = f64::from(body.gravity_scale()) * f64::from(body.mass());
+        sum[0] += f64::from(body.kinetic_energy());
+        sum[2] -= weight * (gravity[0] * x + gravity[1] * y);
+    }
+    sum
 }
 
 impl Outputs {
@@ -43,6 +68,7 @@ impl Outputs {
             has_png: spec.png,
             history: History::new(columns),
             probes,
+            energy: [0.0; 2],
             folder,
         };
         check_writable(&outputs.files()).map_err(|problem| match is_given {
@@ -68,13 +94,12 @@ impl Outputs {
     /// Takes in a step.
     pub fn record(&mut self, step: usize, time: f64, built: &Built) -> Result<(), Problem> {
         let report = built.flex.report();
-        let energy = report.energy();
-        let mut row = vec![
-            energy.kinetic,
-            energy.elastic,
-            energy.potential,
-            energy.dissipated,
-        ];
+        let [kinetic, elastic, potential] = energies(built);
+        self.energy[1] = kinetic + elastic + potential;
+        if step == 0 {
+            self.energy[0] = self.energy[1];
+        }
+        let mut row = vec![kinetic, elastic, potential, report.energy().dissipated];
         for probe in &mut self.probes {
             probe.read(built, &mut row)?;
         }
@@ -92,9 +117,14 @@ impl Outputs {
         Ok(())
     }
 
+    /// Energy of all bodies after the first step and after the last (J).
+    pub fn energy(&self) -> [f64; 2] {
+        self.energy
+    }
+
     /// Writes what is complete at the end; returns the files.
     pub fn finish(self, built: &Built) -> Result<Vec<PathBuf>, Problem> {
-        let files = self.files();
+        let mut files = self.files();
         self.history
             .write(self.folder.join("history.csv"))
             .map_err(Problem::plain)?;
@@ -112,7 +142,14 @@ impl Outputs {
         }
         if self.has_png {
             let path = self.folder.join("still.png");
-            write_still_png(path, &scene, PNG_WIDTH).map_err(Problem::plain)?;
+            match write_still_png(path, &scene, PNG_WIDTH) {
+                // The page and the SVG show it all the same.
+                Err(error @ OutputError::Unpaintable { .. }) => {
+                    note(&format!("still.png is left out: {error}"));
+                    files.retain(|file| !file.ends_with("still.png"));
+                }
+                written => written.map_err(Problem::plain)?,
+            }
         }
         Ok(files)
     }

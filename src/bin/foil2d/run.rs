@@ -77,9 +77,13 @@ pub fn take_steps(
         bar.inc(1);
     }
     bar.finish_and_clear();
-    let mut told = of_course(course.report(), &built.names);
+    let mut told = of_course(course.report(), outputs.energy(), &built.names);
     for file in outputs.finish(built)? {
         told.push_str(&format!("wrote {}\n", file.display()));
+    }
+    let course = course.report();
+    if failed.is_none() && n_steps > 0 && course.n_unfinished == n_steps {
+        failed = Some("no step was finished: look at loads and at what holds the bodies".into());
     }
     match failed {
         None => Ok(told),

@@ -19,7 +19,21 @@ pub struct Source {
 impl Source {
     /// Reads a scene.
     pub fn read(path: &Path) -> Result<Self, Problem> {
-        let text = read_text(path)?;
+        let what = match path.extension().and_then(|ending| ending.to_str()) {
+            Some("svg" | "json" | "geojson") => {
+                "this is a drawing: `foil2d drop` makes a scene of it"
+            }
+            Some("msh") => "this is a mesh: name it in a scene, `shape.msh.file = \"...\"`",
+            _ => "",
+        };
+        if !what.is_empty() {
+            return Err(Problem::of_file(what, path));
+        }
+        Self::parse(path, read_text(path)?)
+    }
+
+    /// Reads the text of a scene that is, or will be, in this file.
+    pub fn parse(path: &Path, text: String) -> Result<Self, Problem> {
         let scene = toml::from_str(&text).map_err(|error| match error.span() {
             Some(span) => Problem::at(of_parser(error.message()), path, &text, span.start),
             None => Problem::of_file(of_parser(error.message()), path),

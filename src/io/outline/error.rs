@@ -55,6 +55,16 @@ pub enum OutlineError {
         /// The limit.
         limit: usize,
     },
+    /// Closed curves of one path cross or touch, so that none of them is inside or outside of the other.
+    #[error(
+        "subpaths of `{name}` cross or touch near ({:.4e}, {:.4e}) m: unite them, or draw each as a path of its own", at[0], at[1]
+    )]
+    PartsMeet {
+        /// Name of the element, empty if it has none.
+        name: String,
+        /// Near where (m).
+        at: [f64; 2],
+    },
     /// There is no element of a name.
     #[error("there is no element with the id `{name}`")]
     NoSuchElement {

@@ -4,6 +4,7 @@
 //! all rings around it; just inside its own direction is added.
 
 use super::Outline;
+use robust::{Coord, orient2d};
 
 /// What is filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,13 +24,19 @@ impl FillRule {
     }
 }
 
-/// The outlines of rings that neither cross nor touch; if they do, meshing them says so.
+/// The outlines of rings. What crosses itself is for meshing to refuse.
+///
+/// # Errors
+/// A point near which two of the rings cross or touch: which of them is around the other has no answer then.
 pub(super) fn outlines_of(
     rings: Vec<Vec<[f64; 2]>>,
     rule: FillRule,
     name: Option<&str>,
-) -> Vec<Outline> {
+) -> Result<Vec<Outline>, [f64; 2]> {
     let rings: Vec<_> = rings.into_iter().filter(|ring| spans_area(ring)).collect();
+    if let Some(place) = meeting(&rings) {
+        return Err(place);
+    }
     let boxes: Vec<_> = rings.iter().map(|ring| bounds(ring)).collect();
     let around: Vec<Vec<usize>> = (0..rings.len())
         .map(|inner| {
@@ -71,7 +78,62 @@ pub(super) fn outlines_of(
             outlines[outline_of[outer]].holes.push(rings[ring].clone());
         }
     }
-    outlines
+    Ok(outlines)
+}
+
+/// A side of a ring.
+#[derive(Clone, Copy)]
+struct Side {
+    ring: usize,
+    ends: [[f64; 2]; 2],
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+/// Where sides of two rings cross or touch, if any do.
+fn meeting(rings: &[Vec<[f64; 2]>]) -> Option<[f64; 2]> {
+    if rings.len() < 2 {
+        return None;
+    }
+    let mut sides: Vec<Side> = Vec::new();
+    for (ring, points) in rings.iter().enumerate() {
+        for (i, &from) in points.iter().enumerate() {
+            let to = points[(i + 1) % points.len()];
+            sides.push(Side {
+                ring,
+                ends: [from, to],
+                low: [from[0].min(to[0]), from[1].min(to[1])],
+                high: [from[0].max(to[0]), from[1].max(to[1])],
+            });
+        }
+    }
+    // From left to right, each is compared with those that begin before it ends.
+    sides.sort_by(|one, other| one.low[0].total_cmp(&other.low[0]));
+    for (i, one) in sides.iter().enumerate() {
+        let reached = sides[i + 1..]
+            .iter()
+            .take_while(|other| other.low[0] <= one.high[0]);
+        for other in reached {
+            let is_beside = other.low[1] > one.high[1] || other.high[1] < one.low[1];
+            if other.ring != one.ring && !is_beside && meet(one.ends, other.ends) {
+                return Some([0, 1].map(|axis| {
+                    let low = one.low[axis].max(other.low[axis]);
+                    0.5 * (low + one.high[axis].min(other.high[axis]))
+                }));
+            }
+        }
+    }
+    None
+}
+
+/// Whether two segments whose boxes overlap have a point in common.
+fn meet(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> bool {
+    let coord = |[x, y]: [f64; 2]| Coord { x, y };
+    let parts = |[from, to]: [[f64; 2]; 2], ends: [[f64; 2]; 2]| {
+        let [first, last] = ends.map(|end| orient2d(coord(from), coord(to), coord(end)));
+        !(first > 0.0 && last > 0.0 || first < 0.0 && last < 0.0)
+    };
+    parts(one, other) && parts(other, one)
 }
 
 fn bounds(ring: &[[f64; 2]]) -> [[f64; 2]; 2] {

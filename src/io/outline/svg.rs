@@ -57,7 +57,8 @@ impl SvgOptions {
 /// (and hidden ones) are left out, as are text and images.
 ///
 /// # Errors
-/// If the text is no SVG, an id in the options is not in it, coordinates are beyond 1e9, curves need too many points, or nothing is filled.
+/// If the text is no SVG, an id in the options is not in it, coordinates are beyond 1e9, curves need too many points, subpaths of one path cross or touch
+/// each other, or nothing is filled.
 ///
 /// ```
 /// use foil2d::io::{SvgOptions, outlines_from_svg};
@@ -212,7 +213,11 @@ impl Reader<'_> {
             usvg::FillRule::EvenOdd => FillRule::EvenOdd,
         };
         let rings = self.rings(path, name)?;
-        self.outlines.extend(outlines_of(rings, rule, name));
+        let found = outlines_of(rings, rule, name).map_err(|at| OutlineError::PartsMeet {
+            name: name.unwrap_or_default().to_owned(),
+            at,
+        })?;
+        self.outlines.extend(found);
         Ok(())
     }
 

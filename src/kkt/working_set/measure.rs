@@ -86,6 +86,8 @@ impl ActiveContact {
                 },
             ],
             impulse: [0.0; 2],
+            midway: [0.0; 2],
+            since_midway: Vec2::zeros(),
             late: [0.0; 2],
             settled: [0.0; 2],
             parting: [0.0; 2],

@@ -5,7 +5,7 @@ use super::super::problem::Problem;
 use super::super::scene::{Attach, AttachKind, Joint, JointKind};
 use super::super::source::Source;
 use super::super::words::{AttachCulprit, of_attachment};
-use super::checks::check_pair;
+use super::checks::{are_finite, check_pair};
 use super::nodes::nodes;
 use super::{Built, vector};
 use foil2d::prelude::*;
@@ -41,11 +41,14 @@ pub fn join(built: &mut Built, source: &Source, joint: &Joint) -> Result<(), Pro
         }
         JointKind::Prismatic { axis } => {
             check_pair(source, "axis", axis)?;
-            if axis.get().0 == [0.0; 2] {
+            let [x, y] = axis.get().0;
+            let most = x.abs().max(y.abs());
+            if most == 0.0 {
                 let what = "the axis has no direction: give one such as [1.0, 0.0]";
                 return Err(source.problem(axis, what));
             }
-            let axis = vector(axis.get().0);
+            // Rapier's numbers may not hold its square.
+            let axis = vector([x / most, y / most]);
             let [own, others] = poses.map(|pose| pose.rotation.inverse() * axis);
             PrismaticJointBuilder::new(own)
                 .local_axis2(others)
@@ -77,6 +80,14 @@ pub fn attach(built: &mut Built, source: &Source, spec: &Attach) -> Result<(), P
     if chosen.is_empty() {
         let what = "the nodes chosen lie inside the body: choose some of its boundary";
         return Err(source.problem(&spec.nodes, what));
+    }
+    if let AttachKind::Spring { stiffness, damping } = *spec.kind.get()
+        && !are_finite(&[stiffness, damping])
+    {
+        let what = format!(
+            "the spring has the stiffness {stiffness:?} and the damping {damping:?}: give finite numbers up to 1e18"
+        );
+        return Err(source.problem(&spec.kind, what));
     }
     let attachment = match *spec.kind.get() {
         AttachKind::Pin => AttachmentBuilder::pin(body),

@@ -5,11 +5,12 @@ use foil2d::doctor::CourseReport;
 use std::fmt::Write as _;
 
 /// What a run was like, line by line.
-pub fn of_course(course: &CourseReport, names: &Names) -> String {
-    let [first, last] = course.energy;
+///
+/// - `first`, `last`: energy of all bodies after the first step and after the last (J).
+pub fn of_course(course: &CourseReport, [first, last]: [f64; 2], names: &Names) -> String {
     let mut told = format!(
         "{} steps, {} cut, {} unfinished; overlaps up to {:.2e} m, joints open up to {:.2e} m\n\
-         energy {first:.4e} J at the beginning, {last:.4e} J at the end, {:.4e} J dissipated\n",
+         energy {first:.4e} J after the first step, {last:.4e} J at the end; {:.4e} J dissipated by flexible bodies and what they touched\n",
         course.n_steps,
         course.n_cut,
         course.n_unfinished,

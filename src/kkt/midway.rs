@@ -1,0 +1,157 @@
+//! Forces wholly within their step act as the contact is midway through it.
+//!
+//! Positions are found with forces along the normals of the step's end. Where these turn within the step, `F·Δx` is then no work of a contact
+//! that stays closed: what slides around something convex at `v` is pushed along by `N v² dt / 2r`, friction or not, and in a bowl it is
+//! braked. Along the normal halfway, at the levers halfway, the work of a step by energy and momentum is that of the gap, `N (g' - g)`, to the
+//! third order of the turn: of two points exactly (Gonzalez 1996; Laursen, Chawla 1997). The difference is an impulse of the velocity stage.
+
+use super::active_contact::ActiveContact;
+use super::feasible::turn;
+use super::gathered;
+use super::island::{Island, SolveSettings};
+use super::joints::add_wrench;
+use crate::constraint::contact::ContactKey;
+use crate::math::{Mat2, Vec2, atan2, cos, cross, rotation, rounding};
+use crate::system::{Block, Grip, Point, Response};
+
+/// Cosine of the turn beyond which a contact is not what it was when the step began (-): a sharp corner met within the step.
+const LEAST_COS: f64 = 0.5;
+
+/// Turns the forces of contacts with flexible bodies to where they are midway, by impulses on top of what they have done.
+pub(super) fn act_midway(island: &mut Island, settings: &SolveSettings) {
+    if !settings.is_within || island.path.is_empty() {
+        return;
+    }
+    gathered::clear_wrenches(island);
+    gathered::clear_impulses(island);
+    let mut acts = false;
+    for index in 0..island.contacts.len() {
+        let Some(midway) = midway_of(island, index) else {
+            continue;
+        };
+        acts = true;
+        let contact = &mut island.contacts[index];
+        let change = settings.dt * (midway.force - midway.acting);
+        let [normal, tangent] = [contact.kinematics.normal, contact.kinematics.tangent()];
+        contact.midway = [normal.dot(&change), tangent.dot(&change)];
+        contact.since_midway = midway.since;
+        for grip in contact.kinematics.attachments() {
+            let share = grip.weight * change;
+            let Grip { point, lever } = grip.grip;
+            match (&mut island.blocks[grip.block], point) {
+                (Block::Flex(block), Point::Node(node)) => {
+                    block.gather_impulse(Response::Velocity, node, share, lever);
+                }
+                (Block::Rigid(_), _) => {
+                    let turned = cross(lever - midway.since, midway.force);
+                    let couple = settings.dt * (turned - cross(lever, midway.acting));
+                    let wrench = [share.x, share.y, grip.weight * couple];
+                    add_wrench(&mut island.wrenches[grip.block], 1.0, wrench);
+                }
+                _ => {}
+            }
+        }
+    }
+    if acts {
+        gathered::respond(island);
+        gathered::add_to_flexible(island, Response::Velocity, 1.0);
+        gathered::add_to_rigid(island, Response::Velocity, 1.0);
+        gathered::clear_impulses(island);
+    }
+}
+
+/// A force on a point midway through the step.
+struct Midway {
+    /// The force along the row (N).
+    acting: Vec2,
+    /// The same as it is midway (N).
+    force: Vec2,
+    /// By how much the lever of a rigid body differs from that midway (m).
+    since: Vec2,
+}
+
+/// The force of a contact midway, if that is another one.
+fn midway_of(island: &Island, index: usize) -> Option<Midway> {
+    let contact = &island.contacts[index];
+    let base = contact.base.filter(|base| !base.is_meeting)?;
+    if contact.is_hard || !contact.is_closed() || contact.kinematics.is_quasi_static() {
+        return None;
+    }
+    let [normal, tangent] = contact.multiplier;
+    let acting = normal * contact.kinematics.normal + tangent * contact.kinematics.tangent();
+    let has_pressed = has_pressed(island, contact);
+    let angle = match has_pressed {
+        true => turn(&island.path, &base.near, &island.blocks),
+        false => turn_of_met(island, contact),
+    };
+    if cos(angle) < LEAST_COS {
+        return None;
+    }
+    let back = rotation(-0.5 * angle);
+    let since = since_midway(contact, &island.blocks, (&back, has_pressed));
+    let is_same = angle.abs() <= rounding::SHARE && since.norm() <= rounding::SHARE;
+    (!is_same).then_some(Midway {
+        acting,
+        force: back * acting,
+        since,
+    })
+}
+
+fn key(island: &Island, contact: &ActiveContact) -> ContactKey {
+    island.candidates[contact.candidate].key
+}
+
+/// Whether the same contact pressed when the step began.
+fn has_pressed(island: &Island, contact: &ActiveContact) -> bool {
+    let own = key(island, contact);
+    (island.passes.parted.iter()).any(|before| key(island, before) == own)
+}
+
+/// By how much the normal of a contact that is met within the step has turned against the nearest contact of the same bodies that pressed before (rad).
+/// Bodies that meet have no normal before.
+fn turn_of_met(island: &Island, contact: &ActiveContact) -> f64 {
+    let own = key(island, contact);
+    let [_, met @ ..] = contact.kinematics.attachments() else {
+        return 0.0;
+    };
+    let moved = met
+        .iter()
+        .map(|grip| grip.weight * island.blocks[grip.block].displacement(grip.grip));
+    let place = contact.kinematics.position + moved.sum::<Vec2>();
+    let away = |before: &&ActiveContact| (before.kinematics.position - place).norm_squared();
+    let pressed = island.passes.parted.iter();
+    let of_pair = pressed.filter(|before| key(island, before).owners() == own.owners());
+    let Some(before) = of_pair.min_by(|one, other| away(one).total_cmp(&away(other))) else {
+        return 0.0;
+    };
+    let now = contact.kinematics.normal;
+    let before = match key(island, before).contactor == own.contactor {
+        true => before.kinematics.normal,
+        false => -before.kinematics.normal,
+    };
+    atan2(cross(before, now), before.dot(&now))
+}
+
+/// By how much the lever at the rigid body of a contact differs from that midway (m): where a point of the flexible body slides along it, by half of that way;
+/// elsewhere the lever turns with the normal, as what rolls is met by other points all the time.
+fn since_midway(
+    contact: &ActiveContact,
+    blocks: &[Block],
+    (back, has_pressed): (&Mat2, bool),
+) -> Vec2 {
+    let grips = contact.kinematics.attachments();
+    let Some((grip, body)) = grips.iter().find_map(|grip| match &blocks[grip.block] {
+        Block::Rigid(body) => Some((grip.grip, body)),
+        Block::Flex(_) => None,
+    }) else {
+        return Vec2::zeros();
+    };
+    match &blocks[grips[0].block] {
+        Block::Flex(_) if has_pressed => {
+            let [x, y, _] = body.moved();
+            let point = blocks[grips[0].block].displacement(grips[0].grip);
+            0.5 * (point - Vec2::new(x, y))
+        }
+        _ => grip.lever - back * grip.lever,
+    }
+}
