@@ -157,7 +157,14 @@ impl FlexBody {
     /// The shortest boundary edge of a body (m) so far from the origin that rapier's numbers hold twice its usual
     /// [`contact_offset`](Self::contact_offset) no more.
     pub(crate) fn edge_beside_rounding(&self) -> Option<f64> {
-        let edge = shortest_edge(self.model());
+        // As it was drawn: places far away have lost its digits.
+        let mesh = self.model().mesh();
+        let segments = mesh.boundary().segments().iter();
+        let lengths = segments.map(|&[a, b]| {
+            let [[ax, ay], [bx, by]] = [mesh.nodes()[a], mesh.nodes()[b]];
+            (bx - ax).powi(2) + (by - ay).powi(2)
+        });
+        let edge = lengths.fold(f64::INFINITY, f64::min).sqrt();
         (self.contact_offset() > 2.0 * OFFSET.get() * edge).then_some(edge)
     }
 

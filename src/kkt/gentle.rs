@@ -99,7 +99,7 @@ pub(super) fn end_gently(
         // Closed for the law of velocities, with no force of position to speak of.
         let pressed = if is_near { f64::MIN_POSITIVE } else { 0.0 };
         contact.multiplier = [pressed, 0.0];
-        contact.impulse = [0.0; 2];
+        (contact.impulse, contact.midway) = ([0.0; 2], [0.0; 2]);
         contact.settled = [0.0; 2];
         contact.status = [Status::Open; 2];
         contact.is_massless = false;

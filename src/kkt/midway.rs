@@ -10,6 +10,7 @@ use super::feasible::turn;
 use super::gathered;
 use super::island::{Island, SolveSettings};
 use super::joints::add_wrench;
+use super::work::kinetic_energy;
 use crate::constraint::contact::ContactKey;
 use crate::math::{Mat2, Vec2, atan2, cos, cross, rotation, rounding};
 use crate::system::{Block, Grip, Point, Response};
@@ -19,17 +20,21 @@ const LEAST_COS: f64 = 0.5;
 
 /// Turns the forces of contacts with flexible bodies to where they are midway, by impulses on top of what they have done.
 pub(super) fn act_midway(island: &mut Island, settings: &SolveSettings) {
+    for contact in &mut island.contacts {
+        (contact.midway, contact.since_midway) = ([0.0; 2], Vec2::zeros());
+    }
     if !settings.is_within || island.path.is_empty() {
         return;
     }
     gathered::clear_wrenches(island);
     gathered::clear_impulses(island);
-    let mut acts = false;
+    let (mut acts, mut planned) = (false, 0.0);
     for index in 0..island.contacts.len() {
         let Some(midway) = midway_of(island, index) else {
             continue;
         };
         acts = true;
+        planned += planned_work(&midway, &island.contacts[index], &island.blocks);
         let contact = &mut island.contacts[index];
         let change = settings.dt * (midway.force - midway.acting);
         let [normal, tangent] = [contact.kinematics.normal, contact.kinematics.tangent()];
@@ -54,10 +59,52 @@ pub(super) fn act_midway(island: &mut Island, settings: &SolveSettings) {
     }
     if acts {
         gathered::respond(island);
-        gathered::add_to_flexible(island, Response::Velocity, 1.0);
-        gathered::add_to_rigid(island, Response::Velocity, 1.0);
+        let share = add_as_planned(island, planned);
+        for contact in &mut island.contacts {
+            contact.midway = contact.midway.map(|impulse| share * impulse);
+            contact.since_midway *= share;
+        }
         gathered::clear_impulses(island);
     }
+}
+
+/// What a force midway does on bodies that are not driven beyond what that of the end does (J).
+fn planned_work(midway: &Midway, contact: &ActiveContact, blocks: &[Block]) -> f64 {
+    let grips = contact.kinematics.attachments().iter();
+    let works = grips.map(|a| {
+        let lever = match &blocks[a.block] {
+            Block::Rigid(body) if body.is_prescribed() => return 0.0,
+            Block::Rigid(_) => a.grip.lever - midway.since,
+            Block::Flex(_) => a.grip.lever,
+        };
+        let moved = |lever: Vec2| blocks[a.block].displacement(Grip { lever, ..a.grip });
+        let work = midway.force.dot(&moved(lever)) - midway.acting.dot(&moved(a.grip.lever));
+        a.weight * work
+    });
+    works.sum()
+}
+
+/// Adds the responses as far as they change the kinetic energy by no more than planned (J); returns the share. Impulses of blows that no step resolves
+/// would bring more by their squares.
+fn add_as_planned(island: &mut Island, planned: f64) -> f64 {
+    let mut add = |share: f64| {
+        gathered::add_to_flexible(island, Response::Velocity, share);
+        gathered::add_to_rigid(island, Response::Velocity, share);
+        kinetic_energy(&island.blocks)
+    };
+    let [before, after, mirrored] = [add(0.0), add(1.0), add(-2.0)];
+    let curvature = (0.5 * (after + mirrored) - before).max(0.0);
+    let slope = 0.5 * (after - mirrored);
+    let most = planned.max(0.0);
+    // Where `curvature s² + slope s` is least, or as much as planned.
+    let share = match planned < 0.0 {
+        _ if curvature == 0.0 => 1.0,
+        true => -slope / (2.0 * curvature),
+        false => ((slope * slope + 4.0 * curvature * most).sqrt() - slope) / (2.0 * curvature),
+    };
+    let share = share.clamp(0.0, 1.0);
+    add(1.0 + share);
+    share
 }
 
 /// A force on a point midway through the step.

@@ -318,3 +318,25 @@ fn a_slide_along_a_tiny_axis_holds() {
     let height = column(&last_row(&folder.join("out")), "cart_y_m");
     assert!(height.abs() < 1e-3, "{height} m");
 }
+
+/// An impact of milliseconds is looked at step by step.
+#[test]
+fn short_runs_have_frames_of_their_steps() {
+    let folder = folder("frames");
+    let n_frames = |output: &str| {
+        let scene =
+            format!("[world]\ndt = 1e-5\nduration = 4e-4\n{STEEL}{BEAM}\n[output]\n{output}\n");
+        std::fs::write(folder.join("scene.toml"), scene).expect("a scene");
+        told(&["run", "scene.toml", "--quiet"], &folder);
+        let page = std::fs::read_to_string(folder.join("out/replay.html")).expect("a replay");
+        let times = page
+            .split("\"times\":\"")
+            .nth(1)
+            .and_then(|rest| rest.split('"').next());
+        // Numbers of four bytes, by four characters to three of these.
+        times.expect("times").trim_end_matches('=').len() * 3 / 16
+    };
+    assert_eq!(n_frames(""), 40);
+    assert_eq!(n_frames("every = 1"), 40);
+    assert_eq!(n_frames("every = 10"), 4);
+}

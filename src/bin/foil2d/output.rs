@@ -11,6 +11,9 @@ use std::path::PathBuf;
 /// Width of the picture as PNG (px).
 const PNG_WIDTH: u32 = 1920;
 
+/// Frames of a replay of a short run, if there are as many steps.
+const FEWEST_FRAMES: f64 = 300.0;
+
 /// Files in the making.
 pub struct Outputs {
     folder: PathBuf,
@@ -23,6 +26,15 @@ pub struct Outputs {
     probes: Vec<Probe>,
     /// Of all bodies, after the first step and after the last (J).
     energy: [f64; 2],
+}
+
+/// A replay with a frame of every step that is recorded, or if the scene does not say which these are, some hundreds at the least.
+fn replay_of(source: &Source) -> Replay {
+    let rate = match source.scene.output.every.byte() {
+        Some(_) => f64::INFINITY,
+        None => f64::max(30.0, FEWEST_FRAMES / source.scene.world.duration.get()),
+    };
+    Replay::new(&source.title).with_rate(rate)
 }
 
 /// Kinetic, elastic and potential energy of all bodies, asleep or awake, in an island or not (J).
@@ -63,7 +75,7 @@ impl Outputs {
         let outputs = Self {
             every: *spec.every.get(),
             vtu: spec.vtu.then(|| VtuSeries::new(folder.join("scene"))),
-            replay: spec.replay.then(|| Replay::new(&source.title)),
+            replay: spec.replay.then(|| replay_of(source)),
             has_still: spec.still,
             has_png: spec.png,
             history: History::new(columns),

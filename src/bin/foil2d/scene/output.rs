@@ -11,7 +11,7 @@ use std::path::PathBuf;
 pub struct Output {
     /// The folder, beside the scene.
     pub folder: At<PathBuf>,
-    /// Steps from one frame of `vtu` and `replay` to the next.
+    /// Steps from one frame of `vtu` and `replay` to the next. Without it `vtu` has all, and `replay` 30 to a second, or 300 of a shorter run.
     pub every: At<usize>,
     /// Files for ParaView.
     pub vtu: bool,
