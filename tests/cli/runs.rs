@@ -340,3 +340,21 @@ fn short_runs_have_frames_of_their_steps() {
     assert_eq!(n_frames("every = 1"), 40);
     assert_eq!(n_frames("every = 10"), 4);
 }
+
+/// Long steps and long runs are named before they are begun.
+#[test]
+fn the_doctor_names_long_steps_and_long_runs() {
+    let folder = folder("long");
+    let found = |world: &str| {
+        let scene = format!("[world]\n{world}\n{STEEL}{BEAM}");
+        std::fs::write(folder.join("scene.toml"), scene).expect("a scene");
+        told(&["doctor", "scene.toml"], &folder)
+    };
+    assert!(found("duration = 10.0").contains("nothing is likely a mistake"));
+    assert!(found("dt = 0.5\nduration = 10.0").contains("a step of 0.500 s is long"));
+    let hours = found("dt = 1e-8\nduration = 10.0");
+    assert!(
+        hours.contains("1000000000 steps") && hours.contains("hours"),
+        "{hours}"
+    );
+}

@@ -33,12 +33,12 @@ pub fn run(options: &Options) -> Result<(), Problem> {
     let mut built = build(&source)?;
     // What cannot be written is told before anything is computed.
     let outputs = Outputs::new(&source, &built, options.out.clone())?;
+    let n_steps = options.steps.unwrap_or_else(|| n_steps(&source.scene));
     if !options.quiet {
-        for finding in findings(&built) {
+        for finding in findings(&built, n_steps) {
             note(&finding);
         }
     }
-    let n_steps = options.steps.unwrap_or_else(|| n_steps(&source.scene));
     print(&take_steps(&mut built, outputs, n_steps, options.quiet)?)
 }
 

@@ -73,8 +73,15 @@ pub fn still(scene: &Scene<'_>) -> Result<String, OutputError> {
             ))
         })
         .collect::<Result<_, OutputError>>()?;
-    let all = stresses.iter().flat_map(|(_, values)| values);
-    let largest = all.copied().fold(0.0, f64::max);
+    // A cell has the colour of the mean at its corners, and the scale ends with the largest of these.
+    let mean = |values: &[f64], corners: &[usize]| {
+        let sum: f64 = corners.iter().map(|&node| values[node]).sum();
+        sum / corners.len() as f64
+    };
+    let all = stresses
+        .iter()
+        .flat_map(|(body, values)| body.mesh().cells().map(|cell| mean(values, cell.corners())));
+    let largest = all.fold(0.0, f64::max);
     let mut picture = view.head(largest);
     for shape in scene.rigid_shapes() {
         for line in &shape.lines {
@@ -100,8 +107,7 @@ pub fn still(scene: &Scene<'_>) -> Result<String, OutputError> {
             let corners = cell.corners();
             let points = corners.iter().map(|&node| node_vec(body.positions(), node));
             let points: Vec<Vec2> = points.collect();
-            let sum: f64 = corners.iter().map(|&node| values[node]).sum();
-            let fill = colour(sum / corners.len() as f64 / largest.max(f64::MIN_POSITIVE));
+            let fill = colour(mean(values, corners) / largest.max(f64::MIN_POSITIVE));
             view.draw(&mut picture, "polygon", &points, &fill, &fill);
         }
         for &segment in body.mesh().boundary().segments() {
