@@ -126,7 +126,8 @@ fn midway_of(island: &Island, index: usize) -> Option<Midway> {
     }
     let [normal, tangent] = contact.multiplier;
     let acting = normal * contact.kinematics.normal + tangent * contact.kinematics.tangent();
-    let has_pressed = has_pressed(island, contact);
+    let pressed = &island.passes.pressed;
+    let has_pressed = pressed.binary_search(&contact.candidate).is_ok();
     let angle = match has_pressed {
         true => turn(&island.path, &base.near, &island.blocks),
         false => turn_of_met(island, contact),
@@ -146,12 +147,6 @@ fn midway_of(island: &Island, index: usize) -> Option<Midway> {
 
 fn key(island: &Island, contact: &ActiveContact) -> ContactKey {
     island.candidates[contact.candidate].key
-}
-
-/// Whether the same contact pressed when the step began.
-fn has_pressed(island: &Island, contact: &ActiveContact) -> bool {
-    let own = key(island, contact);
-    (island.passes.parted.iter()).any(|before| key(island, before) == own)
 }
 
 /// By how much the normal of a contact that is met within the step has turned against the nearest contact of the same bodies that pressed before (rad).

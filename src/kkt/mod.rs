@@ -13,7 +13,7 @@
 //! | data of an island | `island`, `active_contact`, `joints`, `problem`, `sparse`, `passes`, `feasible` (the path) |
 //! | positions | `position`; passes along the path in `follow`, or signed gaps; where blocks are and how laws hold in `working_set`; overlaps asked apart in `parting` |
 //! | forces of positions | `multipliers`, dense through `delassus` or sparse through `cones`; `smooth` for `constraint_function` |
-//! | velocities | `impact` chooses; `velocity`, `hits`, `restitution`, `impulses`, `unresolved`, `jammed`; of joints `joint_mass`, `closing`; of explicit steps `forward`, `partner` |
+//! | velocities | `impact` chooses; `velocity`, `midway`, `hits`, `restitution`, `impulses`, `unresolved`, `jammed`; of joints `joint_mass`, `closing`; of explicit steps `forward`, `partner` |
 //! | after both | `energy`, `calm`, `work`; `momentum` |
 //! | ends of what is not solved | `gentle`, `together`, `group` |
 //! | shared | `settings`, `summary`, `tolerances`, `gathered` (multipliers as impulses on blocks) |

@@ -36,8 +36,9 @@ pub(super) struct Passes {
     /// Contacts of the list before, and the place of every candidate among them.
     pub contacts_before: Vec<ActiveContact>,
     pub slot_of: Vec<u32>,
-    /// Contacts that pressed in the last step.
+    /// Contacts that pressed in the last step, and their candidates in ascending order.
     pub parted: Vec<ActiveContact>,
+    pub pressed: Vec<usize>,
     /// Contacts that are new in the last list of near pairs.
     pub fresh: Vec<usize>,
     /// Contacts of the last list that have taken over the force of another one.

@@ -11,6 +11,10 @@ pub(super) fn note_pressing(island: &mut Island) {
         .passes
         .parted
         .extend(island.contacts.iter().filter(pressing).copied());
+    let candidates = island.passes.parted.iter().map(|contact| contact.candidate);
+    island.passes.pressed.clear();
+    island.passes.pressed.extend(candidates);
+    island.passes.pressed.sort_unstable();
 }
 
 /// Lists what pressed in the last step and has flown out of reach as open contacts. Part of that force still acts in this step, and what
