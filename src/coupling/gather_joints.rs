@@ -189,10 +189,13 @@ fn rows_of(kind: AttachmentKind) -> impl Iterator<Item = (Measure, JointLaw)> {
                 most: f64::INFINITY,
                 is_relative: false,
             });
-            // Without a length there is no direction: two springs across each other are the same from everywhere.
-            if rest_length > 0.0 {
+            if stiffness == 0.0 && damping == 0.0 {
+                // It holds nothing.
+                ([None, None], law)
+            } else if rest_length > 0.0 {
                 ([Some(Measure::Distance), None], law)
             } else {
+                // Without a length there is no direction: two springs across each other are the same from everywhere.
                 ([Some(along[0]), Some(along[1])], law)
             }
         }

@@ -256,3 +256,20 @@ fn many_shapes_have_no_more_nodes_than_a_few() {
         .expect("an edge");
     assert!(edge > 0.02 && edge < 0.05, "{edge} m of 0.15 m");
 }
+
+#[test]
+fn what_is_no_filled_shape_is_told() {
+    let drawing = r#"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="200"><rect width="50" height="50"/>
+        <defs><text>hidden</text></defs><text x="0" y="150">text</text><image width="5" height="5" href="a.png"/>
+        <path d="M0 100 H150" stroke="black" fill="none"/><line x2="9" stroke="red"/><circle r="9" style="stroke: red; fill: none"/></svg>"#;
+    let folder = folder_with("left", "left.svg", drawing);
+    let notes = noted("mesh left.svg", &folder);
+    let expected = "left out of left.svg: 1 text(s), 1 image(s), 3 line(s) without a fill";
+    assert!(notes.contains(expected), "{notes}");
+    std::fs::write(
+        folder.join("all.svg"),
+        drawing.replace("<text", "<g").replace("</text", "</g"),
+    )
+    .expect("a drawing");
+    assert!(!noted("mesh all.svg", &folder).contains("text(s)"));
+}

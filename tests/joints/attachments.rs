@@ -512,3 +512,31 @@ fn energy_of_all(scene: &Scene) -> f64 {
     });
     flexible.sum::<f64>() + rigid.sum::<f64>()
 }
+
+/// A spring without stiffness and damping, which a user may turn up later, is not there.
+#[test]
+fn a_spring_of_nothing_holds_nothing() {
+    for is_small in [false, true] {
+        let swing = |has_spring: bool| {
+            let mut scene = Scene::new(DT);
+            let strip = beam().pin_where(|[x, _]| x == 0.0, Pin::both());
+            let strip = scene.flexible(if is_small {
+                strip.small_strain()
+            } else {
+                strip
+            });
+            if has_spring {
+                let tip = scene.body(strip).n_nodes() - 1;
+                let spring = AttachmentBuilder::spring_damper(strip, 0.0, 0.0).node(tip);
+                attach(&mut scene, spring.to_world());
+            }
+            scene.steps(30);
+            scene.body(strip).centre_of_mass()[1]
+        };
+        let [without, with] = [false, true].map(swing);
+        assert!(
+            without < 0.099 && (with - without).abs() < 1e-9,
+            "{with} m, {without} m"
+        );
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::build::{Built, build, n_steps};
 use super::files::{check_writable, note, print};
-use super::outlines::{Wanted, outlines};
+use super::outlines::{Wanted, note_left_out, outlines};
 use super::output::Outputs;
 use super::problem::Problem;
 use super::run::take_steps;
@@ -62,6 +62,7 @@ pub fn drop_outline(options: &Options) -> Result<(), Problem> {
     check(options)?;
     let path = options.out.join("scene.toml");
     let mut drawing = Drawing::read(options)?;
+    note_left_out(&options.outline);
     check_writable(std::slice::from_ref(&path))?;
     if std::fs::read_to_string(&path).is_ok_and(|before| is_changed(&before)) {
         let what = "somebody has changed this scene: run it by `foil2d run`, remove it, or choose another folder by --out";

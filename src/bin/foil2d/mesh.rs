@@ -1,7 +1,7 @@
 //! `foil2d mesh`.
 
 use super::files::{check_writable, print};
-use super::outlines::{Wanted, outlines};
+use super::outlines::{Wanted, note_left_out, outlines};
 use super::problem::Problem;
 use super::scene::MOST_NODES;
 use super::shape::mesh_of;
@@ -47,6 +47,7 @@ pub fn mesh(options: &Options) -> Result<(), Problem> {
         names: &options.layer,
     };
     let found = outlines(&options.outline, &wanted)?;
+    note_left_out(&options.outline);
     for (index, outline) in found.iter().enumerate() {
         let name = match outline.name.as_deref() {
             Some(name) => format!("`{name}`"),

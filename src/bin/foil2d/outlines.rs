@@ -1,10 +1,11 @@
 //! Outlines of SVG and JSON files.
 
-use super::files::read_text;
+use super::files::{note, read_text};
 use super::names::no_such;
 use super::problem::Problem;
 use foil2d::io::{Outline, OutlineError, SvgOptions, outlines_from_json, outlines_from_svg};
 use std::path::Path;
+use usvg::roxmltree::{Document, Node, ParsingOptions};
 
 /// A distance of curves from the sides that stand for them, over the length of an edge.
 const FLATTENING: f64 = 0.02;
@@ -54,6 +55,57 @@ pub fn outlines(path: &Path, wanted: &Wanted<'_>) -> Result<Vec<Outline>, Refuse
         false => of_svg(&text, wanted)?,
     };
     found.map_err(|error| Refused::File(Problem::of_file(words(&error), path)))
+}
+
+/// Tells what of a drawing is no filled shape, if there is any.
+pub fn note_left_out(path: &Path) {
+    let found = read_text(path).ok().and_then(|text| left_out(&text));
+    if let Some(what) = found {
+        note(&format!("left out of {}: {what}", path.display()));
+    }
+}
+
+/// Elements in which nothing is drawn where it stands.
+const UNDRAWN: [&str; 6] = ["defs", "clipPath", "mask", "pattern", "marker", "symbol"];
+
+const SHAPES: [&str; 7] = [
+    "path", "rect", "circle", "ellipse", "polygon", "polyline", "line",
+];
+
+fn left_out(text: &str) -> Option<String> {
+    let options = ParsingOptions {
+        allow_dtd: true,
+        ..ParsingOptions::default()
+    };
+    let document = Document::parse_with_options(text, options).ok()?;
+    let is_drawn = |one: &Node<'_, '_>| {
+        let mut around = one.ancestors();
+        !around.any(|outer| UNDRAWN.contains(&outer.tag_name().name()))
+    };
+    let has_no_fill = |one: &Node<'_, '_>| {
+        let style: String = one
+            .attribute("style")
+            .unwrap_or_default()
+            .split(' ')
+            .collect();
+        one.tag_name().name() == "line"
+            || one.attribute("fill") == Some("none")
+            || style.split(';').any(|one| one == "fill:none")
+    };
+    let mut counts = [0; 3];
+    for one in document.descendants().filter(is_drawn) {
+        match one.tag_name().name() {
+            "text" => counts[0] += 1,
+            "image" => counts[1] += 1,
+            name if SHAPES.contains(&name) && has_no_fill(&one) => counts[2] += 1,
+            _ => {}
+        }
+    }
+    let names = ["text(s)", "image(s)", "line(s) without a fill"];
+    let told = counts.into_iter().zip(names).filter(|(n, _)| *n > 0);
+    let told: Vec<String> = told.map(|(n, name)| format!("{n} {name}")).collect();
+    let cure = "convert text to paths, and strokes to outlines";
+    (!told.is_empty()).then(|| format!("{}: {cure}", told.join(", ")))
 }
 
 type Read = Result<Vec<Outline>, OutlineError>;
