@@ -15,7 +15,7 @@ use foil2d::fe::mesh::{CellKind, generate::rectangle};
 use foil2d::fe::model::MassKind;
 use foil2d::integrator::IntegratorError;
 use foil2d::large::{LargeSettings, LargeStepper, WorldMotion};
-use foil2d::pipeline::{Quality, StepError};
+use foil2d::pipeline::{Participant, Quality, StepError};
 
 fn of_law(
     law: impl Hyperelastic + 'static,
@@ -627,6 +627,7 @@ fn blocks_that_are_thrown_beyond_all_measure_gain_nothing() {
             .angvel(dice.between(-50.0, 50.0))
             .translation([-0.5 * width, 0.5]);
         scene.flexible(block);
+        let mut stones = Vec::new();
         for side in [-1.0, 1.0] {
             let stone = RigidBodyBuilder::dynamic()
                 .translation(vec2(side * dice.between(0.5, 1.0), 0.25))
@@ -634,13 +635,28 @@ fn blocks_that_are_thrown_beyond_all_measure_gain_nothing() {
                 .linvel(vec2(-side * dice.between(0.0, 50.0), 0.0));
             let shape = ColliderBuilder::cuboid(real(0.2), real(0.2))
                 .density(real(10f64.powf(dice.between(3.0, 6.0))));
-            scene.rigid(stone, shape.friction(0.5));
+            stones.push(scene.rigid(stone, shape.friction(0.5)));
         }
+        let of_stone = |scene: &Scene, stone: RigidBodyHandle| {
+            let body = &scene.world.bodies[stone];
+            kinetic_of(body) + scene.mass(stone) * G * f64::from(body.center_of_mass().y)
+        };
         let mut energy = energy_of(&scene);
         for step in 0..12 {
+            let before = [0, 1].map(|k| of_stone(&scene, stones[k].0));
             let report = scene.try_step().expect("the step can be taken");
             n_unfinished += usize::from(report.quality() == Quality::Unfinished);
             let told = report.gap_violation();
+            let touches = stones.iter().map(|&(_, collider)| {
+                let stone = Participant::Rigid(collider);
+                let mut contacts = report.contacts().iter();
+                contacts.any(|one| one.contactor == stone || one.target == stone)
+            });
+            let touches: Vec<bool> = touches.collect();
+            // Where rapier alone has put a stone on the ground, what that gains is not ours: 4 % of the energy of one of 19 t.
+            for k in (0..2).filter(|&k| !touches[k]) {
+                energy += (of_stone(&scene, stones[k].0) - before[k]).max(0.0);
+            }
             let left = energy_of(&scene);
             findings.check(left < 1.01 * energy, || {
                 format!("seed {seed}, step {step}: {left:e} J of {energy:e} J, {told:e} m")

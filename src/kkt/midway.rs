@@ -10,7 +10,7 @@ use super::feasible::turn;
 use super::gathered;
 use super::island::{Island, SolveSettings};
 use super::joints::add_wrench;
-use super::work::kinetic_energy;
+use super::work::{end_energy, kinetic_energy, start_energy};
 use crate::constraint::contact::ContactKey;
 use crate::math::{Mat2, Vec2, atan2, cos, cross, rotation, rounding};
 use crate::system::{Block, Grip, Point, Response};
@@ -59,7 +59,7 @@ pub(super) fn act_midway(island: &mut Island, settings: &SolveSettings) {
     }
     if acts {
         gathered::respond(island);
-        let share = add_as_planned(island, planned);
+        let share = add_as_planned(island, planned, settings);
         for contact in &mut island.contacts {
             contact.midway = contact.midway.map(|impulse| share * impulse);
             contact.since_midway *= share;
@@ -84,9 +84,20 @@ fn planned_work(midway: &Midway, contact: &ActiveContact, blocks: &[Block]) -> f
     works.sum()
 }
 
-/// Adds the responses as far as they change the kinetic energy by no more than planned (J); returns the share. Impulses of blows that no step resolves
-/// would bring more by their squares.
-fn add_as_planned(island: &mut Island, planned: f64) -> f64 {
+/// What the step has lost until now (J).
+fn lost(island: &Island, settings: &SolveSettings) -> f64 {
+    let [before, now] =
+        [start_energy(&island.blocks), end_energy(&island.blocks)].map(|[k, e]| k + e);
+    before + island.actual_work(settings) - now
+}
+
+/// Adds the responses as far as they change the kinetic energy by no more than planned, and give back no more than the step has lost (J); returns the
+/// share. Impulses of blows that no step resolves would bring more by their squares.
+fn add_as_planned(island: &mut Island, planned: f64, settings: &SolveSettings) -> f64 {
+    let most = match planned > 0.0 {
+        true => planned.min(lost(island, settings)).max(0.0),
+        false => 0.0,
+    };
     let mut add = |share: f64| {
         gathered::add_to_flexible(island, Response::Velocity, share);
         gathered::add_to_rigid(island, Response::Velocity, share);
@@ -95,7 +106,6 @@ fn add_as_planned(island: &mut Island, planned: f64) -> f64 {
     let [before, after, mirrored] = [add(0.0), add(1.0), add(-2.0)];
     let curvature = (0.5 * (after + mirrored) - before).max(0.0);
     let slope = 0.5 * (after - mirrored);
-    let most = planned.max(0.0);
     // Where `curvature s² + slope s` is least, or as much as planned.
     let share = match planned < 0.0 {
         _ if curvature == 0.0 => 1.0,
