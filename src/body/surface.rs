@@ -27,9 +27,13 @@ pub(crate) fn contact_offset(model: &Model, extent: f64) -> f64 {
 
 /// Shortest boundary segment as the body was built (m).
 fn shortest_edge(model: &Model) -> f64 {
-    let rest = model.placed_positions();
+    shortest_between(model, |node| node_vec(model.placed_positions(), node))
+}
+
+/// Shortest boundary segment with the nodes at these places (m).
+fn shortest_between(model: &Model, place: impl Fn(usize) -> Vec2) -> f64 {
     let segments = model.mesh().boundary().segments().iter();
-    let lengths = segments.map(|[a, b]| (node_vec(rest, *b) - node_vec(rest, *a)).norm_squared());
+    let lengths = segments.map(|[a, b]| (place(*b) - place(*a)).norm_squared());
     lengths.fold(f64::INFINITY, f64::min).sqrt()
 }
 
@@ -158,13 +162,8 @@ impl FlexBody {
     /// [`contact_offset`](Self::contact_offset) no more.
     pub(crate) fn edge_beside_rounding(&self) -> Option<f64> {
         // As it was drawn: places far away have lost its digits.
-        let mesh = self.model().mesh();
-        let segments = mesh.boundary().segments().iter();
-        let lengths = segments.map(|&[a, b]| {
-            let [[ax, ay], [bx, by]] = [mesh.nodes()[a], mesh.nodes()[b]];
-            (bx - ax).powi(2) + (by - ay).powi(2)
-        });
-        let edge = lengths.fold(f64::INFINITY, f64::min).sqrt();
+        let nodes = self.model().mesh().nodes();
+        let edge = shortest_between(self.model(), |node| nodes[node].into());
         (self.contact_offset() > 2.0 * OFFSET.get() * edge).then_some(edge)
     }
 

@@ -17,7 +17,7 @@
 //!   is a polygon: from rest it takes the torque of its load at half a side to tip it over a corner. Do: take a smaller `target_edge`; that of an annulus is met at its mean radius, and outside sides are longer.
 //! - **Belts.** What bends around a wheel meets it cell by cell, each within a step, and loses by that: a belt drive at 1/120 s whose brake takes 4.9 W at 1 m/s takes 5.2 W, one whose brake takes 20 W at 4 m/s takes 36 W. Told forces have the directions of the end of the step: their torque times
 //!   the speed of a driven wheel is off by 4 % at 1/60 s, 1 % at 1/120 s; [`energy().dissipated`](crate::pipeline::EnergyReport::dissipated) is not. Do: shorten the step.
-//! - **Bowls.** What slides in something hollow is met by other points of it in every step, and braked by as much as these come nearer within one: a disc of 5 cm in a bowl of 1 m without friction loses 0.12 of its energy in 5 s at 1/60 s; with small strain, whose
+//! - **Bowls.** What slides in something hollow is met by other points of it in every step, and braked by as much as these come nearer within one: a disc of 5 cm in a bowl of 1 m without friction loses 0.10 of its energy in 5 s at 1/60 s; with small strain, whose
 //!   normals are those of the end of each step, 0.29. Do: shorten the step.
 //! - **Plane stress** of Hooke's law: the thickness does not change as the body is stretched. Do: take `NeoHookeanSheet` or `MooneyRivlinSheet` where it matters. With Poisson's ratios from -0.5 down it
 //!   has no law for large strains and is refused ([`BuildError::NoLargeLaw`](crate::body::BuildError::NoLargeLaw)). Do: take `small_strain`, or plane strain.

@@ -10,13 +10,10 @@ use super::feasible::turn;
 use super::gathered;
 use super::island::{Island, SolveSettings};
 use super::joints::add_wrench;
-use super::work::{end_energy, kinetic_energy, start_energy};
 use crate::constraint::contact::ContactKey;
-use crate::math::{Mat2, Vec2, atan2, cos, cross, rotation, rounding};
+use crate::math::{Mat2, Vec2, atan2, cross, rotation, rounding};
 use crate::system::{Block, Grip, Point, Response};
-
-/// Cosine of the turn beyond which a contact is not what it was when the step began (-): a sharp corner met within the step.
-const LEAST_COS: f64 = 0.5;
+use std::f64::consts::FRAC_PI_2;
 
 /// Turns the forces of contacts with flexible bodies to where they are midway, by impulses on top of what they have done.
 pub(super) fn act_midway(island: &mut Island, settings: &SolveSettings) {
@@ -28,13 +25,12 @@ pub(super) fn act_midway(island: &mut Island, settings: &SolveSettings) {
     }
     gathered::clear_wrenches(island);
     gathered::clear_impulses(island);
-    let (mut acts, mut planned) = (false, 0.0);
+    let mut acts = false;
     for index in 0..island.contacts.len() {
         let Some(midway) = midway_of(island, index) else {
             continue;
         };
         acts = true;
-        planned += planned_work(&midway, &island.contacts[index], &island.blocks);
         let contact = &mut island.contacts[index];
         let change = settings.dt * (midway.force - midway.acting);
         let [normal, tangent] = [contact.kinematics.normal, contact.kinematics.tangent()];
@@ -59,62 +55,10 @@ pub(super) fn act_midway(island: &mut Island, settings: &SolveSettings) {
     }
     if acts {
         gathered::respond(island);
-        let share = add_as_planned(island, planned, settings);
-        for contact in &mut island.contacts {
-            contact.midway = contact.midway.map(|impulse| share * impulse);
-            contact.since_midway *= share;
-        }
+        gathered::add_to_flexible(island, Response::Velocity, 1.0);
+        gathered::add_to_rigid(island, Response::Velocity, 1.0);
         gathered::clear_impulses(island);
     }
-}
-
-/// What a force midway does on bodies that are not driven beyond what that of the end does (J).
-fn planned_work(midway: &Midway, contact: &ActiveContact, blocks: &[Block]) -> f64 {
-    let grips = contact.kinematics.attachments().iter();
-    let works = grips.map(|a| {
-        let lever = match &blocks[a.block] {
-            Block::Rigid(body) if body.is_prescribed() => return 0.0,
-            Block::Rigid(_) => a.grip.lever - midway.since,
-            Block::Flex(_) => a.grip.lever,
-        };
-        let moved = |lever: Vec2| blocks[a.block].displacement(Grip { lever, ..a.grip });
-        let work = midway.force.dot(&moved(lever)) - midway.acting.dot(&moved(a.grip.lever));
-        a.weight * work
-    });
-    works.sum()
-}
-
-/// What the step has lost until now (J).
-fn lost(island: &Island, settings: &SolveSettings) -> f64 {
-    let [before, now] =
-        [start_energy(&island.blocks), end_energy(&island.blocks)].map(|[k, e]| k + e);
-    before + island.actual_work(settings) - now
-}
-
-/// Adds the responses as far as they change the kinetic energy by no more than planned, and give back no more than the step has lost (J); returns the
-/// share. Impulses of blows that no step resolves would bring more by their squares.
-fn add_as_planned(island: &mut Island, planned: f64, settings: &SolveSettings) -> f64 {
-    let most = match planned > 0.0 {
-        true => planned.min(lost(island, settings)).max(0.0),
-        false => 0.0,
-    };
-    let mut add = |share: f64| {
-        gathered::add_to_flexible(island, Response::Velocity, share);
-        gathered::add_to_rigid(island, Response::Velocity, share);
-        kinetic_energy(&island.blocks)
-    };
-    let [before, after, mirrored] = [add(0.0), add(1.0), add(-2.0)];
-    let curvature = (0.5 * (after + mirrored) - before).max(0.0);
-    let slope = 0.5 * (after - mirrored);
-    // Where `curvature s² + slope s` is least, or as much as planned.
-    let share = match planned < 0.0 {
-        _ if curvature == 0.0 => 1.0,
-        true => -slope / (2.0 * curvature),
-        false => ((slope * slope + 4.0 * curvature * most).sqrt() - slope) / (2.0 * curvature),
-    };
-    let share = share.clamp(0.0, 1.0);
-    add(1.0 + share);
-    share
 }
 
 /// A force on a point midway through the step.
@@ -142,7 +86,8 @@ fn midway_of(island: &Island, index: usize) -> Option<Midway> {
         true => turn(&island.path, &base.near, &island.blocks),
         false => turn_of_met(island, contact),
     };
-    if cos(angle) < LEAST_COS {
+    if angle.abs() >= FRAC_PI_2 {
+        // What presses the other way is another contact.
         return None;
     }
     let back = rotation(-0.5 * angle);

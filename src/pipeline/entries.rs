@@ -21,7 +21,8 @@ pub struct ContactReport {
     /// Negative where energy that the last step's force had added is taken back; at a contact that has just opened, only
     /// [`FlexBody::total_contact_force`](crate::body::FlexBody::total_contact_force) knows of that.
     pub normal_force: f64,
-    /// Force on the contactor along the tangent, a quarter turn counter-clockwise from the normal (N).
+    /// Force on the contactor along the tangent, a quarter turn counter-clockwise from the normal (N). Where the normal turns within steps, what the energy stage
+    /// takes from what slides there is in it, without friction too.
     pub tangential_force: f64,
     /// Whether friction holds.
     pub sticks: bool,

@@ -293,17 +293,6 @@ fn what_cannot_be_painted_is_told_and_the_rest_is_written() {
     );
 }
 
-#[test]
-fn a_run_without_a_finished_step_fails() {
-    let folder = folder("unfinished");
-    let force = "force = [{ nodes.near = [1.0, 0.0], force = [0.0, 1e12] }]\n";
-    let scene = format!("[world]\nduration = 0.05\n{STEEL}{BEAM}{force}");
-    std::fs::write(folder.join("scene.toml"), scene).expect("a scene");
-    let complaint = complaint(&["run", "scene.toml", "--quiet"], &folder);
-    assert!(complaint.contains("no step was finished"), "{complaint}");
-    assert!(complaint.contains("3 unfinished") && folder.join("out/history.csv").exists());
-}
-
 /// An axis is a direction, however short.
 #[test]
 fn a_slide_along_a_tiny_axis_holds() {

@@ -69,14 +69,14 @@ pub fn drop_outline(options: &Options) -> Result<(), Problem> {
         return Err(Problem::of_file(what, &path));
     }
     let (source, mut built) = loop {
-        let mut source = Source::parse(&path, drawing.scene(options))?;
+        write(&path, &signed(&drawing.scene(options)))?;
+        let mut source = Source::read(&path)?;
         source.title = stem_of(&options.outline);
         let built = build(&source)?;
         if !drawing.part(&built) {
             break (source, built);
         }
     };
-    write(&path, &signed(&drawing.scene(options)))?;
     for shape in drawing.shapes.iter().filter(|shape| shape.lift > 0.0) {
         note(&format!(
             "`{}` lies on another shape of the drawing: it falls from {:.3} m higher",

@@ -57,7 +57,7 @@ pub fn outlines(path: &Path, wanted: &Wanted<'_>) -> Result<Vec<Outline>, Refuse
     found.map_err(|error| Refused::File(Problem::of_file(words(&error), path)))
 }
 
-/// Tells what of a drawing is no filled shape, if there is any.
+/// Tells what of a drawing is no filled shape, as far as its elements say so themselves.
 pub fn note_left_out(path: &Path) {
     let found = read_text(path).ok().and_then(|text| left_out(&text));
     if let Some(what) = found {

@@ -8,7 +8,7 @@ use super::problem::Problem;
 use super::source::Source;
 use super::words::{of_course, of_step};
 use clap::Args;
-use foil2d::doctor::Course;
+use foil2d::doctor::{Course, CourseReport};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::PathBuf;
 
@@ -81,12 +81,32 @@ pub fn take_steps(
     for file in outputs.finish(built)? {
         told.push_str(&format!("wrote {}\n", file.display()));
     }
-    let course = course.report();
-    if failed.is_none() && n_steps > 0 && course.n_unfinished == n_steps {
-        failed = Some("no step was finished: look at loads and at what holds the bodies".into());
-    }
-    match failed {
+    match failed.or_else(|| nothing_finished(course.report())) {
         None => Ok(told),
         Some(what) => Err(Problem::plain(format!("{what}\nuntil then: {told}"))),
+    }
+}
+
+/// What is wrong with a run of which no step was finished.
+fn nothing_finished(course: &CourseReport) -> Option<String> {
+    let is_nothing = course.n_steps > 0 && course.n_unfinished == course.n_steps;
+    is_nothing.then(|| "no step was finished: look at loads and at what holds the bodies".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_fails_of_which_no_step_was_finished() {
+        let of = |n_steps, n_unfinished| CourseReport {
+            n_steps,
+            n_unfinished,
+            ..CourseReport::default()
+        };
+        assert!(nothing_finished(&of(3, 3)).is_some());
+        for course in [of(0, 0), of(3, 0), of(3, 2)] {
+            assert_eq!(nothing_finished(&course), None);
+        }
     }
 }

@@ -29,11 +29,7 @@ impl Source {
         if !what.is_empty() {
             return Err(Problem::of_file(what, path));
         }
-        Self::parse(path, read_text(path)?)
-    }
-
-    /// Reads the text of a scene that is, or will be, in this file.
-    pub fn parse(path: &Path, text: String) -> Result<Self, Problem> {
+        let text = read_text(path)?;
         let scene = toml::from_str(&text).map_err(|error| match error.span() {
             Some(span) => Problem::at(of_parser(error.message()), path, &text, span.start),
             None => Problem::of_file(of_parser(error.message()), path),
