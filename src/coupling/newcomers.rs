@@ -63,12 +63,20 @@ pub(crate) fn overlaps_of_newcomers(
 }
 
 /// What was put into each other, until it is apart: rows of contact tell of the overlaps that they part, and may find no way out of deep ones.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub(crate) struct PutTogether {
     pairs: Vec<(FlexBodyHandle, Other)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 enum Other {
     Rigid(ColliderHandle),
     Flex(FlexBodyHandle),

@@ -112,5 +112,5 @@
 //!
 //! # Saving
 //!
-//! With the feature `serde-serialize`, `pipeline::Snapshot` saves a world with its flexible bodies through any binary serde format, and goes on bit for bit (but for rounding
-//! where contacts are many). Rapier's own snapshots do not know of flexible bodies.
+//! With the feature `serde-serialize`, `pipeline::Snapshot` saves a world with its flexible bodies through any binary serde format, and goes on bit for bit.
+//! Rapier's own snapshots do not know of flexible bodies.

@@ -8,11 +8,17 @@ use super::joints::Joints;
 use super::passes::Passes;
 use super::problem::RowProblem;
 pub use super::settings::{KktError, SolveSettings};
+#[cfg(feature = "serde-serialize")]
+use super::sparse::KeptRecord;
 use super::sparse::Sparse;
 use super::work::{self, JointWork, WorkGrips};
 use crate::constraint::contact::{Candidate, ContactKey, PlacedPart, Scene};
+#[cfg(feature = "serde-serialize")]
+use crate::fe::model::Model;
 use crate::math::{HashMap, Vec2};
 use crate::system::Block;
+#[cfg(feature = "serde-serialize")]
+use std::sync::Arc;
 
 /// A set of blocks and candidates, and the buffers to solve them.
 #[derive(Debug, Default)]
@@ -123,6 +129,31 @@ impl Island {
     /// What plastic flow dissipates in the step, which is in the elastic energy of its end (J).
     pub fn flow_energy(&self) -> f64 {
         work::flow_energy(&self.blocks)
+    }
+}
+
+/// What a snapshot writes of it.
+#[cfg(feature = "serde-serialize")]
+impl Island {
+    /// What is kept of islands that the last step has solved, to go on from.
+    ///
+    /// - `index_of`: the index of the flexible body of a model.
+    pub(crate) fn kept_records(
+        &self,
+        index_of: impl Fn(&Arc<Model>) -> Option<u32>,
+    ) -> Vec<KeptRecord> {
+        self.sparse.record(index_of)
+    }
+
+    /// Keeps what was recorded, `None` if a body of it does not exist.
+    ///
+    /// - `model_of`: the model of the flexible body at an index.
+    pub(crate) fn restore_kept(
+        &mut self,
+        records: Vec<KeptRecord>,
+        model_of: impl Fn(u32) -> Option<Arc<Model>>,
+    ) -> Option<()> {
+        self.sparse.restore(records, model_of)
     }
 }
 

@@ -68,5 +68,7 @@ pub use joints::{ActiveJoint, Joints};
 pub use momentum::LateForce;
 pub(crate) use momentum::{LeftOnDriven, late_forces, left_on_driven};
 pub use settings::ImpactTreatment;
+#[cfg(feature = "serde-serialize")]
+pub(crate) use sparse::KeptRecord;
 pub use summary::IslandSummary;
 pub(crate) use tolerances::FEW_PASSES;

@@ -2,10 +2,14 @@
 
 mod asked;
 mod layout;
+#[cfg(feature = "serde-serialize")]
+mod record;
 mod turning;
 
 pub(super) use self::asked::Asked;
 use self::layout::Shape;
+#[cfg(feature = "serde-serialize")]
+pub(crate) use self::record::KeptRecord;
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::cone::{ConeEntry, ConeRow, ConeSolver};
 
@@ -20,6 +24,9 @@ pub(super) struct Kept {
     pub solvers: [ConeSolver; 4],
     /// Whether it has been asked for since the step began.
     is_in_use: bool,
+    /// What was restored and has not been asked for: matrix and solvers are made when it is.
+    #[cfg(feature = "serde-serialize")]
+    restored: Option<record::Restored>,
 }
 
 /// The sparse problem of an island, with its buffers, and what is kept of those of the step before.

@@ -11,8 +11,12 @@ use crate::body::{FlexBody, FlexBodySet};
 use crate::coupling::{
     Claims, FlexPool, GatherSettings, Gatherer, RapierSets, Sources, Span, UnderWay,
 };
+#[cfg(feature = "serde-serialize")]
+use crate::kkt::KeptRecord;
 use crate::kkt::{FEW_PASSES, Island, IslandSummary, SolveSettings};
 use crate::system::{FlexBlock, Step};
+#[cfg(feature = "serde-serialize")]
+use std::sync::Arc;
 
 /// What the islands of a step are solved from.
 #[derive(Clone, Copy)]
@@ -261,11 +265,28 @@ impl Solver {
 /// What a snapshot writes of it.
 #[cfg(feature = "serde-serialize")]
 impl Solver {
-    /// A solver with the blocks of before.
-    pub(super) fn with_pool(pool: FlexPool) -> Self {
+    /// What the islands of the next step may go on from.
+    pub(super) fn kept_records(&self, flex_bodies: &FlexBodySet) -> Vec<KeptRecord> {
+        self.island.kept_records(|model| {
+            let mut bodies = flex_bodies.iter();
+            let (handle, _) = bodies.find(|(_, body)| Arc::ptr_eq(body.model(), model))?;
+            Some(handle.into_raw_parts().0)
+        })
+    }
+
+    /// A solver with the blocks of before, and what was kept of islands; `None` if a body of these does not exist.
+    pub(super) fn restored(
+        pool: FlexPool,
+        kept: Vec<KeptRecord>,
+        flex_bodies: &FlexBodySet,
+    ) -> Option<Self> {
         let mut solver = Self::default();
         solver.gatherer.pool = pool;
-        solver
+        solver.island.restore_kept(kept, |index| {
+            let (_, body) = flex_bodies.at_index(index)?;
+            Some(Arc::clone(body.model()))
+        })?;
+        Some(solver)
     }
 }
 

@@ -43,7 +43,7 @@ impl Kept {
         self.shapes.len() == blocks.len() && pairs.all(|(shape, block)| shape.is_that_of(block))
     }
 
-    fn lay_out(blocks: &[Block]) -> Self {
+    pub(super) fn lay_out(blocks: &[Block]) -> Self {
         let mut first = Vec::with_capacity(blocks.len());
         let mut n_nodes = 0;
         let mut pairs: Vec<[usize; 2]> = Vec::new();
@@ -73,6 +73,8 @@ impl Kept {
             first,
             solvers: Default::default(),
             is_in_use: true,
+            #[cfg(feature = "serde-serialize")]
+            restored: None,
         }
     }
 }
@@ -101,6 +103,8 @@ impl Sparse {
             self.kept.push(Kept::lay_out(blocks));
             self.kept.len() - 1
         });
+        #[cfg(feature = "serde-serialize")]
+        self.kept[self.at].make_again(blocks);
         let Kept {
             matrix,
             first,

@@ -31,18 +31,31 @@ impl<'a> FactorRows<'a> {
     }
 }
 
+/// What a factor has been corrected for.
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub(super) struct Corrected {
+    /// The rows with columns in `answers`, two each.
+    known: Vec<usize>,
+    /// How many of them were known after each time that some were found together.
+    found: Vec<usize>,
+    /// Rows that have changed, and by how much, `[nn, nt, tt]`.
+    changed: Vec<(usize, [f64; 3])>,
+}
+
 /// Rows whose weights have changed since the factor was made, and what is known of them.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Correction {
-    /// The rows with columns in `answers`, two each.
-    known: Vec<usize>,
+    /// All that the rest follows from.
+    of: Corrected,
     /// `Z`, column after column.
     answers: Vec<f64>,
     /// `G Z` of all known rows, two lines for each of them, as long as `stride`.
     compliance: Vec<f64>,
     stride: usize,
-    /// Rows that have changed, and by how much, `[nn, nt, tt]`.
-    changed: Vec<(usize, [f64; 3])>,
     changed_before: Vec<(usize, [f64; 3])>,
     /// Their places among the known ones.
     places: Vec<usize>,
@@ -55,21 +68,22 @@ pub(super) struct Correction {
 impl Correction {
     /// Forgets what belonged to another factor.
     pub fn forget(&mut self) {
-        self.known.clear();
+        self.of.known.clear();
+        self.of.found.clear();
         self.answers.clear();
         self.compliance.clear();
         self.stride = 0;
-        self.changed.clear();
+        self.of.changed.clear();
     }
 
     /// Notes which rows have changed, and by how much; whether others have than at the last time.
     pub fn list_changed(&mut self, changed: impl Iterator<Item = (usize, [f64; 3])>) -> bool {
-        std::mem::swap(&mut self.changed, &mut self.changed_before);
-        self.changed.clear();
-        self.changed.extend(changed);
+        std::mem::swap(&mut self.of.changed, &mut self.changed_before);
+        self.of.changed.clear();
+        self.of.changed.extend(changed);
         let before = self.changed_before.iter().map(|(row, _)| row);
-        !self.changed.iter().map(|(row, _)| row).eq(before)
-            || (self.changed.iter().zip(&self.changed_before))
+        !self.of.changed.iter().map(|(row, _)| row).eq(before)
+            || (self.of.changed.iter().zip(&self.changed_before))
                 .any(|((_, now), (_, before))| !are_alike(now, before))
     }
 
@@ -81,11 +95,11 @@ impl Correction {
         y: &mut [f64],
     ) -> bool {
         self.answer_new(rows, factor, y.len());
-        let n = 2 * self.changed.len();
+        let n = 2 * self.of.changed.len();
         let width = n + 1;
         self.dense.clear();
         self.dense.resize(n * width, 0.0);
-        for (i, &(row, [nn, nt, tt])) in self.changed.iter().enumerate() {
+        for (i, &(row, [nn, nt, tt])) in self.of.changed.iter().enumerate() {
             let [upper, lower] = [0, 1].map(|c| (2 * i + c) * width);
             let weigh = |[a, b]: [f64; 2]| [nn * a + nt * b, nt * a + tt * b];
             for (j, &place) in self.places.iter().enumerate() {
@@ -118,25 +132,26 @@ impl Correction {
 
     /// Finds the columns of changed rows that are not known.
     fn answer_new(&mut self, rows: FactorRows<'_>, factor: &mut BlockCholesky, n_dofs: usize) {
-        let n_known = self.known.len();
+        let n_known = self.of.known.len();
         self.places.clear();
-        for &(row, _) in &self.changed {
-            let place = self.known.iter().position(|&known| known == row);
-            self.places.push(place.unwrap_or(self.known.len()));
+        for &(row, _) in &self.of.changed {
+            let place = self.of.known.iter().position(|&known| known == row);
+            self.places.push(place.unwrap_or(self.of.known.len()));
             if place.is_none() {
-                self.known.push(row);
+                self.of.known.push(row);
             }
         }
-        let n_new = self.known.len() - n_known;
+        let n_new = self.of.known.len() - n_known;
         if n_new == 0 {
             return;
         }
+        self.of.found.push(self.of.known.len());
         self.n_substitutions += 2 * n_new;
         let start = 2 * n_known * n_dofs;
-        self.answers.resize(2 * self.known.len() * n_dofs, 0.0);
+        self.answers.resize(2 * self.of.known.len() * n_dofs, 0.0);
         let new = &mut self.answers[start..];
         new.fill(0.0);
-        for (&row, columns) in self.known[n_known..]
+        for (&row, columns) in self.of.known[n_known..]
             .iter()
             .zip(new.chunks_exact_mut(2 * n_dofs))
         {
@@ -150,10 +165,10 @@ impl Correction {
             }
         }
         factor.solve_many_in_place(new, 2 * n_new);
-        self.widen(2 * self.known.len());
-        for (place, &row) in self.known.iter().enumerate() {
+        self.widen(2 * self.of.known.len());
+        for (place, &row) in self.of.known.iter().enumerate() {
             let first = if place < n_known { n_known } else { 0 };
-            for other in first..self.known.len() {
+            for other in first..self.of.known.len() {
                 for d in 0..2 {
                     let column = &self.answers[(2 * other + d) * n_dofs..][..n_dofs];
                     let [n, t] = rows.motion(row, column);
@@ -178,6 +193,45 @@ impl Correction {
             }
             self.stride = stride;
         }
+    }
+}
+
+/// What a snapshot writes of it.
+#[cfg(feature = "serde-serialize")]
+impl Correction {
+    /// What the factor at hand has been corrected for.
+    pub fn corrected(&self) -> &Corrected {
+        &self.of
+    }
+
+    /// Finds the columns of these rows again, in the groups they were found in: the bits of a column depend on how many are solved for at once.
+    pub fn correct_again(
+        &mut self,
+        of: &Corrected,
+        rows: FactorRows<'_>,
+        factor: &mut BlockCholesky,
+        n_dofs: usize,
+    ) {
+        let mut begin = 0;
+        for &end in &of.found {
+            let group = of.known[begin..end].iter();
+            self.of.changed.clear();
+            self.of.changed.extend(group.map(|&row| (row, [0.0; 3])));
+            self.answer_new(rows, factor, n_dofs);
+            begin = end;
+        }
+        self.of.changed.clone_from(&of.changed);
+    }
+}
+
+#[cfg(feature = "serde-serialize")]
+impl Corrected {
+    /// Whether its groups are groups, and its rows some of so many.
+    pub fn is_sound(&self, n_rows: usize) -> bool {
+        let changed = self.changed.iter().map(|(row, _)| row);
+        self.found.is_sorted()
+            && self.found.last().copied().unwrap_or(0) == self.known.len()
+            && self.known.iter().chain(changed).all(|row| *row < n_rows)
     }
 }
 

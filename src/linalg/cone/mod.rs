@@ -42,11 +42,14 @@
 //! # Ok::<(), foil2d::linalg::cone::ConeError>(())
 //! ```
 
+mod analysis;
 mod correction;
 mod interior;
 mod law;
 mod problem;
 mod proximal;
+#[cfg(feature = "serde-serialize")]
+mod record;
 mod reduced;
 mod settings;
 mod slip;
@@ -57,6 +60,8 @@ mod tests;
 
 pub use law::ConeStatus;
 pub use problem::{ConeEntry, ConeError, ConeLaw, ConeProblem, ConeRow};
+#[cfg(feature = "serde-serialize")]
+pub(crate) use record::ConeRecord;
 pub use settings::{ConeOutcome, ConeSettings};
 
 use crate::math::judged::Judged;

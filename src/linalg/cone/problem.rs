@@ -6,6 +6,10 @@ use thiserror::Error;
 
 /// What one node contributes to the normal and the tangential component of a row.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
 pub struct ConeEntry {
     /// The node, in the numbering of the matrix.
     pub node: u32,

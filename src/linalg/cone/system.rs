@@ -1,9 +1,10 @@
 //! `H = A + Gᵀ S G` in one sparse factor, and the factor of `A` alone.
 
+use super::analysis::{Analysis, covers, place};
 use super::correction::{Correction, FactorRows};
 use super::problem::{ConeEntry, ConeProblem};
 use crate::linalg::block_matrix::BlockMatrix;
-use crate::linalg::cholesky::{BlockCholesky, CholeskyError, Selection};
+use crate::linalg::cholesky::{CholeskyError, Selection};
 
 /// Difference of weights, relative to the larger one of its row, up to which they count as the same (-): a Newton step with the factor of the
 /// ones leaves no more than this share of an imbalance under the others.
@@ -31,25 +32,10 @@ pub(super) enum Fit {
     None,
 }
 
-/// What is known once the pattern is.
-#[derive(Debug, Clone)]
-struct Analysis {
-    /// The values of `A` of which `bodies` is the factor, if `has_bodies`.
-    matrix: BlockMatrix,
-    bodies: BlockCholesky,
-    /// `H`.
-    hull: BlockMatrix,
-    /// `A` in the pattern of `H`.
-    base: Vec<[f64; 4]>,
-    factor: BlockCholesky,
-    /// The place in `hull` of every block of `A`.
-    matrix_places: Vec<u32>,
-}
-
 /// Both factors, with an exact record of the numbers they were made of.
 #[derive(Debug, Clone, Default)]
 pub(super) struct System {
-    analysis: Option<Box<Analysis>>,
+    pub analysis: Option<Box<Analysis>>,
     has_bodies: bool,
     /// The place in `hull` of every pair of entries of every row, row after row.
     row_places: Vec<u32>,
@@ -58,14 +44,14 @@ pub(super) struct System {
     /// Whether `hull` and the factor hold nothing but `base` outside that part.
     is_only_touched: bool,
     nodes: Vec<u32>,
-    spans: Vec<(u32, u32)>,
-    has_factor: bool,
+    pub spans: Vec<(u32, u32)>,
+    pub has_factor: bool,
     /// Whether it was made of the problem at hand.
     is_own: bool,
-    weights: Vec<[f64; 3]>,
-    entries: Vec<ConeEntry>,
-    values: Vec<[f64; 4]>,
-    correction: Correction,
+    pub weights: Vec<[f64; 3]>,
+    pub entries: Vec<ConeEntry>,
+    pub values: Vec<[f64; 4]>,
+    pub correction: Correction,
     right: Vec<f64>,
     pub n_factorizations: usize,
     pub n_analyses: usize,
@@ -132,66 +118,31 @@ impl System {
 
     /// Couples all nodes of each row, beside those that `A` couples.
     fn analyze(&mut self, problem: &ConeProblem, has_pattern: bool) {
-        let matrix = problem.matrix;
-        let mut members: Vec<usize> = Vec::new();
-        let mut ends = vec![0];
-        for node in 0..matrix.n_nodes() {
-            for &other in matrix
-                .neighbours(node)
-                .iter()
-                .filter(|&&other| other as usize > node)
-            {
-                members.extend([node, other as usize]);
-                ends.push(members.len());
-            }
-        }
-        for row in problem.rows {
-            members.extend(
-                problem
-                    .entries_of(row)
-                    .iter()
-                    .map(|entry| entry.node as usize),
-            );
-            ends.push(members.len());
-        }
-        let hull = BlockMatrix::from_cells(
-            matrix.n_nodes(),
-            ends.windows(2).map(|ends| &members[ends[0]..ends[1]]),
-        );
-        let mut matrix_places = Vec::with_capacity(matrix.blocks().len());
-        for node in 0..matrix.n_nodes() {
-            matrix_places.extend(
-                matrix
-                    .neighbours(node)
-                    .iter()
-                    .filter_map(|&other| place(&hull, node as u32, other)),
-            );
-        }
-        let factor = BlockCholesky::analyze(&hull);
-        let mut base = vec![[0.0; 4]; hull.blocks().len()];
-        for (&place, block) in matrix_places.iter().zip(matrix.blocks()) {
-            base[place as usize] = *block;
-        }
+        let rows = problem.rows.iter().map(|row| {
+            let entries = problem.entries_of(row).iter();
+            entries.map(|entry| entry.node as usize)
+        });
+        self.couple(problem.matrix, rows, has_pattern);
+    }
+
+    /// Makes the pattern that couples the nodes of each cell, beside those that `A` couples.
+    ///
+    /// - `has_pattern`: whether the pattern of `A` is the one known.
+    pub fn couple<Nodes: Iterator<Item = usize>>(
+        &mut self,
+        matrix: &BlockMatrix,
+        cells: impl Iterator<Item = Nodes>,
+        has_pattern: bool,
+    ) {
         self.spans.clear();
         self.has_factor = false;
         self.is_only_touched = false;
         self.n_analyses += 1;
         match &mut self.analysis {
-            Some(analysis) if has_pattern => {
-                (analysis.hull, analysis.base, analysis.factor) = (hull, base, factor);
-                analysis.matrix_places = matrix_places;
-            }
+            Some(analysis) if has_pattern => analysis.couple(matrix, cells),
             slot => {
                 self.has_bodies = false;
-                let (matrix, bodies) = (matrix.clone(), BlockCholesky::analyze(matrix));
-                *slot = Some(Box::new(Analysis {
-                    matrix,
-                    bodies,
-                    hull,
-                    base,
-                    factor,
-                    matrix_places,
-                }));
+                *slot = Some(Box::new(Analysis::new(matrix, cells)));
             }
         }
     }
@@ -386,23 +337,4 @@ impl System {
             analysis.bodies.solve_in_place(x);
         }
     }
-}
-
-/// Whether the pattern couples all nodes of each row.
-fn covers(matrix: &BlockMatrix, problem: &ConeProblem) -> bool {
-    problem.rows.iter().all(|row| {
-        let entries = problem.entries_of(row);
-        let mut pairs = entries
-            .iter()
-            .flat_map(|one| entries.iter().map(move |other| [one.node, other.node]));
-        pairs.all(|[one, other]| place(matrix, one, other).is_some())
-    })
-}
-
-fn place(matrix: &BlockMatrix, row: u32, column: u32) -> Option<u32> {
-    let found = matrix
-        .neighbours(row as usize)
-        .binary_search(&column)
-        .ok()?;
-    u32::try_from(matrix.row_start(row as usize) + found).ok()
 }

@@ -6,6 +6,8 @@ mod chains;
 mod corrections;
 mod piles;
 mod random;
+#[cfg(feature = "serde-serialize")]
+mod remembered;
 mod soft;
 
 /// Bodies of two nodes, `(x, y)` and `(angle, unused)`, and meshes of springs, with rows between them.

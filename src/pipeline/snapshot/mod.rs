@@ -1,8 +1,8 @@
 //! Snapshots: a world with its flexible bodies at an instant, to go on from bit for bit.
 //!
 //! Saved is what the next step depends on: rapier's world, the state of the flexible bodies and the descriptions of their models,
-//! attachments, multipliers, reference faces, what handlers and hooks know. What follows from it (matrices, factors, compliances,
-//! shapes) is computed anew and comes out the same.
+//! attachments, multipliers, reference faces, what handlers and hooks know, and what the factors of sparse contact problems were made of, as the next
+//! ones go on from them. What follows from it (matrices, factors, compliances, shapes) is computed anew and comes out the same.
 
 mod checksum;
 mod error;
@@ -16,15 +16,16 @@ use super::report::StepReport;
 use super::settings::FlexParameters;
 use crate::body::{FlexBodySet, SetRecord, SetRecordError};
 use crate::constraint::contact::ContactMemory;
-use crate::coupling::CouplingRecord;
+use crate::coupling::{CouplingRecord, PutTogether};
 use crate::fe::record::KnownLaws;
+use crate::kkt::KeptRecord;
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Raised with every change of what is written, rapier's own structures included.
-const FORMAT: u32 = 17;
+const FORMAT: u32 = 18;
 
 /// Bits of rapier's numbers.
 const PRECISION: u8 = 8 * size_of::<Real>() as u8;
@@ -32,9 +33,8 @@ const PRECISION: u8 = 8 * size_of::<Real>() as u8;
 /// A world with its flexible bodies at an instant between two steps.
 ///
 /// It is written and read by any serde format that keeps every bit of a float, infinite ones included: binary ones do, JSON does not.
-/// The same version of the program with the same features then goes on as if nothing had happened, bit for bit where contacts are few: islands of many
-/// go on from factors of the step before, which are not saved, and differ by what a solution may leave (1e-5 m/s after a step of five blocks on each other, or
-/// of a strip over a ball; two worlds restored from one snapshot go on alike). Handles stay valid; where the data is read by a program that has made sets of its own already, a handle of one of these may be taken for
+/// The same version of the program with the same features then goes on as if nothing had happened, bit for bit. Islands of many contacts go on from
+/// factors of the step before: what these were made of is saved, which doubles the size of a pile's snapshot, and they are made again when the island is solved. Handles stay valid; where the data is read by a program that has made sets of its own already, a handle of one of these may be taken for
 /// one of the restored set.
 ///
 /// Not part of it are hooks and event handlers, the thread pool and the counters of rapier's pipeline, and what rapier itself does
@@ -101,7 +101,7 @@ impl Snapshot {
             data: Some(Box::new(Data {
                 world: WorldRecord::of(world),
                 flex_bodies: SetRecord::of(flex_bodies)?,
-                pipeline: PipelineRecord::of(flex),
+                pipeline: PipelineRecord::of(flex, flex_bodies),
             })),
         })
     }
@@ -208,16 +208,20 @@ struct PipelineRecord {
     parameters: FlexParameters,
     memory: ContactMemory,
     coupling: CouplingRecord,
+    kept: Vec<KeptRecord>,
+    put_together: PutTogether,
     report: StepReport,
 }
 
 impl PipelineRecord {
-    fn of(flex: &FlexPipeline) -> Self {
+    fn of(flex: &FlexPipeline, flex_bodies: &FlexBodySet) -> Self {
         let pool = flex.solver.pool();
         Self {
             parameters: flex.parameters,
             memory: flex.memory.contacts.clone(),
             coupling: CouplingRecord::of(&flex.claims, &flex.events, &flex.memory, pool),
+            kept: flex.solver.kept_records(flex_bodies),
+            put_together: flex.put_together.clone(),
             report: flex.report.clone(),
         }
     }
@@ -231,7 +235,9 @@ impl PipelineRecord {
         flex.claims = claims;
         flex.events = events;
         flex.memory = memory;
-        flex.solver = Solver::with_pool(pool);
+        let solver = Solver::restored(pool, self.kept, flex_bodies);
+        flex.solver = solver.ok_or(SnapshotError::Inconsistent("factors and bodies"))?;
+        flex.put_together = self.put_together;
         flex.report = self.report;
         Ok(flex)
     }
