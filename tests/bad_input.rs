@@ -934,6 +934,45 @@ fn a_carrier_that_was_given_a_velocity_is_refused_at_once() {
     scene.assert_goes_on();
 }
 
+/// Nor is it of another type, pushed by forces, or shared with other colliders.
+#[test]
+fn a_carrier_that_was_changed_is_refused_at_once() {
+    let mut scene = Scene::new();
+    scene.step().expect("a sound step");
+    let carrier = scene.flex_bodies[scene.block].rigid_body_handle();
+    let check = |scene: &mut Scene, expected: FlexBodyError| {
+        let state = scene.state();
+        let error = scene.step().expect_err("the carrier is another");
+        assert_eq!(error, StepError::Body(expected));
+        assert_eq!(state, scene.state());
+    };
+    let (driven, changed) = (
+        FlexBodyError::CarrierDriven(scene.block),
+        FlexBodyError::CarrierChanged(scene.block),
+    );
+    scene.world.bodies[carrier].add_force(Vector::new(5.0, 0.0), true);
+    check(&mut scene, driven);
+    scene.world.bodies[carrier].reset_forces(true);
+    for kind in [
+        RigidBodyType::Fixed,
+        RigidBodyType::KinematicPositionBased,
+        RigidBodyType::KinematicVelocityBased,
+    ] {
+        scene.world.bodies[carrier].set_body_type(kind, true);
+        check(&mut scene, changed);
+    }
+    scene.world.bodies[carrier].set_body_type(RigidBodyType::Dynamic, true);
+    let world = &mut scene.world;
+    let ball = ColliderBuilder::ball(0.1);
+    let ball = world
+        .colliders
+        .insert_with_parent(ball, carrier, &mut world.bodies);
+    check(&mut scene, changed);
+    scene.world.remove_collider(ball);
+    scene.step().expect("the world goes on");
+    scene.assert_goes_on();
+}
+
 #[test]
 fn a_body_whose_surface_the_user_removed_stops_the_step() {
     let mut scene = Scene::new();

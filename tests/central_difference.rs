@@ -434,6 +434,39 @@ fn a_step_beyond_the_critical_one_is_refused_unless_the_user_insists() {
     assert!(scene.try_step().is_ok());
 }
 
+/// Damped bodies, by members that damp as well: what swings at the longest step dies out, and a longer one is refused.
+#[test]
+fn the_critical_step_of_damped_bodies_is_stable_for_every_member() {
+    for beta1 in [0.5, 1.0, 1.5] {
+        for damping in [0.0, 2e-3, 1e-2] {
+            let integrator = Beta2::explicit(beta1).expect("in range");
+            let body = || {
+                FlexBodyBuilder::rectangle([1.0, 0.2], [10, 2])
+                    .material(
+                        LinearElastic::plane_stress(1e6, 0.3)
+                            .density(1000.0)
+                            .rayleigh(damping),
+                    )
+                    .small_strain()
+                    .pin_where(|[x, _]| x == 0.0, Pin::both())
+            };
+            let critical = body().build().expect("a body").critical_step(&integrator);
+            let mut scene = Scene::in_free_space(0.99 * critical);
+            scene.world.gravity = vec2(0.0, -9.81);
+            scene.flex = FlexPipeline::new().with_integrator(integrator);
+            let beam = scene.flexible(body());
+            for _ in 0..1500 {
+                scene.step();
+            }
+            let tip = scene.body(beam).position(10)[1];
+            assert!(tip.abs() < 1.0, "{beta1} {damping}: {tip} m");
+            scene.world.integration_parameters.dt = real(1.01 * critical);
+            let outcome = scene.flex.step(&mut scene.world, &mut scene.bodies);
+            assert!(outcome.is_err(), "{beta1} {damping}");
+        }
+    }
+}
+
 #[test]
 fn a_consistent_mass_is_refused_with_the_cure() {
     let mut scene = explicit(Scene::in_free_space(1e-4));

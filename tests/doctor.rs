@@ -387,3 +387,18 @@ fn energy_that_no_load_brought_is_told() {
     assert!((told.gained / gained - 1.0).abs() < 1e-6, "{told}");
     assert!(told.to_string().contains("no load brought"), "{told}");
 }
+
+/// Flexible bodies meet no voxels: what would rest on them in rapier alone falls through, and is told.
+#[test]
+fn shapes_that_are_not_met_are_named() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let block = FlexBodyBuilder::rectangle([0.5, 0.5], [4, 4]).material(rubber());
+    let block = scene.flexible(block.translation([0.0, 2.0]));
+    let cells: Vec<IVector> = (-4..4).map(|x| IVector::new(x, 0)).collect();
+    let voxels = ColliderBuilder::voxels(vec2(1.0, 1.0), &cells);
+    let ground = scene.world.insert_collider(voxels, None);
+    match only_of(&scene, block) {
+        Finding::NotMet { with, .. } => assert_eq!(with, Participant::Rigid(ground)),
+        other => panic!("{other}"),
+    }
+}

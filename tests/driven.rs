@@ -264,3 +264,75 @@ fn a_driven_bar_resists_with_the_stress_of_its_wave() {
         assert!((elastic - 1.0).abs() < 0.02, "large {is_large}: {elastic}");
     }
 }
+
+/// Pins that speed up give a body its momentum and its angular momentum: what they are told to give in each step sums up to both, whatever the step resolves of
+/// the body.
+#[test]
+fn pins_that_speed_up_give_what_moves_the_body() {
+    for (young, rate) in [(1e6, 60.0), (1e8, 60.0), (1e11, 60.0), (1e8, 240.0)] {
+        for is_large in [true, false] {
+            for acceleration in [[2.0, 0.0], [-1.0, 3.0]] {
+                let scene = Scene::in_free_space(1.0 / rate);
+                let mut driven = Driven::new(scene, young, is_large, By::Pins);
+                let (dt, mass) = (driven.scene.dt(), 1500.0);
+                let name = format!("E {young:e}, large {is_large}, {acceleration:?}, 1/{rate} s");
+                let steps = (2.0 * rate) as usize;
+                let (mut given, mut turned) = ([0.0; 2], 0.0);
+                let (mut before, mut spun) = ([0.0; 2], 0.0);
+                for step in 0..steps {
+                    if step == steps / 2 {
+                        before = driven.velocity();
+                        spun = driven.scene.report().angular_momentum();
+                    }
+                    let time = dt * step as f64;
+                    // It starts smoothly.
+                    let ramp = (time / 0.5).min(1.0);
+                    driven.step(acceleration.map(|a| a * ramp * ramp * time));
+                    if step >= steps / 2 {
+                        let body = driven.scene.body(driven.block);
+                        let force = body.total_reaction();
+                        given = [0, 1].map(|axis| given[axis] + dt * force[axis]);
+                        turned += dt * body.reaction_moment([0.0; 2]);
+                    }
+                }
+                let after = driven.velocity();
+                let size = mass * 2.0;
+                for axis in 0..2 {
+                    let off = given[axis] - mass * (after[axis] - before[axis]);
+                    assert!(off.abs() < 5e-3 * size, "{name}: {off} of {size} N s");
+                }
+                let off = turned - (driven.scene.report().angular_momentum() - spun);
+                assert!(off.abs() < 1e-2 * size, "{name}: {off} of {size} N m s");
+            }
+        }
+    }
+}
+
+/// The same of a bar that is drawn by one pin, with its mass at that.
+#[test]
+fn a_pin_that_draws_a_bar_gives_what_moves_it() {
+    for is_large in [true, false] {
+        let mut scene = Scene::in_free_space(DT);
+        let bar = FlexBodyBuilder::rectangle([1.0, 0.1], [20, 2])
+            .material(LinearElastic::plane_stress(1e8, 0.3).density(1000.0))
+            .pin_where(|[x, y]| x == 0.0 && (y - 0.05).abs() < 1e-9, Pin::both());
+        let bar = scene.flexible(match is_large {
+            true => bar.large_strain(),
+            false => bar.small_strain(),
+        });
+        let (mut given, mut moved, dt) = (0.0, 0.0, scene.dt());
+        for step in 1..=60 {
+            moved -= 2.0 * dt * dt * f64::from(step);
+            let body = &mut scene.bodies[bar];
+            body.set_pin_displacement(21, [moved, 0.0])
+                .expect("the pin");
+            scene.step();
+            given += dt * scene.body(bar).total_reaction()[0];
+        }
+        let grown = 100.0 * scene.body(bar).linvel()[0];
+        assert!(
+            (given - grown).abs() < 2e-2 * grown.abs(),
+            "large {is_large}: {given} N s for {grown}"
+        );
+    }
+}

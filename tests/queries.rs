@@ -261,3 +261,27 @@ fn an_even_pressure_is_met_at_corners_and_midsides_alike() {
         }
     }
 }
+
+/// What was put elsewhere is found there before the next step, and no more where it was.
+#[test]
+fn queries_see_what_was_put_elsewhere_at_once() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let block = FlexBodyBuilder::rectangle([0.4, 0.4], [2, 2])
+        .material(elastic(1e6, 1000.0, 1e-2))
+        .translation([0.0, 3.0]);
+    let block = scene.flexible(block);
+    scene.step();
+    let put = scene
+        .bodies
+        .set_position(block, [7.0, 5.0], 0.0, &mut scene.world);
+    put.expect("it is there");
+    let hit = |x: f64, y: f64| {
+        let ray = Ray::new(vec2(x, y + 1.0), vec2(0.0, -1.0));
+        let hit = (scene.world).cast_ray(&ray, 1.5, true, QueryFilter::default());
+        hit.map(|(hit, far)| (hit, f64::from(far)))
+    };
+    let (found, far) = hit(7.0, 5.0).expect("the block");
+    assert_eq!(found, scene.body(block).collider_handle());
+    assert!((far - 0.8).abs() < 1e-5, "{far} m");
+    assert_eq!(hit(0.2, 3.2), None);
+}

@@ -204,12 +204,28 @@ impl FlexBody {
         }
     }
 
+    pub(crate) fn contact_forces(&self) -> &[f64] {
+        &self.contact_force
+    }
+
     pub(crate) fn contact_force_mut(&mut self) -> &mut [f64] {
         &mut self.contact_force
     }
 
     pub(crate) fn reactions(&self) -> &[f64] {
         &self.reaction
+    }
+
+    /// Makes the reactions of the last part of a step those of all of it: `sums` of the parts before, and the last one's share of the step (-).
+    pub(crate) fn average_reactions(&mut self, sums: &[f64], last: f64) {
+        let push = &mut self.state.pin_push;
+        push.resize(sums.len(), 0.0);
+        for ((told, push), sum) in self.reaction.iter_mut().zip(push).zip(sums) {
+            let mean = sum + last * *told;
+            // The next step begins with the forces at the end of this one.
+            *push += mean - *told;
+            *told = mean;
+        }
     }
 
     pub(crate) fn reaction_mut(&mut self) -> &mut [f64] {

@@ -16,6 +16,7 @@ use crate::fe::frequency::frequency_bound;
 use crate::fe::model::ModelError;
 use crate::fe::modes::{Modes, ModesError, lowest_modes, lowest_modes_at};
 use crate::fe::recovery::{PointState, Stress, Stretch};
+use crate::integrator::Beta2;
 use crate::math::{hypot, node_vec, sin_cos};
 
 impl FlexBody {
@@ -245,7 +246,7 @@ impl FlexBody {
     }
 
     /// An upper bound of the largest natural frequency of the body as it is held (rad/s), with nodes without mass held too,
-    /// as a contact may; a step by central difference may last `2 / ω`.
+    /// as a contact may; a step by central difference may last `2 / ω`, one by another explicit member [`critical_step`](Self::critical_step).
     ///
     /// With stiffness damping it is `ω (√(1 + ζ²) + ζ)`, `ζ = β ω / 2`: that of an undamped body with the same critical
     /// step, where damping takes its rate from the half step before.
@@ -258,6 +259,14 @@ impl FlexBody {
             let ratio = 0.5 * self.model().rayleigh().stiffness * omega;
             omega * (ratio + hypot(ratio, 1.0))
         })
+    }
+
+    /// The longest stable step (s) by an explicit member, see [`Beta2::explicit_critical_step`] and [`explicit_frequency`](Self::explicit_frequency).
+    pub fn critical_step(&self, integrator: &Beta2) -> f64 {
+        let (bound, damping) = (self.explicit_frequency(), self.model().rayleigh().stiffness);
+        // `ω` of `ω (√(1 + ζ²) + ζ)` with `ζ = β ω / 2`.
+        let frequency = bound / (1.0 + damping * bound).sqrt();
+        integrator.explicit_critical_step(frequency, damping)
     }
 
     /// The `n_modes` lowest natural modes of the body as it is pinned, known to a relative `tolerance` (-); see [`lowest_modes`].

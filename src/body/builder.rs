@@ -71,7 +71,7 @@ impl FlexBodyBuilder {
         Self::from_result(Mesh::from_cells(nodes, kind, cells).map(Arc::new))
     }
 
-    /// A rectangle `[0, w] × [0, h]` (m) of `[nx, ny]` quadrilaterals (QM6); nodes are numbered along x, row by row.
+    /// A rectangle `[0, w] × [0, h]` (m) of `[nx, ny]` quadrilaterals (QM6, Taylor, Beresford and Wilson 1976: with two inner modes of bending); nodes are numbered along x, row by row.
     pub fn rectangle(size: [f64; 2], divisions: [usize; 2]) -> Self {
         Self::rectangle_of(size, divisions, CellKind::Quad4)
     }
@@ -339,7 +339,8 @@ impl FlexBodyBuilder {
 
     /// Which of the colliders it meets this body pushes.
     ///
-    /// Rapier's collider keeps empty groups of its own; groups set there are taken over here by the next step.
+    /// Rapier's collider keeps empty groups of its own; groups set there are taken over here by the next step. `InteractionGroups::none()` is
+    /// what it has, so give groups that meet nothing here.
     pub fn solver_groups(mut self, groups: InteractionGroups) -> Self {
         self.contact.solver_groups = groups;
         self
@@ -385,15 +386,15 @@ impl FlexBodyBuilder {
 
     /// Whether the body may fall asleep when it, and all that it touches, has come to rest: yes by default.
     ///
-    /// It rests when no node moves by a hundred-millionth of the body's size in the time until sleep of its rapier body, half a second
-    /// by default: a vibration that dies out falls asleep late, and one that does not never does. What rests is in equilibrium to some eight
+    /// It rests when no node moves by a millionth of the body's size in the time until sleep of its rapier body, half a second
+    /// by default: a vibration that dies out falls asleep late, and one that does not never does. What rests is in equilibrium to some six
     /// digits; for more, or for queries that see the surface to the last digit, choose `false`.
     pub fn can_sleep(mut self, can_sleep: bool) -> Self {
         self.can_sleep = can_sleep;
         self
     }
 
-    /// Anything the user wants to keep with the body.
+    /// Anything the user wants to keep with the body; its collider and that one's rigid body have it too, for hooks and filters of queries.
     pub fn user_data(mut self, data: u128) -> Self {
         self.user_data = data;
         self

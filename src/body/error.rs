@@ -237,11 +237,16 @@ pub enum FlexBodyError {
         "the world given does not hold the carrier of {0:?} as it was left: use the world it was inserted into, leave the pose and shape of its carrier alone (put back at the identity, steps go on), remove the body from its set by `FlexBodySet::remove` rather than through rapier, and `FlexBodySet::forget` it if its carrier is gone"
     )]
     NoCarrier(FlexBodyHandle),
-    /// The user has given the body's carrier a velocity.
+    /// The user has given the body's carrier a velocity or a force.
     #[error(
-        "the carrier of {0:?} was given a velocity, and carriers stay where they are: set it back to zero, and steer the body by `FlexBody::set_linvel` or by forces on it"
+        "the carrier of {0:?} was given a velocity or a force, and carriers stay where they are: set it back to zero, and steer the body by `FlexBody::set_linvel` or by forces on it"
     )]
     CarrierDriven(FlexBodyHandle),
+    /// The user has given the body's carrier another type, or another collider.
+    #[error(
+        "the carrier of {0:?} is no dynamic body with the body's surface alone any more: set its type back to dynamic (pins hold a flexible body, attachments drive it), and put other colliders on bodies of their own"
+    )]
+    CarrierChanged(FlexBodyHandle),
 }
 
 /// Refuses numbers that are not finite.

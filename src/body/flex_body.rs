@@ -287,7 +287,8 @@ impl FlexBody {
         sum_of_nodes(&self.contact_force).into()
     }
 
-    /// Force that a pinned node's support exerts on the body at the end of the last step (N).
+    /// Force that a pinned node's support exerts on the body (N): of bodies of large strain its mean over the last step, of others that at its end, with
+    /// what pins that speed up give beside it in the step. Of a step that was cut it is the mean of its parts.
     pub fn reaction(&self, node: usize) -> [f64; 2] {
         node_vec(&self.reaction, node).into()
     }

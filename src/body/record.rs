@@ -115,6 +115,9 @@ impl BodyRecord {
             }
             false => None,
         };
+        if !(state.pin_push.is_empty() || state.pin_push.len() == n_dofs) {
+            return Err(ModelRecordError::Length("nodal values"));
+        }
         let n_flowing = large.as_ref().map_or(0, |large| large.virgin().len());
         if state.flowed.len() != n_flowing || !state.flowed.iter().all(PlasticState::is_sound) {
             return Err(ModelRecordError::Length("plastic strains"));

@@ -131,6 +131,9 @@ pub struct FlexState {
     pub flow_energy: f64,
     /// Where the tangent of the last step was taken.
     pub linearized: Linearized,
+    /// What pins had to give in the last step beside the forces at its end, or in its mean, for the body to have their velocities (N); empty where these
+    /// stayed what they were.
+    pub pin_push: Vec<f64>,
 }
 
 impl FlexState {
@@ -159,6 +162,7 @@ impl FlexState {
             flowed: Vec::new(),
             flow_energy: 0.0,
             linearized: Linearized::default(),
+            pin_push: Vec::new(),
         }
     }
 

@@ -45,11 +45,13 @@ impl FlexBodySet {
             RigidBodyBuilder::dynamic()
                 .locked_axes(LockedAxes::TRANSLATION_LOCKED | LockedAxes::ROTATION_LOCKED)
                 .gravity_scale(0.0)
-                .can_sleep(can_sleep),
+                .can_sleep(can_sleep)
+                .user_data(body.user_data),
         );
         let contact = *body.contact_settings();
         let collider = ColliderBuilder::new(SharedShape::new(surface(&body)))
             .density(0.0)
+            .user_data(body.user_data)
             .friction(contact.friction as Real)
             .friction_combine_rule(contact.friction_combine_rule)
             .restitution(contact.restitution as Real)
@@ -70,6 +72,7 @@ impl FlexBodySet {
     /// Puts a body elsewhere, as it is deformed: its [centre of mass](crate::body::FlexBody::centre_of_mass) (m) and its
     /// [angle](crate::body::FlexBody::angle) (rad). Linear and angular velocity stay, vibrations turn along. The next step wakes it and what
     /// rested on it, and tells what it was put into, as for a body just inserted. Attachments stay, and pull, over any distance.
+    /// Queries find it there at once.
     /// [`FlexBodyBuilder::translation`] is where the origin of the mesh is put, which is no centre of mass but for a disc's.
     ///
     /// ```
@@ -95,10 +98,16 @@ impl FlexBodySet {
         world: &mut PhysicsWorld,
     ) -> Result<(), FlexBodyError> {
         let (bodies, colliders) = (&world.bodies, &mut world.colliders);
-        self.set_position_with_sets(handle, centre_of_mass, angle, bodies, colliders)
+        self.set_position_with_sets(handle, centre_of_mass, angle, bodies, colliders)?;
+        let surface = self.try_get(handle)?.collider_handle();
+        if let Some(collider) = world.colliders.get(surface) {
+            let aabb = collider.compute_aabb();
+            (world.broad_phase).set_aabb(&world.integration_parameters, surface, aabb);
+        }
+        Ok(())
     }
 
-    /// [`FlexBodySet::set_position`] for programs that keep rapier's sets apart.
+    /// [`FlexBodySet::set_position`] for programs that keep rapier's sets apart. Queries find the body there after the next step.
     ///
     /// # Errors
     /// As [`FlexBodySet::set_position`].

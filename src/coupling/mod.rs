@@ -85,7 +85,7 @@ pub(crate) use reading::{GatherError, is_representable_motion};
 pub(crate) use record::CouplingRecord;
 pub(crate) use seats::Seats;
 pub use sets::RapierSets;
-pub(crate) use shapes::{ShapeFault, rounding};
+pub(crate) use shapes::{ShapeFault, is_met, rounding};
 pub(crate) use sleep::{
     keep_awake, keep_landing_awake, look_whether_still, rests, stop_if_asleep, wake_disturbed,
     wake_moving,

@@ -182,6 +182,17 @@ pub(super) fn convert(
     }
 }
 
+/// Whether flexible bodies meet a shape.
+pub(crate) fn is_met(shape: &dyn Shape) -> bool {
+    match shape.as_typed_shape() {
+        TypedShape::Voxels(_) | TypedShape::Custom(_) => false,
+        TypedShape::Compound(compound) => {
+            (compound.shapes().iter()).all(|(_, child)| is_met(child.as_ref()))
+        }
+        _ => true,
+    }
+}
+
 fn box_part(half: Vector, radius: Real) -> Result<ConvexPart, ShapeFault> {
     if !(is_length(half.x) && is_length(half.y)) {
         return Err(SIZE);

@@ -3,7 +3,7 @@
 //! Rapier takes the whole step at once. What is given to it by the user or by rapier itself (kinematic bodies, moved pins, bodies that
 //! are not claimed) goes from where it begins to where it ends in a straight line; a part sees its piece of that.
 
-use crate::body::{FlexBodySet, KeptForce, KeptMotion};
+use crate::body::{FlexBody, FlexBodySet, KeptForce, KeptMotion};
 use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::JointMemory;
 use crate::kkt::Island;
@@ -70,6 +70,16 @@ impl Span {
     }
 }
 
+/// What has acted on a flexible body in the parts of its step that are solved.
+#[derive(Debug)]
+struct PartImpulse {
+    index: u32,
+    /// How much of the step that is (-).
+    share: f64,
+    /// Contact forces and reactions of the parts, times their shares (N).
+    sums: [Vec<f64>; 2],
+}
+
 /// Forces that flexible bodies keep, by their indices.
 pub(crate) type KeptForces = [(u32, KeptForce)];
 
@@ -80,9 +90,8 @@ pub(crate) struct UnderWay {
     flex: Vec<(u32, KeptMotion)>,
     /// Motions of claimed rigid bodies, and their smooth accelerations.
     rigid: HashMap<RigidBodyHandle, (RigidMotion, [f64; 3])>,
-    /// Impulses of contact on the flexible bodies in the parts that are over, per length of the step, interleaved (N), and how long these
-    /// were (-).
-    impulses: Vec<(u32, f64, Vec<f64>)>,
+    /// What has acted on the flexible bodies in the parts that are over.
+    impulses: Vec<PartImpulse>,
     /// Multipliers of the last part.
     pub contacts: ContactMemory,
     pub joints: JointMemory,
@@ -165,7 +174,7 @@ impl UnderWay {
                 block.write_reactions(body.reaction_mut());
                 body.set_energy_reserve(share);
                 body.keep_forces(*index, kept);
-                self.add_impulse(*index, span.share(), body.contact_force_mut());
+                self.add_impulse(*index, span.share(), body);
             }
         }
         for &(block, handle) in bodies {
@@ -178,27 +187,33 @@ impl UnderWay {
         self.joints.turn_over();
     }
 
-    fn add_impulse(&mut self, index: u32, share: f64, force: &[f64]) {
-        let known = self.impulses.iter_mut().find(|(own, ..)| *own == index);
+    fn add_impulse(&mut self, index: u32, share: f64, body: &FlexBody) {
+        let forces = [body.contact_forces(), body.reactions()];
+        let known = self.impulses.iter_mut().find(|known| known.index == index);
         match known {
-            Some((_, length, sum)) => {
-                *length += share;
-                let pairs = sum.iter_mut().zip(force);
-                pairs.for_each(|(sum, force)| *sum += share * force);
+            Some(known) => {
+                known.share += share;
+                for (sums, forces) in known.sums.iter_mut().zip(forces) {
+                    let pairs = sums.iter_mut().zip(forces);
+                    pairs.for_each(|(sum, force)| *sum += share * force);
+                }
             }
-            None => {
-                let first = force.iter().map(|force| share * force).collect();
-                self.impulses.push((index, share, first));
-            }
+            None => self.impulses.push(PartImpulse {
+                index,
+                share,
+                sums: forces.map(|forces| forces.iter().map(|force| share * force).collect()),
+            }),
         }
     }
 
-    /// Makes the contact forces of a body's last part those of its step.
-    pub fn average(&self, index: u32, force: &mut [f64]) {
-        if let Some((_, length, sum)) = self.impulses.iter().find(|(own, ..)| *own == index) {
-            for (force, sum) in force.iter_mut().zip(sum) {
-                *force = sum + (1.0 - length) * *force;
+    /// Makes the contact forces and reactions of a body's last part those of its step.
+    pub fn average(&self, index: u32, body: &mut FlexBody) {
+        if let Some(known) = self.impulses.iter().find(|known| known.index == index) {
+            let ([contact, reaction], last) = (&known.sums, 1.0 - known.share);
+            for (force, sum) in body.contact_force_mut().iter_mut().zip(contact) {
+                *force = sum + last * *force;
             }
+            body.average_reactions(reaction, last);
         }
     }
 

@@ -159,7 +159,7 @@ impl Patient<'_> {
             findings.push(Finding::Insertion(note));
         }
         if self.integrator.is_explicit() && self.body.large().is_none() {
-            let critical = self.integrator.critical_sampling() / self.body.explicit_frequency();
+            let critical = self.body.critical_step(&self.integrator);
             if self.dt > critical {
                 let dt = self.dt;
                 findings.push(Finding::Unstable { body, critical, dt });

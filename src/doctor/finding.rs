@@ -96,6 +96,13 @@ pub enum Finding {
     },
     /// What the first step will tell: pins that choose no node, bodies in each other.
     Insertion(InsertionNote),
+    /// A collider that a flexible body would meet has a shape that it goes through.
+    NotMet {
+        /// The flexible body.
+        body: FlexBodyHandle,
+        /// The collider.
+        with: Participant,
+    },
     /// A rigid body that moves is very much heavier or lighter than a flexible one that it may meet.
     MassRatio {
         /// The flexible body.
@@ -124,6 +131,7 @@ impl Finding {
             | Self::Density { body, .. }
             | Self::Insertion(InsertionNote::NothingPinned { body, .. })
             | Self::Insertion(InsertionNote::Overlap { body, .. })
+            | Self::NotMet { body, .. }
             | Self::MassRatio { body, .. } => body,
         }
     }
@@ -190,6 +198,10 @@ impl fmt::Display for Finding {
                 "{body:?} has a density of {density:.3e} kg/m³, that of no solid: check its units"
             ),
             Self::Insertion(note) => note.fmt(f),
+            Self::NotMet { body, with } => write!(
+                f,
+                "{body:?} goes through {with:?}, whose shape is of voxels or your own: take a polyline, a triangle mesh or a compound of convex shapes"
+            ),
             Self::MassRatio { body, with, ratio } => write!(
                 f,
                 "the masses of {body:?} and {with:?} are {ratio:.1e} apart: steps hold, but the lighter one follows the heavier as if it had no mass"

@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
-use crate::coupling::{DEEP, ReadSets, depth_in, is_out, overlap};
+use crate::coupling::{DEEP, ReadSets, depth_in, is_met, is_out, overlap};
 use crate::pipeline::{InsertionNote, Participant};
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
@@ -45,6 +45,10 @@ pub(super) fn examine(
                 continue;
             }
             let with = Participant::Rigid(rigid);
+            if !is_met(collider.shape()) {
+                findings.push(Finding::NotMet { body: handle, with });
+                continue;
+            }
             let is_near = box_of(rigid, sets).is_some_and(|beside| beside.intersects(&around));
             if is_near && depth_in(body, rigid, sets) > edge(body) {
                 findings.push(overlap_of(handle, with));

@@ -16,7 +16,7 @@
 //!
 //! | you want | choose |
 //! |---|---|
-//! | contact that settles at any step | the default, [`Beta2::damped`](crate::integrator::Beta2::damped)`(0.9)`: what the step does not resolve dies out, slow vibrations of `ω` (rad/s) are damped with a ratio of about `0.02 ω dt` |
+//! | contact that settles at any step | the default, [`Beta2::damped`](crate::integrator::Beta2::damped)`(0.9)`: what the step does not resolve dies out, slow vibrations of `ω` (rad/s) are damped with a ratio of about `0.013 ω dt`, with small strain `0.026 ω dt` |
 //! | vibrations that keep their energy | [`Beta2::trapezoidal`](crate::integrator::Beta2::trapezoidal), with steps that resolve the impacts |
 //! | vibrations that die out | damping of the material, see [`mesh_and_step`](super::mesh_and_step) |
 //! | explicit steps, no factorization of the mesh | [`Beta2::central_difference`](crate::integrator::Beta2::central_difference) and bodies of `small_strain`; too long a step is refused, and the critical one told |

@@ -55,7 +55,7 @@
 //!
 //! | in rapier | here |
 //! |---|---|
-//! | `set_translation`, `set_position` | [`FlexBodySet::set_position`](crate::body::FlexBodySet::set_position) |
+//! | `set_translation`, `set_position` | [`FlexBodySet::set_position`](crate::body::FlexBodySet::set_position): of the centre of mass, the angle from where the body was built; not of pinned bodies |
 //! | `set_linvel`, `set_angvel`, `apply_impulse`, `apply_torque_impulse` | the same on [`FlexBody`](crate::body::FlexBody); at a point and at a node too |
 //! | `add_force` | [`FlexBody::set_nodal_force`](crate::body::FlexBody::set_nodal_force), [`set_body_force`](crate::body::FlexBody::set_body_force): they last until set anew |
 //! | `set_enabled` | [`FlexBodySet::set_enabled`](crate::body::FlexBodySet::set_enabled) |
@@ -65,8 +65,12 @@
 //!
 //! The collider of a flexible body, [`FlexBody::collider_handle`](crate::body::FlexBody::collider_handle), is what rapier's queries and events name;
 //! [`FlexBodySet::of_collider`](crate::body::FlexBodySet::of_collider) tells whose it is, and [`FlexBodySet::pick`](crate::body::FlexBodySet::pick) which node. Its rigid body is a
-//! carrier: leave its pose and its velocity alone, put no joints on it, and remove the body by
-//! [`FlexBodySet::remove`](crate::body::FlexBodySet::remove), not through rapier (what is gone already, `forget`).
+//! carrier: leave its pose, its velocity and its type alone, put no joints and no other colliders on it, and remove the body by
+//! [`FlexBodySet::remove`](crate::body::FlexBodySet::remove), not through rapier (what is gone already, `forget`). Impulses and forces given to the carrier go nowhere:
+//! [`FlexBody`](crate::body::FlexBody) takes them.
+//!
+//! That collider is the outline of the body. Points and rays from inside, and shapes that lie inside, meet nothing there:
+//! [`FlexBody::contains`](crate::body::FlexBody::contains) knows better. A sensor smaller than the body that crosses it hears of its rims, going in and coming out.
 //!
 //! # Events
 //!

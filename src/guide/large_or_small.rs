@@ -2,7 +2,7 @@
 //!
 //! | | large strain, the default | [`small_strain`](crate::body::FlexBodyBuilder::small_strain) |
 //! |---|---|---|
-//! | bends, stretches, folds | as far as it likes | strains of a few percent, in one frame that turns with the body |
+//! | bends, stretches, folds | as far as it likes | strains of a few percent, in one frame that turns with the body; pins hold the frame of what they hold, so weld what is to turn with its support |
 //! | meets itself | yes | no |
 //! | step | a nonlinear one: a factorization now and then | linear: one factorization for ever |
 //! | integrator | energy–momentum, the decay of the pipeline's member | any member of Beta-2, explicit ones too |

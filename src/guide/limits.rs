@@ -3,6 +3,14 @@
 //! Each entry says what is limited, what you **see** of it and what to **do**. The places to look at are [`StepReport::quality`], [`unsolved`](crate::pipeline::StepReport::unsolved) and the residuals
 //! beside them, see [`reports`](super::reports); before a run, [`doctor::examine`](crate::doctor::examine).
 //!
+//! # Meshes
+//!
+//! - **Moments of inertia.** Mass lies in the nodes: that of a square of `n` by `n` cells is `1 + 2/n²` times too large (an eighth at four cells across, 3 % at eight). See: [`FlexBody::polar_moment`](crate::body::FlexBody::polar_moment). Do: take more cells where it matters how a
+//!   body turns.
+//! - **Stresses at the edge of `Quad4`** are those of the middle of its cells, so that they converge with the cells' size: at the bore of a cylinder twice as wide as its bore the pressure is told as 0.76 of what it is with five cells across the wall, 0.94
+//!   with twenty; displacements are right within a hundredth. Do: take `Tri6` or `Quad8` where stress at a hole or an edge matters (a hundredth with five cells).
+//! - **Tearing.** Bodies do not tear. Do: remove what has torn, and insert its pieces.
+//!
 //! # Large strain
 //!
 //! Bodies are of large strain unless you choose [`small_strain`](crate::body::FlexBodyBuilder::small_strain).
@@ -28,13 +36,15 @@
 //! - **Plasticity** is isotropic and independent of the rate, in plane strain. Where strains change their direction, its steps are of first order. A body that flows keeps its law for life
 //!   ([`BuildError::FlowChanged`](crate::body::BuildError::FlowChanged)). A blow flows only what the step resolves: a metal bar of half a metre that hits a wall end-on at 30 m/s stops undented at 1/240 s, and flows from 1/4000 s on. Do: take steps shorter
 //!   than a wave needs through the body. Pressed by something driven, a body that flows costs tens of times as much as an elastic one.
-//! - **Moments of inertia.** Mass lies in the nodes: that of a square of `n` by `n` cells is `1 + 2/n²` times too large (an eighth at four cells across, 3 % at eight). See: [`FlexBody::polar_moment`](crate::body::FlexBody::polar_moment). Do: take more cells where it matters how a
-//!   body turns.
 //! - **Islands of both kinds.** A body of small strain that touches one of large strain vibrates with more damping, of a ratio of about `0.25 ω dt` (ω in rad/s). Do: shorten the step, or make both of one kind.
 //!
 //! # Small strain
 //!
 //! - **Spin of small strain.** The tension of what spins does not stiffen it: a ring or strip that spins faster than it bends (its lowest frequency of bending) grows without bound. See: [`StepReport::overbent`], late. Do: take `large_strain`.
+//! - **Frequencies of coarse meshes.** By default the mass of the surface moves to the nodes inside, so that impacts are right; with few cells the frequencies of free vibration change by that: the first of bending of a free bar ten times as long as high by +17 % at 10 × 2
+//!   cells, +5 % at 20 × 2, +1.4 % at 40 × 4, that of a free square of 8 × 8 by -11 %. Do: take [`ContactInertia::Kept`](crate::body::ContactInertia::Kept) where vibrations matter more than impacts, or more cells.
+//! - **Welded to what turns.** Nodes that a weld turns with its partner turn exactly, and the frame of the body sees `θ²/2` of it as a strain across the weld: a root or a tip that is welded stiffens with amplitude, by 0.6 % where the tip goes by a hundredth of the length, 2.3 % at two, 7.5 % at four.
+//!   Do: pin by one node, or leave `small_strain` out.
 //! - **Slender and taut.** The frame is the mean of the nodes, against which tension bends a slender body more and more: from a strain of about `25 (h/L)²` on, .05 % for a steel tie two hundred times as long as wide. See: [`StepReport::overbent`], late. Do: leave
 //!   `small_strain` out.
 //! - **Contact forces** of small strain act on for the rest of their weight, half a step, after the contact is gone: a block whose ground is taken away falls a step later by half. Do: shorten the step, or leave `small_strain` out.
@@ -58,10 +68,11 @@
 //! - **Who is led.** Surfaces are stopped before they meet, whatever forces do ([`FlexParameters::feasible_path`]). Not led, and solved by signed gaps, are: pairs shown to hooks;
 //!   flexible bodies that are inserted with an overlap of more than a twelfth of a cell, rigid ones of more than a sixth of their width; explicit steps; constraint functions. See: of 1,000 random scenes of small strain
 //!   one had a body by over 1 % of its size in another, one a rigid body that passed through the ground, one gained over 1 % of energy; 12 of 2,000 later ones had an unfinished step.
-//! - **Statics between obstacles.** [`ContactStepper`](crate::large::ContactStepper) keeps nodes out of rigid obstacles, each node out of one. See: `LargeError::Wedged` where one would have to stay out of two. Its bodies do not
+//! - **Statics between obstacles.** [`ContactStepper`](crate::large::ContactStepper) keeps nodes out of rigid obstacles, each node out of one. See: `LargeError::Wedged` where one would have to stay out of two, `LargeError::Passed` where an obstacle would go through the surface. What is smaller than a segment of the surface may go into it between two nodes up to its middle. Its bodies do not
 //!   meet themselves or each other. Do: step such bodies in a world, with damping.
 //! - **Nodes of the target.** Between flexible bodies the nodes of one are kept out of the surface of the other, not the other's out of its own. See: a node of a soft target may be inside by a millimetre (1.4 mm at E = 1e5 Pa,
 //!   bodies of half a metre). Do: give both cells of about one size.
+//! - **Load control** may step over a limit load: [`LoadStepper`](crate::large::LoadStepper) and `ContactStepper` then find an equilibrium far away, and say nothing of it. Do: look at how far an increment went, or follow the path with [`PathStepper`](crate::large::PathStepper).
 //! - **Wedged corners.** Where friction wedges a corner against itself no sticking forces hold to the laws, and the contact slips by a thousandth to a tenth of what its force alone would move it. See:
 //!   [`StepReport::slip_violation`].
 //! - **Put into each other**, bodies part by and by; where a surface passes right through another there may be no way out. See: [`StepReport::insertion_notes`] once, `gap_violation` until they are apart. Do: put them apart;
@@ -111,6 +122,8 @@
 //!   at 1/240 s, by 5e-6 m if they are 20 cm apart. Do: shorten the step, or weld by `FixedJoint` (8e-8 m at 1/60 s).
 //! - **Light hubs.** A spring or position motor at a rigid body that carries flexible bodies of small strain alone is resolved by the mass of the rigid body, not of what is welded to that: one of 1,000 N/m at 1/60 s that moves 10 kg is damped away within
 //!   seconds if its own body has less than 0.07 kg. Do: take large strain, which swings, give the hub more mass, or shorten the step.
+//! - **Pins that speed up** give a body the velocity of each step as it begins; what the step does not resolve follows at once, without strain. See: a bar of rubber (ω dt = 0.8) that is drawn at a constant acceleration is stretched by 0.85 of what it should be with small strain, 1.14 with large; the
+//!   [`reaction`](crate::body::FlexBody::reaction) is right. Do: shorten the step, or weld to a world that moves ([`Attachment::set_target`](crate::body::Attachment::set_target)).
 //! - **Sleep.** Attached bodies do not sleep.
 //! - **Carriers.** A joint to the rigid body that carries a flexible one is refused ([`StepError::CarrierJoint`](crate::pipeline::StepError::CarrierJoint)). Do: attach nodes, [`FlexBodySet::attach`](crate::body::FlexBodySet::attach).
 //!
@@ -126,7 +139,19 @@
 //! - **Seams.** Boxes laid flush have seams by rapier's rounding, on which what slides may trip, as in rapier. Do: take a polyline, a height field or one box.
 //! - **Piles of rigid boxes** that spin fast into each other at 1/60 s may overlap by up to 2 mm where they jam, by 0.1 mm on a flexible slab.
 //! - **Continuous collision detection.** Off the feasible path, rapier may stop a rigid body short of where it was solved to be, at a fixed collider that it jams against: 5e-5 m of overlap at 1/30 s.
-//! - **Not looked at**: `tangent_velocity` of hooks. Voxels and custom shapes meet no flexible body.
+//! - **Queries and sensors see the surface alone.** A flexible body's collider is its outline, not what is inside: points, small shapes and rays from inside meet nothing there, and a trigger smaller than the body that crosses it starts and stops twice. Do:
+//!   ask [`FlexBody::contains`](crate::body::FlexBody::contains) beside the query.
+//! - **Carriers do not pass on** what is asked of the rigid body under a flexible one: impulses, forces, gravity scale, damping, mass and `sleep()` have no effect there, and rapier's character controller cannot push it. Do: ask the [`FlexBody`](crate::body::FlexBody), found by
+//!   [`FlexBodySet::of_collider`](crate::body::FlexBodySet::of_collider).
+//! - **Locked but moving.** A dynamic body with locked translations and a velocity, which rapier moves on whatever lies on it, is stopped by what weighs more than itself. Do: make it kinematic.
+//! - **Not looked at**: `tangent_velocity` of hooks; a belt that is made by it stands still. Do: make it kinematic. Voxels and custom shapes meet no flexible body, see [`doctor::examine`](crate::doctor::examine).
+//!
+//! # Explicit steps
+//!
+//! - **At rest in contact** a body tells the velocity `-g dt/2` for ever, its single nodes more, and does not fall asleep; `energy().kinetic` is right.
+//! - **No attachments**, and no light rigid body on an explicit one: both are refused, the second in the step in which it is met.
+//! - **`EnergyReport::swing`** makes the energy constant for central differences alone.
+//! - **Changed for another integrator** on the way, contact forces of one step are half of what they should be, or twice.
 //!
 //! # Rest and sleep
 //!

@@ -197,7 +197,7 @@
 //! - Events go through a handler of its own into Bevy's messages: the handler of `bevy_rapier2d` cannot be had from outside. Neither can its hooks.
 //! - `TimestepMode` is kept in all three forms, and rigid bodies with `TransformInterpolation` are drawn between steps.
 //!   Where nodes are is a component written after each step.
-//! - `length_unit` stays 1: flexible bodies are in metres. Scale by the camera.
+//! - `length_unit` stays 1: flexible bodies are in the world's own units, metres here. Scale by the camera.
 //!
 //! ```toml
 //! [dependencies]

@@ -39,7 +39,7 @@
 //!
 //! # Does it balance?
 //!
-//! [`StepReport::energy`](crate::pipeline::StepReport::energy) has kinetic, elastic and potential energy of the islands of the step, and what has been dissipated;
+//! [`StepReport::energy`](crate::pipeline::StepReport::energy) has kinetic, elastic and potential energy of the islands of the step where it ends, and what has been dissipated since the pipeline was made;
 //! [`momentum`](crate::pipeline::StepReport::momentum) and [`angular_momentum`](crate::pipeline::StepReport::angular_momentum) hold to rounding where
 //! nothing acts from outside.
 //!

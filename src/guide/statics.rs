@@ -37,7 +37,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Load control ends at a limit load, where bodies snap through; [`PathStepper`](crate::large::PathStepper) follows the path of equilibria past it, and tells limit points and
+//! Load control knows nothing of limit loads, where bodies snap through: beyond one it fails, or lands on another equilibrium far away, so look at how far an increment went. [`PathStepper`](crate::large::PathStepper) follows the path of equilibria past such points, and tells limit points and
 //! whether what it finds is stable. Its [`FollowerForce`](crate::large::FollowerForce)s turn with the body.
 //!
 //! Where another path crosses, as at the critical load of a column, [`follow_to_branch`](crate::large::PathStepper::follow_to_branch) stops, and

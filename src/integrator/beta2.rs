@@ -32,6 +32,11 @@ pub enum IntegratorError {
         /// Upper bound of the largest natural frequency (rad/s).
         frequency: f64,
     },
+    /// The member is only conditionally stable, and nodes of the surface have no mass: no step is short enough for these.
+    #[error(
+        "nodes of the surface have no mass, and no step of this conditionally stable integrator is short enough for them: keep the inertia of the surface (`ContactInertia::Kept`), or choose beta0 >= beta1 >= 1/2"
+    )]
+    MasslessSurface,
     /// The member has `β0 = 0` and the mass matrix is not diagonal.
     #[error(
         "beta0 is 0 and the mass is consistent, so that a step would have to solve for accelerations: choose `MassKind::Lumped`, or beta0 > 0"
@@ -236,12 +241,30 @@ impl Beta2 {
         }
     }
 
+    /// The longest stable step (s) of an explicit member for a system whose frequencies without damping do not exceed `frequency` (rad/s), with damping
+    /// of `damping` (s) times its stiffness, which takes its rate from the half step before:
+    ///
+    /// ```text
+    /// (ω dt)² + 2 c ω · ω dt <= 2/β1
+    /// ```
+    ///
+    /// as the motion that changes its sign in every step then does not grow. Without damping it is `critical_sampling() / frequency`.
+    pub fn explicit_critical_step(&self, frequency: f64, damping: f64) -> f64 {
+        let ratio = damping * frequency;
+        // The root without a difference of large numbers.
+        let most = 2.0 / self.beta1;
+        most / (ratio + (ratio * ratio + most).sqrt()) / frequency
+    }
+
     /// Refuses a step too long for a system whose frequencies do not exceed `frequency` (rad/s).
     ///
     /// # Errors
-    /// [`IntegratorError::Unstable`] with the critical step.
+    /// [`IntegratorError::Unstable`] with the critical step; [`IntegratorError::MasslessSurface`] if there is none, as the frequency is infinite.
     pub fn check_step(&self, dt: f64, frequency: f64) -> Result<(), IntegratorError> {
         let critical = self.critical_sampling() / frequency;
+        if frequency == f64::INFINITY && critical == 0.0 {
+            return Err(IntegratorError::MasslessSurface);
+        }
         if dt > critical {
             return Err(IntegratorError::Unstable {
                 dt,
@@ -320,6 +343,32 @@ mod tests {
         assert!((critical - 12f64.sqrt()).abs() < 1e-12);
         assert!(oscillate(method, 1.0, 0.99 * critical, 400).abs() < 10.0);
         assert!(oscillate(method, 1.0, 1.01 * critical, 400).abs() > 1e6);
+    }
+
+    /// One damped oscillator, with the rate of half a step before in its force.
+    #[test]
+    fn the_critical_step_of_damped_explicit_members_separates_bounded_from_growing_motion() {
+        for beta1 in [0.5, 0.75, 1.0, 1.5] {
+            for damping in [0.0, 0.1, 1.0, 10.0] {
+                let method = Beta2::explicit(beta1).expect("in range");
+                let omega: f64 = 3.0;
+                let critical = method.explicit_critical_step(omega, damping);
+                let size = |dt: f64| {
+                    let force = |x: f64, rate: f64| -omega * omega * (x + damping * rate);
+                    let (mut x, mut v, mut a) = (1.0, 0.0, force(1.0, 0.0));
+                    for _ in 0..4000 {
+                        x += dt * v + 0.5 * dt * dt * a;
+                        let next = force(x, v + 0.5 * dt * a);
+                        v += dt * ((1.0 - beta1) * a + beta1 * next);
+                        a = next;
+                    }
+                    f64::abs(x)
+                };
+                let [below, above] = [0.99, 1.01].map(|share| size(share * critical));
+                assert!(below < 10.0, "{beta1} {damping}: {below}");
+                assert!(above.is_nan() || above > 1e3, "{beta1} {damping}: {above}");
+            }
+        }
     }
 
     #[test]

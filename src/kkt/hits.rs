@@ -12,6 +12,7 @@ use super::active_contact::ActiveContact;
 use super::gathered;
 use super::island::{Island, SolveSettings};
 use super::passes::Hit;
+use super::rebound::rebound;
 use crate::constraint::contact::Kinematics;
 use crate::math::{Vec2, perp, rounding};
 use crate::path::NearPair;
@@ -103,8 +104,7 @@ fn met(island: &mut Island, index: usize, settings: &SolveSettings) -> Option<Me
     let base = contact.base.filter(|_| is_hit(contact))?;
     let end = contact.kinematics;
     let law = island.candidates[contact.candidate].law;
-    let [approach, _] = contact.approach(&island.blocks);
-    let rebound = law.rebound(approach, settings.restitution_threshold);
+    let rebound = rebound(island, index, settings);
     let mut grips = end.attachments().iter();
     if !grips.all(|grip| island.passes.carried[grip.block]) {
         return None;

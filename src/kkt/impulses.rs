@@ -5,6 +5,7 @@ use super::delassus::assemble;
 use super::island::{ActiveContact, Island, KktError, SolveSettings};
 use super::jammed::are_jammed;
 use super::joints::{Among, Rows};
+use super::rebound::rebound;
 use super::sparse::Asked;
 use crate::linalg::complementarity::{INDEPENDENT, RowKind, Status, give};
 use crate::math::{perp, rounding};
@@ -17,10 +18,8 @@ pub(super) fn velocity_rows(
     counts: impl Fn(&ActiveContact) -> bool,
 ) {
     state_rows(island, counts, |island, index| {
+        let rebound = rebound(island, index, settings);
         let contact = &mut island.contacts[index];
-        let law = island.candidates[contact.candidate].law;
-        let [approach, _] = contact.approach(&island.blocks);
-        let rebound = law.rebound(approach, settings.restitution_threshold);
         // A resolved impact rebounds by its elasticity.
         let rebound = match contact.rebound {
             Some(at_end) => at_end,

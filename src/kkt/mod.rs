@@ -47,6 +47,7 @@ mod partner;
 mod passes;
 mod position;
 mod problem;
+mod rebound;
 mod restitution;
 mod settings;
 mod smooth;

@@ -14,8 +14,8 @@ const MOST_GROWTH: Judged = Judged::new("large::MOST_GROWTH", 1.5);
 
 /// Finds equilibria of one body of large strain by load control.
 ///
-/// Load control follows a path as long as the load can grow; at a limit load, where bodies snap through, no cutback helps and
-/// the error names the node that does not come to rest: [`PathStepper`](super::PathStepper) goes on there.
+/// Load control follows a path as long as the load can grow. At a limit load, where bodies snap through, it either fails and names the node that does not
+/// come to rest, or lands on another equilibrium far away, which no report can tell from a long way: [`PathStepper`](super::PathStepper) goes on there.
 #[derive(Clone, Debug)]
 pub struct LoadStepper {
     ramp: Ramp,

@@ -41,7 +41,7 @@ pub enum LargeError {
     /// The iterations do not reach the tolerance.
     #[error(
         "{iterations} iterations left a residual of {residual:e} N at node {node}, where {limit:e} N was asked, also in smaller parts: \
-         shorten the step, allow more cutbacks, or look for crushed cells near that node"
+         shorten the step or take more increments, allow more cutbacks, or look for crushed cells near that node"
     )]
     NotConverged {
         /// Iterations of the last attempt.
@@ -56,7 +56,7 @@ pub enum LargeError {
     /// No cut of an increment leads to a state with a finite residual that does not grow.
     #[error(
         "no part of an increment keeps the residual of {residual:e} N from growing beyond bounds, also in smaller parts; it is largest \
-         at node {node}: shorten the step, or look for crushed cells near that node"
+         at node {node}: shorten the step, take more increments, or look for crushed cells near that node"
     )]
     Diverged {
         /// Node of the largest residual.
@@ -136,7 +136,7 @@ pub enum LargeError {
     },
     /// A node that touches one obstacle is in another.
     #[error(
-        "node {node} touches obstacle {} and is {depth:e} m in obstacle {}: a node is kept out of one obstacle, so round the corner between both, or let          one node less stand there", obstacles[0], obstacles[1]
+        "node {node} touches obstacle {} and is {depth:e} m in obstacle {}: a node is kept out of one obstacle, so round the corner between both, or let one node less stand there", obstacles[0], obstacles[1]
     )]
     Wedged {
         /// The node.
@@ -145,6 +145,17 @@ pub enum LargeError {
         obstacles: [usize; 2],
         /// How deep (m).
         depth: f64,
+    },
+    /// An obstacle that is met goes on through the body.
+    #[error(
+        "obstacle {obstacle} goes through the surface beside node {node} within an increment, also in smaller parts: take more increments, allow more \
+         cutbacks, or let it move less"
+    )]
+    Passed {
+        /// The node.
+        node: usize,
+        /// The obstacle, by its place in the list.
+        obstacle: usize,
     },
     /// A follower force cannot act.
     #[error(

@@ -20,7 +20,7 @@ pub struct LoadCase<'a> {
     pub is_held: &'a [bool],
     /// Where held dofs are at the end (m); other entries are not read.
     pub places: &'a [f64],
-    /// Increments to begin with.
+    /// Increments to begin with; none counts as one.
     pub n_increments: usize,
 }
 

@@ -74,10 +74,17 @@ pub(super) fn check_bodies(
             return Err(FlexBodyError::NoCarrier(handle).into());
         }
         let carrier = sets.bodies.get(body.rigid_body_handle());
-        let is_still =
-            |carrier: &RigidBody| carrier.linvel() == Vector::ZERO && carrier.angvel() == 0.0;
+        let is_still = |carrier: &RigidBody| {
+            let driven = [carrier.linvel(), carrier.user_force()];
+            let turned = [carrier.angvel(), carrier.user_torque()];
+            driven == [Vector::ZERO; 2] && turned == [0.0; 2]
+        };
         if !carrier.is_none_or(is_still) {
             return Err(FlexBodyError::CarrierDriven(handle).into());
+        }
+        let is_own = |carrier: &RigidBody| carrier.is_dynamic() && carrier.colliders().len() == 1;
+        if !carrier.is_none_or(is_own) {
+            return Err(FlexBodyError::CarrierChanged(handle).into());
         }
         check_integrator(parameters, dt, body).map_err(|source| StepError::Integrator {
             body: handle,
@@ -113,12 +120,16 @@ fn check_integrator(
     if parameters.insists || integrator.is_unconditionally_stable() {
         return Ok(());
     }
-    let frequency = if is_explicit {
-        body.explicit_frequency()
-    } else {
-        body.model().largest_frequency()
-    };
-    integrator.check_step(dt, frequency)
+    if is_explicit {
+        let (critical, frequency) = (body.critical_step(&integrator), body.explicit_frequency());
+        let unstable = IntegratorError::Unstable {
+            dt,
+            critical,
+            frequency,
+        };
+        return if dt > critical { Err(unstable) } else { Ok(()) };
+    }
+    integrator.check_step(dt, body.model().largest_frequency())
 }
 
 /// Refuses a solved island whose motion rapier cannot represent.

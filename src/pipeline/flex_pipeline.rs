@@ -14,7 +14,8 @@ use crate::rapier::prelude::*;
 
 /// Steps a rapier world together with its flexible bodies.
 ///
-/// Holds [parameters](FlexParameters) and buffers; use one pipeline for one world.
+/// Holds [parameters](FlexParameters) and what the last step knows of its contacts. Keep one pipeline for one world for as long as that lives: a new one in every
+/// step does not know the forces that bodies of small strain lie on, and holds them up by wrong ones.
 ///
 /// ```
 /// use foil2d::prelude::*;
@@ -219,7 +220,7 @@ impl FlexPipeline {
         self
     }
 
-    /// Approach velocity (m/s) below which restitution is ignored, so that resting contacts do not bounce.
+    /// Approach velocity (m/s, times the world's `length_unit`) below which restitution is ignored, so that resting contacts do not bounce.
     pub fn with_restitution_threshold(mut self, threshold: f64) -> Self {
         self.parameters.restitution_threshold = threshold;
         self

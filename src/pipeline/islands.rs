@@ -81,8 +81,8 @@ impl Solver {
         if let Some(block) = self.block(index) {
             block.commit(body.state_mut());
             block.write_contact_force(body.contact_force_mut());
-            self.under_way.average(index, body.contact_force_mut());
             block.write_reactions(body.reaction_mut());
+            self.under_way.average(index, body);
         }
     }
 
@@ -297,6 +297,7 @@ fn settings_of(task: Task<'_, '_>, [may_be_cut, is_spent]: [bool; 2]) -> SolveSe
         sets,
         ..
     } = task;
+    let length_unit = f64::from(sets.integration_parameters.length_unit).abs();
     SolveSettings {
         dt: step.dt,
         whole: f64::from(sets.integration_parameters.dt),
@@ -312,13 +313,13 @@ fn settings_of(task: Task<'_, '_>, [may_be_cut, is_spent]: [bool; 2]) -> SolveSe
         impact: parameters.impact,
         contact: parameters.contact_method,
         solver: parameters.contact_solver,
-        restitution_threshold: parameters.restitution_threshold,
+        restitution_threshold: parameters.restitution_threshold * length_unit,
         // What has used up its pivots goes on after a few passes.
         max_newton: match is_spent {
             true => parameters.max_newton.min(FEW_PASSES),
             false => parameters.max_newton,
         },
         may_be_cut,
-        length_unit: f64::from(sets.integration_parameters.length_unit).abs(),
+        length_unit,
     }
 }

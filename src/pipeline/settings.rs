@@ -34,7 +34,7 @@ pub struct FlexParameters {
     pub contact_method: ContactMethod,
     /// The solver that contact problems are given to first; the active set by default.
     pub contact_solver: Method,
-    /// Approach velocity (m/s) below which restitution is ignored, so that resting contacts do not bounce; 0.5 by default.
+    /// Approach velocity (m/s) below which restitution is ignored, so that resting contacts do not bounce; 0.5 by default, times the world's `length_unit`.
     pub restitution_threshold: f64,
     /// Most passes (Newton iterations) of an island in a step, at least 1; 20 by default, twice as many along a feasible path. What becomes of an island that needs more is told
     /// by [`StepReport::quality`](super::StepReport::quality).
@@ -53,7 +53,7 @@ pub struct FlexParameters {
     ///
     /// A step goes from placement to placement and stops where surfaces would meet, whatever the forces are. What is not solved within the
     /// budget ends there, and [`StepReport::quality`](super::StepReport::quality) tells of it. Flexible bodies rest
-    /// [`FlexBody::contact_offset`](crate::body::FlexBody::contact_offset) apart. Pairs shown to hooks and what overlaps to begin with are not led.
+    /// [`FlexBody::contact_offset`](crate::body::FlexBody::contact_offset) from themselves and from terrain without thickness, and touch all else. Pairs shown to hooks and what overlaps to begin with are not led.
     pub feasible_path: bool,
     /// Whether steps longer than the critical one are taken all the same; no by default. See [`FlexPipeline::insisting`](super::FlexPipeline::insisting).
     pub insists: bool,

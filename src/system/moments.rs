@@ -33,6 +33,17 @@ impl Block {
         }
     }
 
+    /// The acceleration that applied forces give the block as a whole where contacts and joints leave it alone (m/s²); zero if pins hold it.
+    pub fn drive(&self) -> Vec2 {
+        match self {
+            Self::Flex(block) => block.drive(),
+            Self::Rigid(block) => {
+                let [x, y, _] = block.drive();
+                Vec2::new(x, y)
+            }
+        }
+    }
+
     /// Moments of a free block at the beginning of the step.
     pub fn start_moments(&self) -> Moments {
         match self {

@@ -1,6 +1,6 @@
 //! Velocities of a rigid motion, and those that pins give to a body.
 
-use crate::math::{Vec2, node_vec, perp, rounding, set_node_vec};
+use crate::math::{Vec2, cross, node_vec, perp, rounding, set_node_vec};
 use nalgebra::{Matrix3, Vector3};
 
 /// Share of the largest eigenvalue below which one says that the pins leave that motion free.
@@ -17,6 +17,69 @@ pub struct RigidRates {
     pub spin: f64,
 }
 
+/// What held dofs know of a rigid motion: the rows of their velocities in it, and the pseudo-inverse of their sum of squares. What they do not tell, as
+/// sliding along a guide, is left out.
+struct Pins {
+    about: Vec2,
+    /// Turns are measured by how fast the dofs move in them (m).
+    arm: f64,
+    inverse: Matrix3<f64>,
+}
+
+impl Pins {
+    fn new(dofs: &[usize], position: &[f64]) -> Self {
+        let n = dofs.len() as f64;
+        let places = || dofs.iter().map(|&dof| node_vec(position, dof / 2));
+        let about = places().sum::<Vec2>() / n;
+        let spread = places()
+            .map(|place| (place - about).norm_squared())
+            .sum::<f64>()
+            / n;
+        let mut pins = Self {
+            about,
+            arm: if spread > 0.0 { spread.sqrt() } else { 1.0 },
+            inverse: Matrix3::zeros(),
+        };
+        let rows = dofs.iter().map(|&dof| pins.row(position, dof));
+        let squares: Matrix3<f64> = rows.map(|row| row * row.transpose()).sum();
+        let found = squares.symmetric_eigen();
+        let largest = found.eigenvalues.max();
+        for (value, vector) in found
+            .eigenvalues
+            .iter()
+            .zip(found.eigenvectors.column_iter())
+        {
+            if *value > FREE * largest {
+                pins.inverse += vector * vector.transpose() / *value;
+            }
+        }
+        pins
+    }
+
+    fn row(&self, position: &[f64], dof: usize) -> Vector3<f64> {
+        let turning = perp(node_vec(position, dof / 2) - self.about)[dof % 2] / self.arm;
+        match dof % 2 {
+            0 => Vector3::new(1.0, 0.0, turning),
+            _ => Vector3::new(0.0, 1.0, turning),
+        }
+    }
+}
+
+/// Adds the least forces of held dofs that have this resultant (N) and this moment about a place (N m), as far as they can have them.
+pub(super) fn push_by_pins(
+    dofs: &[usize],
+    position: &[f64],
+    (force, moment, about): (Vec2, f64, Vec2),
+    forces: &mut [f64],
+) {
+    let pins = Pins::new(dofs, position);
+    let own = moment + cross(about - pins.about, force);
+    let shares = pins.inverse * Vector3::new(force.x, force.y, own / pins.arm);
+    for &dof in dofs {
+        forces[dof] += pins.row(position, dof).dot(&shares);
+    }
+}
+
 impl RigidRates {
     /// The rigid motion nearest to the velocities of held dofs, `None` if these rest. What the dofs do not tell of it, as sliding along a guide, is left
     /// out.
@@ -28,41 +91,16 @@ impl RigidRates {
         if dofs.iter().all(|&dof| velocity(dof) == 0.0) {
             return None;
         }
-        let n = dofs.len() as f64;
-        let places = || dofs.iter().map(|&dof| node_vec(position, dof / 2));
-        let about = places().sum::<Vec2>() / n;
-        let spread = places()
-            .map(|place| (place - about).norm_squared())
-            .sum::<f64>()
-            / n;
-        // Turns are measured by how fast the dofs move in them.
-        let arm = if spread > 0.0 { spread.sqrt() } else { 1.0 };
-        let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
-        for &dof in dofs {
-            let turning = perp(node_vec(position, dof / 2) - about)[dof % 2] / arm;
-            let row = match dof % 2 {
-                0 => Vector3::new(1.0, 0.0, turning),
-                _ => Vector3::new(0.0, 1.0, turning),
-            };
-            normal += row * row.transpose();
-            right += velocity(dof) * row;
-        }
-        let found = normal.symmetric_eigen();
-        let largest = found.eigenvalues.max();
-        let mut rates = Vector3::zeros();
-        for (value, vector) in found
-            .eigenvalues
-            .iter()
-            .zip(found.eigenvectors.column_iter())
-        {
-            if *value > FREE * largest {
-                rates += vector.dot(&right) / value * vector;
-            }
-        }
+        let pins = Pins::new(dofs, position);
+        let rows = dofs.iter();
+        let right: Vector3<f64> = rows
+            .map(|&dof| velocity(dof) * pins.row(position, dof))
+            .sum();
+        let rates = pins.inverse * right;
         Some(Self {
-            about,
+            about: pins.about,
             velocity: Vec2::new(rates[0], rates[1]),
-            spin: rates[2] / arm,
+            spin: rates[2] / pins.arm,
         })
     }
 

@@ -326,3 +326,68 @@ fn obstacles_that_are_none_and_nodes_between_two_are_refused_and_nothing_moves()
     assert!(matches!(error, LargeError::Wedged { .. }), "{error}");
     assert_eq!(positions, rest);
 }
+
+/// Nothing is passed through between two increments, however few there are: it is met in smaller ones, or told.
+#[test]
+fn no_obstacle_goes_through_a_body_within_an_increment() {
+    for n_increments in [1, 2, 4, 10] {
+        // A strip that is held at both ends, and a disc that goes down by a quarter of its length.
+        let mesh = rectangle([1.0, 0.02], [40, 1], CellKind::Quad4).expect("a grid");
+        let law = NeoHookean::plane_strain(1e6, 0.3);
+        let description = FiniteStrainDescription::new(mesh, law, 1000.0);
+        let model = FiniteStrainModel::assemble(description).expect("a strip");
+        let rest = model.rest_positions().to_vec();
+        let is_held: Vec<bool> = rest
+            .chunks_exact(2)
+            .flat_map(|p| [p[0] == 0.0 || p[0] == 1.0; 2])
+            .collect();
+        let none = vec![0.0; rest.len()];
+        let load = LoadCase {
+            from: &none,
+            to: &none,
+            is_held: &is_held,
+            places: &rest,
+            n_increments,
+        };
+        let disc = Obstacle::disc([0.5, 0.08], 0.05).moving_by([0.0, -0.25]);
+        let mut stepper =
+            ContactStepper::new(model, LargeSettings::conserving()).expect("good settings");
+        let mut positions = rest.clone();
+        let obstacles = &[disc];
+        stepper
+            .solve(ContactCase { load, obstacles }, &mut positions)
+            .expect("an equilibrium");
+        let middle = positions[2 * (41 + 20) + 1];
+        assert!((middle + 0.22).abs() < 1e-4, "{n_increments}: {middle}");
+        assert!(!stepper.contacts().is_empty());
+    }
+    for way in [0.5, 0.9, 1.2, 2.0] {
+        // Into the side of a block, and out of the other one.
+        let mesh = rectangle([1.0, 1.0], [8, 8], CellKind::Quad4).expect("a grid");
+        let law = NeoHookean::plane_strain(1e5, 0.3);
+        let description = FiniteStrainDescription::new(mesh, law, 1000.0);
+        let model = FiniteStrainModel::assemble(description).expect("a block");
+        let rest = model.rest_positions().to_vec();
+        let is_held: Vec<bool> = rest
+            .chunks_exact(2)
+            .flat_map(|p| [p[1] == 1.0; 2])
+            .collect();
+        let none = vec![0.0; rest.len()];
+        let load = LoadCase {
+            from: &none,
+            to: &none,
+            is_held: &is_held,
+            places: &rest,
+            n_increments: 1,
+        };
+        let disc = Obstacle::disc([-0.3, 0.5], 0.1).moving_by([way, 0.0]);
+        let mut stepper =
+            ContactStepper::new(model, LargeSettings::default()).expect("good settings");
+        let mut positions = rest.clone();
+        let obstacles = &[disc];
+        match stepper.solve(ContactCase { load, obstacles }, &mut positions) {
+            Ok(_) => assert!(!stepper.contacts().is_empty(), "{way} m: nothing touches"),
+            Err(_) => assert_eq!(positions, rest, "{way} m"),
+        }
+    }
+}

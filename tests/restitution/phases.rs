@@ -157,3 +157,104 @@ fn what_slides_fast_rebounds_by_its_restitution_too() {
         }
     }
 }
+
+/// What falls.
+#[derive(Clone, Copy, Debug)]
+enum Falling {
+    Ball(RigidBodyHandle),
+    Block(FlexBodyHandle),
+}
+
+impl Falling {
+    /// Height (m) and velocity (m/s) of its centre of mass.
+    fn motion(self, scene: &Scene) -> [f64; 2] {
+        match self {
+            Self::Ball(ball) => {
+                let body = &scene.world.bodies[ball];
+                [body.translation().y, body.linvel().y].map(f64::from)
+            }
+            Self::Block(block) => {
+                let body = scene.body(block);
+                [body.centre_of_mass()[1], body.linvel()[1]]
+            }
+        }
+    }
+}
+
+/// Height over the one it fell from to which what falls on the ground, or on a slab, may rise after the step in which it meets that: by its energy then.
+fn risen(falls: &str, height: f64, e: f64, rate: f64) -> f64 {
+    let mut scene = Scene::in_free_space(1.0 / rate);
+    scene.world.gravity = vec2(0.0, -G);
+    // Around everything, so that the ball is taken too; it touches nothing.
+    let ring = FlexBodyBuilder::annulus(8.0, 8.5, 0.8)
+        .material(LinearElastic::plane_strain(1e8, 0.3).density(20.0))
+        .pin_where(|_| true, Pin::both())
+        .can_sleep(false);
+    scene.flexible(ring);
+    let falling = if falls == "ball" {
+        scene.flexible(
+            stiff([1.0, 0.2], [10, 4], e)
+                .translation([-0.5, -0.2])
+                .pin_where(|[_, y]| y == 0.0, Pin::both()),
+        );
+        let shape = ColliderBuilder::ball(0.1).density(1000.0).friction(0.0);
+        let above = RigidBodyBuilder::dynamic().translation(vec2(0.0, 0.1 + height));
+        Falling::Ball(scene.rigid(above, shape.restitution(real(e))).0)
+    } else {
+        let ground = ColliderBuilder::cuboid(5.0, 0.5).translation(vec2(0.0, -0.5));
+        scene.fixed(ground.restitution(real(e)));
+        let block = stiff([0.5, 0.3], [5, 4], e).translation([-0.25, height]);
+        Falling::Block(scene.flexible(match falls {
+            "large" => block.large_strain(),
+            _ => block.small_strain(),
+        }))
+    };
+    let [start, _] = falling.motion(&scene);
+    loop {
+        scene.step();
+        let [now, speed] = falling.motion(&scene);
+        if speed > 0.0 {
+            return (now + 0.5 * speed * speed / G - start) / height + 1.0;
+        }
+        assert!(now > start - height - 0.1, "{falls} falls on");
+    }
+}
+
+/// Under gravity the speed of an impact is the one at which bodies meet, not that of the beginning of its step.
+#[test]
+fn what_falls_rises_again_whenever_in_the_step_it_meets_the_ground() {
+    for (rate, e) in [(60.0, 1.0), (60.0, 0.7), (240.0, 1.0)] {
+        for falls in ["ball", "large", "small"] {
+            for share in PHASES {
+                let height = 0.8 + 0.05 * share;
+                let found = risen(falls, height, e, rate);
+                let off = found - e * e;
+                assert!(
+                    off.abs() < 2e-3,
+                    "1/{rate} s, {falls} from {height} m, e {e}: rises by {found} of it"
+                );
+            }
+        }
+    }
+}
+
+/// The speed below which nothing rebounds goes with the world's unit of length: what comes at 0.1 m/s does in a world whose things are of centimetres.
+#[test]
+fn the_threshold_of_rebounds_goes_with_the_unit_of_length() {
+    for (unit, rebounds) in [(1.0, false), (0.01, true)] {
+        let mut scene = Scene::in_free_space(1.0 / 60.0);
+        scene.world.integration_parameters.length_unit = real(unit);
+        scene.fixed(
+            ColliderBuilder::cuboid(5.0, 0.5)
+                .translation(vec2(0.0, -0.5))
+                .restitution(1.0),
+        );
+        let block = stiff([0.5, 0.3], [5, 4], 1.0)
+            .translation([-0.25, 0.01])
+            .linvel([0.0, -0.1]);
+        let block = scene.flexible(block);
+        scene.steps(12);
+        let speed = scene.body(block).linvel()[1];
+        assert_eq!(speed > 0.09, rebounds, "unit {unit}: {speed} m/s");
+    }
+}

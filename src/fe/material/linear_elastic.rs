@@ -120,7 +120,7 @@ impl LinearElastic {
 }
 
 impl Material for LinearElastic {
-    /// The neo-Hookean law that is this one at rest. In plane stress there is none for Poisson's ratios down to -0.5: a solid with these moduli in the plane
+    /// The neo-Hookean law that is this one at rest. In plane stress there is none for Poisson's ratios from -0.5 down: a solid with these moduli in the plane
     /// would not be stable out of it.
     fn large_law(&self) -> Option<Arc<dyn Hyperelastic>> {
         let law = NeoHookean::at_rest(self);

@@ -1,6 +1,7 @@
 //! Newton's iteration against obstacles, which looks anew at every iterate what touches.
 
 use super::obstacle::Obstacle;
+use super::passage::passed;
 use super::touch::{ContactPoint, Held, Hold, Touch};
 use crate::fe::finite_strain::{Deformation, FiniteStrainModel, Linearization};
 use crate::large::equation::{Equation, Evaluation};
@@ -104,6 +105,13 @@ impl Iteration {
                 if norm <= limit {
                     let left = norm / scale.max(f64::MIN_POSITIVE);
                     self.work.residual = self.work.residual.max(left);
+                }
+                let segments = increment.model.mesh().boundary().segments();
+                let ways = [increment.start, end];
+                if let Some((node, obstacle)) =
+                    passed(&self.obstacles, segments, ways, increment.shares)
+                {
+                    return Err(LargeError::Passed { node, obstacle });
                 }
                 return self.note(end, share, tolerance * length);
             }

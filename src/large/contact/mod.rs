@@ -17,11 +17,13 @@
 //! |---|---|
 //! | `obstacle` | [`Obstacle`]: gap, normal and curvature |
 //! | `touch` | what a node does at an obstacle, and its equations |
+//! | `passage` | whether an obstacle goes through the surface within an increment |
 //! | `iteration` | the iteration, from an increment's guess to its equilibrium |
 //! | `stepper` | [`ContactStepper`]: load cases |
 
 mod iteration;
 mod obstacle;
+mod passage;
 mod stepper;
 mod touch;
 

@@ -98,6 +98,14 @@ impl Obstacle {
         self.friction
     }
 
+    /// The ends of the line that it is around, where it begins (m); none of a half-plane, which has no other side.
+    pub(super) fn line(&self) -> Option<[Vec2; 2]> {
+        match self.shape {
+            Shape::HalfPlane { .. } => None,
+            Shape::Rounded { ends, .. } => Some(ends),
+        }
+    }
+
     /// How far it has gone at a share of the case (m).
     pub(super) fn gone(&self, share: f64) -> Vec2 {
         share * self.travel

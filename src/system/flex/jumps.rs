@@ -58,6 +58,19 @@ pub(super) fn take_up_load(shared: &mut Shared, known: &KnownLoads) {
     }
 }
 
+/// Notes what the pins give for the jump `Δv` of the velocities in `local`, `A Δv/dt` at the held dofs, with all of `A`; elsewhere it is zero. Its sum is
+/// `κ Σ m Δv/dt`.
+fn note_push(shared: &mut Shared, kept: f64) {
+    let (model, weights, dt) = (&shared.shape.model, shared.step.weights, shared.step.dt);
+    let stiff = weights.b0 + model.rayleigh().stiffness * weights.b1;
+    shared.pin_push.resize(shared.local.len(), 0.0);
+    let push = &mut shared.pin_push;
+    model.mass().multiply_add(kept / dt, &shared.local, push);
+    model
+        .stiffness()
+        .multiply_add(stiff / dt, &shared.local, push);
+}
+
 /// Lets a pinned body of small strain begin the step with the velocities that its pins have in it.
 ///
 /// Displacements that are given to the pins would be reached by accelerations of twice what they need, and a stiff body would swing about the
@@ -84,6 +97,7 @@ pub(super) fn take_up_jump(shared: &mut Shared) {
     let kept = 1.0 + shared.shape.model.rayleigh().mass * shared.step.weights.b1;
     jump.write_at(&shared.start.position, &mut shared.scratch);
     shared.answer_jump(kept);
+    note_push(shared, kept);
     for (velocity, answer) in shared.start.velocity.iter_mut().zip(&shared.local) {
         *velocity += answer;
     }

@@ -17,6 +17,7 @@
 mod led;
 mod motion;
 mod path;
+mod pins;
 mod problem;
 mod reference;
 mod trial;
@@ -233,7 +234,7 @@ impl LargeStrain {
     }
 
     /// Pins move at the mean velocity of their step, and what they hold gets that velocity in it, not twice as much.
-    fn ease_pins(&mut self, shared: &Shared) {
+    pub(super) fn ease_pins(&mut self, shared: &Shared) {
         for &dof in &shared.shape.fixed_dofs {
             let way = shared.now.position[dof] - self.problem.coast[dof];
             let late = way / (shared.step.dt * shared.step.dt);

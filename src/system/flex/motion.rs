@@ -206,6 +206,11 @@ impl FlexBlock {
                 set_node_vec(reactions, node, self.reaction(node));
             }
         }
+        if !self.shared.pin_push.is_empty() {
+            for &dof in &self.shared.shape.fixed_dofs {
+                reactions[dof] += self.shared.pin_push[dof];
+            }
+        }
     }
 
     /// Work of the applied forces over the step, `Σ f·(x' - x)`, of constant inner pressures, and of the pins that move, by the mean of their
@@ -273,12 +278,45 @@ impl FlexBlock {
         if let MassMatrix::Lumped(mass) = self.shared.shape.model.mass() {
             reaction += mass[node] * rayleigh.mass * node_vec(&self.shared.now.velocity, node);
         }
+        if let Frame::Hinged(_) = self.shared.shape.kind {
+            // What is at the pin moves with the frame.
+            let mass = self.shared.shape.arms.node_mass[node];
+            reaction += mass * self.shared.now.frame.acceleration;
+        }
         for axis in 0..2 {
             if !self.shared.shape.is_fixed[2 * node + axis] {
                 reaction[axis] = 0.0;
             }
         }
         reaction
+    }
+
+    /// Notes what the pin that speeds up a body of small strain gives in the step beside the force that its stiffness tells of, which a stiff body has
+    /// still to come to; where nothing touches the body the rest of its change of momentum.
+    pub(super) fn note_hinge_push(&mut self) {
+        let shared = &self.shared;
+        let Frame::Hinged(node) = shared.shape.kind else {
+            return;
+        };
+        let [before, now] = [&shared.start.frame, &shared.now.frame].map(|frame| frame.velocity);
+        if self.is_large() || self.is_explicit() || now == before || shared.contact.is_used {
+            return;
+        }
+        let dt = shared.step.dt;
+        let mut force = Vec2::zeros();
+        for (node, mass) in shared.shape.arms.node_mass.iter().enumerate() {
+            let [end, start] =
+                [&shared.now.velocity, &shared.start.velocity].map(|values| node_vec(values, node));
+            force += mass / dt * (end - start) - node_vec(&shared.loads.force, node);
+        }
+        let late = shared.loads.late.chunks_exact(2);
+        force -= late.map(|late| Vec2::new(late[0], late[1])).sum::<Vec2>();
+        let push = force - self.reaction(node);
+        let shared = &mut self.shared;
+        shared.energy.jump_work = 0.5 * dt * push.dot(&(before + now));
+        shared.pin_push.clear();
+        shared.pin_push.resize(shared.now.position.len(), 0.0);
+        set_node_vec(&mut shared.pin_push, node, push);
     }
 
     /// Whether the body follows forces, as its pins tell.
@@ -342,6 +380,15 @@ impl FlexBlock {
     pub(in crate::system) fn uniform_acceleration(&self) -> Option<Vec2> {
         let is_free = self.is_free() && self.shared.shape.model.rayleigh().mass == 0.0;
         self.shared.loads.uniform.filter(|_| is_free)
+    }
+
+    /// The acceleration that applied forces give a free body as a whole, zero for others (m/s²).
+    pub(in crate::system) fn drive(&self) -> Vec2 {
+        if self.is_free() {
+            self.shared.loads.total / self.shared.shape.arms.mass
+        } else {
+            Vec2::zeros()
+        }
     }
 
     /// Moments of a free body at the beginning of the step.

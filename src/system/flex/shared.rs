@@ -76,6 +76,8 @@ pub(super) struct Shared {
     /// Room for what is solved for, and for what goes into it.
     pub local: Vec<f64>,
     pub scratch: Vec<f64>,
+    /// What the pins give in the step for the body to have their velocities (N), see [`FlexState::pin_push`].
+    pub pin_push: Vec<f64>,
 }
 
 impl Shared {
@@ -91,6 +93,7 @@ impl Shared {
             impulses: Impulses::new(n),
             local: vec![0.0; n],
             scratch: vec![0.0; n],
+            pin_push: Vec::with_capacity(n),
             shape,
             answer,
         }
@@ -105,8 +108,11 @@ impl Shared {
         start.acceleration.copy_from_slice(&state.acceleration);
         (start.frame, start.torque) = (state.frame, state.torque);
         for &dof in &self.shape.fixed_dofs {
-            start.reaction[dof] = load.reaction[dof];
+            let push = state.pin_push.get(dof).copied().unwrap_or(0.0);
+            start.reaction[dof] = load.reaction[dof] - push;
         }
+        self.pin_push.clear();
+        self.energy.jump_work = 0.0;
         self.energy.start = [state.kinetic_energy, state.elastic_energy];
         self.loads.begin(&self.shape, load, state.loads.lag);
     }

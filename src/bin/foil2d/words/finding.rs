@@ -60,6 +60,10 @@ pub fn of_finding(finding: &Finding, names: &Names) -> String {
         Finding::Insertion(InsertionNote::NothingPinned { .. }) => {
             format!("a `pin` of {body} holds no node")
         }
+        Finding::NotMet { with, .. } => format!(
+            "{body} goes through {}, whose shape is of voxels or your own",
+            names.of_participant(*with)
+        ),
         Finding::MassRatio { with, ratio, .. } => format!(
             "the masses of {body} and {} are {ratio:.1e} apart: steps hold, but the lighter one follows the heavier as if it had no mass",
             names.of_participant(*with)

@@ -1,5 +1,6 @@
 //! The end of a step of a body of large strain: velocities, accelerations, ways back to its beginning, and the state to commit.
 
+use super::pins::{damp_and_push, note_push, take_out_jump};
 use super::{LargeStrain, TOLERANCE};
 use crate::body::{FlexState, Frame, FrameMotion};
 use crate::large::Inertia;
@@ -33,12 +34,13 @@ impl LargeStrain {
     /// Writes the velocities that the step resolves and their mean acceleration, and damps the others.
     pub fn place_velocities(&mut self, shared: &mut Shared) {
         shared.energy.jump_work = take_out_jump(shared);
+        note_push(self, shared);
         self.resolve_end(shared);
         if is_magnified(shared, &self.resolved) {
             self.answer_as_at_the_end(shared);
             self.resolve_end(shared);
         }
-        self.damp_unresolved(shared);
+        damp_and_push(self, shared);
         let pairs = self.resolved.iter().zip(&self.start_resolved);
         for (acceleration, (now, before)) in self.acceleration.iter_mut().zip(pairs) {
             *acceleration = (now - before) / shared.step.dt;
@@ -62,7 +64,7 @@ impl LargeStrain {
     /// Of the two amplifications of a mode that the step does not resolve, the decay `χ` of the stress damps one; the other goes to -1. What
     /// is taken of a mode of frequency ω is `χ (1 - r)²` of its velocity, `r = 1/(1 + ω² dt²/4)`: energy, always, and nothing where `χ` is zero.
     /// What the step resolves loses a share of the fourth order of `ω dt` to it, besides the damping that it is said to have.
-    fn damp_unresolved(&mut self, shared: &mut Shared) {
+    pub(super) fn damp_unresolved(&mut self, shared: &mut Shared) {
         let share = self.problem.decay(&shared.step).min(1.0);
         if share == 0.0 {
             return;
@@ -176,6 +178,7 @@ impl LargeStrain {
         let flow = self.problem.model.commit_flow(&shared.now.position, flowed);
         state.flow_energy = self.flow_energy + flow;
         state.torque = 0.0;
+        state.pin_push.clone_from(&shared.pin_push);
         state.loads.last.force.clear();
         state.frame = shared.now.frame;
         state.frame.acceleration = Vec2::zeros();
@@ -342,34 +345,6 @@ fn mean_rates(shape: &Shape, near: &FrameMotion, position: &[f64], velocity: &[f
         velocity: drift,
         spin: moment / inertia,
     }
-}
-
-/// Takes out of the velocities what a jump of the pins has left there; returns the work of the pins in it (J).
-///
-/// Displacements that are given, `Δx = d`, end with `v' = 2 d/dt - v`: where the pins of a stiff body jump from rest to `ḋ`, it would end
-/// with `2 ḋ`, and swing about `ḋ` from step to step. Velocities that had jumped as well, by what the body answers to that within a step,
-/// would not.
-fn take_out_jump(shared: &mut Shared) -> f64 {
-    if shared.shape.kind == Frame::Free {
-        return 0.0;
-    }
-    let jump = |dof: usize| shared.now.velocity[dof] - shared.start.velocity[dof];
-    let Some(jump) = RigidRates::of_pins(&shared.shape.fixed_dofs, &shared.now.position, jump)
-    else {
-        return 0.0;
-    };
-    let before = shared.kinetic_energy();
-    let kept = 1.0 + shared.shape.model.rayleigh().mass * shared.step.weights.b0 / shared.step.dt;
-    jump.write_at(&shared.now.position, &mut shared.scratch);
-    shared.answer_jump(kept);
-    for dof in 0..shared.now.velocity.len() {
-        shared.now.velocity[dof] -= if shared.shape.is_fixed[dof] {
-            0.0
-        } else {
-            shared.local[dof]
-        };
-    }
-    shared.kinetic_energy() - before
 }
 
 /// Whether the part of the velocities that is called resolved has more of their kinetic energy than all of it, `v·M A⁻¹ M v > v·M v`: then `A >= M`

@@ -256,6 +256,7 @@ impl SmallStrain {
         state.displacement.copy_from_slice(&shared.now.displacement);
         state.loads.last.clone_from(&shared.loads.own);
         state.loads.lag = shared.loads.lag;
+        state.pin_push.clone_from(&shared.pin_push);
         state.frame = shared.now.frame;
         state.torque = match shared.shape.kind {
             // Nothing turns, and nobody asks.
