@@ -634,3 +634,31 @@ fn a_body_on_a_hinge_keeps_its_energy() {
         assert!(change.abs() < 1e-4, "{change} of {whole} J");
     }
 }
+
+/// What is locked keeps the velocity that it has, whatever lies on it and however light it is itself: its work is that of something driven.
+#[test]
+fn what_is_locked_and_moves_lifts_what_lies_on_it() {
+    for is_large in [true, false] {
+        for density in [1.0, 400.0, 1e5] {
+            let mut scene = Scene::new(1.0 / 60.0);
+            let block = FlexBodyBuilder::rectangle([0.4, 0.4], [4, 4])
+                .material(elastic(1e7, 1000.0, 1e-3))
+                .translation([-0.2, 0.0]);
+            let block = scene.flexible(match is_large {
+                true => block.large_strain(),
+                false => block.small_strain(),
+            });
+            let lift = at(0.0, -0.1)
+                .locked_axes(LockedAxes::all())
+                .linvel(vec2(0.0, 0.5));
+            let (lift, _) = scene.rigid(lift, ColliderBuilder::cuboid(2.0, 0.1).density(density));
+            scene.steps(60);
+            let risen = f64::from(scene.world.bodies[lift].translation().y) + 0.1;
+            let name = format!("large {is_large}, {density} kg/m³");
+            assert!((risen - 0.5).abs() < 1e-3, "{name}: {risen} m");
+            // It goes along, however it was jolted.
+            let centre = scene.body(block).centre_of_mass()[1];
+            assert!((centre - 0.7).abs() < 0.03, "{name}: {centre} m");
+        }
+    }
+}

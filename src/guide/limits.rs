@@ -143,7 +143,6 @@
 //!   ask [`FlexBody::contains`](crate::body::FlexBody::contains) beside the query.
 //! - **Carriers do not pass on** what is asked of the rigid body under a flexible one: impulses, forces, gravity scale, damping, mass and `sleep()` have no effect there, and rapier's character controller cannot push it. Do: ask the [`FlexBody`](crate::body::FlexBody), found by
 //!   [`FlexBodySet::of_collider`](crate::body::FlexBodySet::of_collider).
-//! - **Locked but moving.** A dynamic body with locked translations and a velocity, which rapier moves on whatever lies on it, is stopped by what weighs more than itself. Do: make it kinematic.
 //! - **Not looked at**: `tangent_velocity` of hooks; a belt that is made by it stands still. Do: make it kinematic. Voxels and custom shapes meet no flexible body, see [`doctor::examine`](crate::doctor::examine).
 //!
 //! # Explicit steps

@@ -4,7 +4,7 @@ use super::active_contact::ActiveContact;
 use super::joints::{ActiveJoint, add_wrench};
 use super::settings::SolveSettings;
 use crate::constraint::joint::{JointGrip, JointLaw, When, unit_wrench};
-use crate::math::Vec2;
+use crate::math::{Vec2, perp};
 use crate::system::{Balance, Block, FlexBlock, RigidBlock, RigidMotion};
 
 /// Grips of joints as the last iterate was found, and at the end of the step.
@@ -98,17 +98,28 @@ pub(super) fn actual_work(
         let (impulse, at_end) = (along(contact.given(settings)), along(contact.impulse));
         for a in kinematics.attachments() {
             if let Block::Rigid(block) = &blocks[a.block]
-                && block.is_prescribed()
+                && block.moves_along() != [true; 3]
             {
                 // What the velocity stage adds acts at the end.
-                let late = block.displacement(a.grip.lever);
-                let midway = block.displacement(a.grip.lever - contact.since_midway);
+                let late = led(block, a.grip.lever);
+                let midway = led(block, a.grip.lever - contact.since_midway);
                 let power = (impulse - at_end).dot(&midway) + at_end.dot(&late);
                 work -= a.weight * power / settings.dt;
             }
         }
     }
     work
+}
+
+/// How far a lever goes in the step with what no force of the island moves (m): all of a driven body, and of another one its locked axes, along which it
+/// keeps the velocity that it has.
+fn led(block: &RigidBlock, lever: Vec2) -> Vec2 {
+    if block.is_prescribed() {
+        return block.displacement(lever);
+    }
+    let (moves, moved) = (block.moves_along(), block.moved());
+    let [x, y, turn] = [0, 1, 2].map(|axis| if moves[axis] { 0.0 } else { moved[axis] });
+    Vec2::new(x, y) + turn * perp(lever)
 }
 
 /// Work of joints on what is not driven from outside (J).

@@ -83,8 +83,8 @@ pub enum LargeError {
     },
     /// The tangent of a path has no factor.
     #[error(
-        "the tangent is singular at the load factor {factor}: hold the rigid motions of the body, and where two paths cross disturb its \
-         shape or its load a little"
+        "the tangent is singular at the load factor {factor}: hold the rigid motions of the body, let it begin where it touches what is to hold it, and \
+         where two paths cross disturb its shape or its load a little"
     )]
     Singular {
         /// Where (-).

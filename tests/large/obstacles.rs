@@ -15,6 +15,16 @@ fn exactly() -> LargeSettings {
     LargeSettings::conserving().with_tolerance(1e-9)
 }
 
+/// A grid of a neo-Hookean law in plane strain, with its places at rest.
+fn grid(size: [f64; 2], cells: [usize; 2], young: f64) -> (FiniteStrainModel, Vec<f64>) {
+    let mesh = rectangle(size, cells, CellKind::Quad4).expect("a grid");
+    let law = NeoHookean::plane_strain(young, 0.3);
+    let description = FiniteStrainDescription::new(mesh, law, 1000.0);
+    let model = FiniteStrainModel::assemble(description).expect("a body");
+    let rest = model.rest_positions().to_vec();
+    (model, rest)
+}
+
 /// A way that starts at zero with cells of the same size and goes on with growing ones: `sinh` of a parameter in `[-1, 1]`.
 fn graded(reach: f64, steepness: f64, s: f64) -> f64 {
     reach * (steepness * s).sinh() / steepness.sinh()
@@ -230,11 +240,7 @@ fn what_lies_on_its_support_is_loaded_there() {
         (0.0, 0.3, 0.5, false),
         (1e-3, 0.3, 0.5, false),
     ] {
-        let mesh = rectangle([1.0, 0.5], [8, 4], CellKind::Quad4).expect("a grid");
-        let law = NeoHookean::plane_strain(1e5, 0.3);
-        let description = FiniteStrainDescription::new(mesh, law, 1000.0);
-        let model = FiniteStrainModel::assemble(description).expect("a plate");
-        let rest = model.rest_positions().to_vec();
+        let (model, rest) = grid([1.0, 0.5], [8, 4], 1e5);
         let n = rest.len() / 2;
         let is_held: Vec<bool> = rest
             .chunks_exact(2)
@@ -332,11 +338,7 @@ fn obstacles_that_are_none_and_nodes_between_two_are_refused_and_nothing_moves()
 fn no_obstacle_goes_through_a_body_within_an_increment() {
     for n_increments in [1, 2, 4, 10] {
         // A strip that is held at both ends, and a disc that goes down by a quarter of its length.
-        let mesh = rectangle([1.0, 0.02], [40, 1], CellKind::Quad4).expect("a grid");
-        let law = NeoHookean::plane_strain(1e6, 0.3);
-        let description = FiniteStrainDescription::new(mesh, law, 1000.0);
-        let model = FiniteStrainModel::assemble(description).expect("a strip");
-        let rest = model.rest_positions().to_vec();
+        let (model, rest) = grid([1.0, 0.02], [40, 1], 1e6);
         let is_held: Vec<bool> = rest
             .chunks_exact(2)
             .flat_map(|p| [p[0] == 0.0 || p[0] == 1.0; 2])
@@ -363,11 +365,7 @@ fn no_obstacle_goes_through_a_body_within_an_increment() {
     }
     for way in [0.5, 0.9, 1.2, 2.0] {
         // Into the side of a block, and out of the other one.
-        let mesh = rectangle([1.0, 1.0], [8, 8], CellKind::Quad4).expect("a grid");
-        let law = NeoHookean::plane_strain(1e5, 0.3);
-        let description = FiniteStrainDescription::new(mesh, law, 1000.0);
-        let model = FiniteStrainModel::assemble(description).expect("a block");
-        let rest = model.rest_positions().to_vec();
+        let (model, rest) = grid([1.0, 1.0], [8, 8], 1e5);
         let is_held: Vec<bool> = rest
             .chunks_exact(2)
             .flat_map(|p| [p[1] == 1.0; 2])
@@ -389,5 +387,42 @@ fn no_obstacle_goes_through_a_body_within_an_increment() {
             Ok(_) => assert!(!stepper.contacts().is_empty(), "{way} m: nothing touches"),
             Err(_) => assert_eq!(positions, rest, "{way} m"),
         }
+    }
+}
+
+/// Nothing but a floor that it has not come to holds a plate: there is no equilibrium on the way, and that is what is told.
+#[test]
+fn what_nothing_holds_yet_is_told() {
+    let (model, rest) = grid([1.0, 0.5], [8, 4], 1e5);
+    let n = rest.len() / 2;
+    // Free, on a vertical guide, and on a pin.
+    let held: [fn(&[f64], usize) -> bool; 3] = [
+        |_, _| false,
+        |place, axis| place[0] == 0.0 && axis == 0,
+        |place, _| place == [0.0, 0.0],
+    ];
+    for is_held in held {
+        let is_held: Vec<bool> = rest
+            .chunks_exact(2)
+            .flat_map(|place| [0, 1].map(|axis| is_held(place, axis)))
+            .collect();
+        let (none, load) = (vec![0.0; rest.len()], [0.0, -1000.0 / n as f64].repeat(n));
+        let case = ContactCase {
+            load: LoadCase {
+                from: &none,
+                to: &load,
+                is_held: &is_held,
+                places: &rest,
+                n_increments: 10,
+            },
+            obstacles: &[Obstacle::half_plane([0.0, -0.01], [0.0, 1.0])],
+        };
+        let mut stepper = ContactStepper::new(model.clone(), exactly()).expect("good settings");
+        let mut positions = rest.clone();
+        let error = stepper
+            .solve(case, &mut positions)
+            .expect_err("no equilibrium");
+        assert!(matches!(error, LargeError::Singular { .. }), "{error}");
+        assert_eq!(positions, rest);
     }
 }

@@ -10,6 +10,8 @@ use crate::large::newton::{Work, largest, largest_row_sum};
 use crate::large::{LargeError, LargeSettings};
 use crate::linalg::block_matrix::BlockMatrix;
 use crate::linalg::lu::{LuError, SparseLu};
+use crate::math::{Vec2, node_vec, perp, rounding};
+use nalgebra::Matrix3;
 
 /// An increment is cut to 1/64 where it leads to where a law has no energy.
 const MOST_CUTS: usize = 6;
@@ -215,8 +217,11 @@ impl Iteration {
             let friction = self.obstacles[touch.obstacle].friction();
             touch.write(&held, friction, &mut self.matrix, way);
         }
-        self.work.n_factorizations += 1;
         let singular = LargeError::Singular { factor: share };
+        if moves_freely(&self.matrix, end) {
+            return Err(singular);
+        }
+        self.work.n_factorizations += 1;
         self.lu
             .factorize(&self.matrix, &[])
             .map_err(|error| match error {
@@ -235,7 +240,7 @@ impl Iteration {
         let mut contacts = Vec::new();
         for touch in self.touches.iter().filter(|one| one.hold != Hold::Open) {
             let held = self.look(touch, end, share);
-            let place = crate::math::node_vec(end, touch.node);
+            let place = node_vec(end, touch.node);
             for (second, other) in self.obstacles.iter().enumerate() {
                 let gap = other.beside(place, share).gap;
                 if second != touch.obstacle && gap < -allowed {
@@ -260,6 +265,32 @@ impl Iteration {
         self.contacts = contacts;
         Ok(())
     }
+}
+
+/// Whether a rigid motion of a body at these positions (m) meets no resistance: the least square of `A r` over all of them. A factor need not tell, as rounding
+/// leaves it something.
+fn moves_freely(matrix: &BlockMatrix, positions: &[f64]) -> bool {
+    let n = positions.len() / 2;
+    let places = || (0..n).map(|node| node_vec(positions, node));
+    let centre = places().sum::<Vec2>() / n as f64;
+    let squares: f64 = places().map(|place| (place - centre).norm_squared()).sum();
+    let radius = (squares / n as f64).sqrt();
+    let answers = [0, 1, 2].map(|motion| {
+        let rates = places().flat_map(|place| match motion {
+            0 => [1.0, 0.0],
+            1 => [0.0, 1.0],
+            _ => (perp(place - centre) / radius).into(),
+        });
+        let (rates, mut answer) = (rates.collect::<Vec<f64>>(), vec![0.0; 2 * n]);
+        matrix.multiply(&rates, &mut answer);
+        answer
+    });
+    let gram = Matrix3::from_fn(|i, j| {
+        let pairs = answers[i].iter().zip(&answers[j]);
+        pairs.map(|(one, other)| one * other).sum::<f64>()
+    });
+    let nothing = rounding::SUM * largest_row_sum(matrix);
+    gram.symmetric_eigenvalues().min() <= n as f64 * nothing * nothing
 }
 
 impl Equilibrator for Iteration {
