@@ -337,7 +337,7 @@ fn hook(
 ) -> Result<(), GatherError> {
     let owners = [names.one, names.other];
     let pair = HookedPair { colliders, owners };
-    book.modify(pair, first, open.sets, open.island)
+    book.modify(pair, first, (open.sets, open.settings.step.dt), open.island)
 }
 
 fn component_of_pair(

@@ -64,7 +64,7 @@ impl HookBook {
         &mut self,
         pair: HookedPair,
         first: usize,
-        sets: &RapierSets<'_>,
+        (sets, dt): (&RapierSets<'_>, f64),
         island: &mut Island,
     ) -> Result<(), GatherError> {
         let [one, other] = pair.colliders.map(|handle| sets.colliders.get(handle));
@@ -92,7 +92,7 @@ impl HookBook {
             };
             let moved = kinematics.relative(scene.blocks, |block, grip| block.displacement(grip));
             let gap = kinematics.gap - kinematics.normal.dot(&moved);
-            if self.ask(pair, &mut candidate, &kinematics, gap, sets)? {
+            if self.ask(pair, &mut candidate, &kinematics, gap, (sets, dt))? {
                 island.candidates[kept] = candidate;
                 kept += 1;
                 if nearest.is_none_or(|(least, _)| gap < least) {
@@ -134,7 +134,7 @@ impl HookBook {
         candidate: &mut Candidate,
         kinematics: &Kinematics,
         gap: f64,
-        sets: &RapierSets<'_>,
+        (sets, dt): (&RapierSets<'_>, f64),
     ) -> Result<bool, GatherError> {
         let owns_first = candidate.key.contactor == pair.owners[0];
         let [contactor, target] = if owns_first {
@@ -153,6 +153,7 @@ impl HookBook {
             friction: candidate.law.friction as Real,
             restitution: candidate.law.restitution as Real,
             gap: gap as Real,
+            belt: Vector::ZERO,
             user_data: self.last.get(&candidate.key).copied().unwrap_or(0),
             is_kept: true,
         };
@@ -184,6 +185,8 @@ impl HookBook {
         if answer.restitution != given.restitution {
             law.restitution = f64::from(answer.restitution).max(0.0);
         }
+        // Rapier's law is for the velocity of the second collider against the first.
+        law.carried = sign * dt * from_rapier(answer.belt);
         let farther = f64::from(answer.gap - given.gap);
         if answer.normal != given.normal {
             law.direction = Some(Direction {
@@ -204,6 +207,8 @@ struct Shown {
     friction: Real,
     restitution: Real,
     gap: Real,
+    /// The velocity along the contact that friction leads to (m/s).
+    belt: Vector,
     user_data: u32,
     is_kept: bool,
 }
@@ -248,7 +253,7 @@ impl Shown {
             anchor1,
             anchor2,
             dist: self.gap,
-            tangent_velocity: Vector::ZERO,
+            tangent_velocity: self.belt,
             contact_id: [0],
         });
         sets.hooks
@@ -270,7 +275,7 @@ impl Shown {
             });
         answer.is_kept = !solver_contacts.is_empty();
         if let Some(contact) = solver_contacts.first() {
-            answer.gap = contact.dist;
+            (answer.gap, answer.belt) = (contact.dist, contact.tangent_velocity);
         }
         answer
     }
@@ -279,6 +284,7 @@ impl Shown {
         let numbers = [self.friction, self.restitution, self.gap];
         numbers.iter().all(|number| number.is_finite())
             && self.normal.is_finite()
+            && self.belt.is_finite()
             && self.normal.length() > 0.0
     }
 }

@@ -216,6 +216,7 @@ pub(super) fn law_of(
         restitution: f64::from(restitution).max(0.0),
         skin: f64::from(first.contact_skin()) + f64::from(second.contact_skin()),
         direction: None,
+        carried: Vec2::zeros(),
     })
 }
 

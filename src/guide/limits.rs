@@ -144,7 +144,7 @@
 //!   ask [`FlexBody::contains`](crate::body::FlexBody::contains) beside the query.
 //! - **Carriers do not pass on** what is asked of the rigid body under a flexible one: impulses, forces, gravity scale, damping, mass and `sleep()` have no effect there, and rapier's character controller cannot push it. Do: ask the [`FlexBody`](crate::body::FlexBody), found by
 //!   [`FlexBodySet::of_collider`](crate::body::FlexBodySet::of_collider).
-//! - **Not looked at**: `tangent_velocity` of hooks; a belt that is made by it stands still. Do: make it kinematic. Voxels and custom shapes meet no flexible body, see [`doctor::examine`](crate::doctor::examine).
+//! - **Not met**: voxels and custom shapes; flexible bodies go through them. See: [`doctor::examine`](crate::doctor::examine). Do: take a polyline or a compound of convex shapes.
 //!
 //! # Explicit steps
 //!

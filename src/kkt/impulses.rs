@@ -19,6 +19,7 @@ pub(super) fn velocity_rows(
 ) {
     state_rows(island, counts, |island, index| {
         let rebound = rebound(island, index, settings);
+        let law = island.candidates[island.contacts[index].candidate].law;
         let contact = &mut island.contacts[index];
         // A resolved impact rebounds by its elasticity.
         let rebound = match contact.rebound {
@@ -31,7 +32,7 @@ pub(super) fn velocity_rows(
         let velocity = row.relative(&island.blocks, |block, grip| block.velocity(grip));
         [
             velocity.dot(&row.normal) - rebound,
-            velocity.dot(&row.tangent()),
+            (velocity - law.carried / settings.dt).dot(&row.tangent()),
         ]
     });
     list_acted(island, settings.b1);

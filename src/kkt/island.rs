@@ -101,7 +101,8 @@ impl Island {
 
     /// Work of applied forces and of the contact forces of driven bodies (J).
     pub(super) fn actual_work(&self, settings: &SolveSettings) -> f64 {
-        work::actual_work(&self.blocks, &self.contacts, &self.kept_on, settings)
+        let contacts = (&self.contacts[..], &self.candidates[..]);
+        work::actual_work(&self.blocks, contacts, &self.kept_on, settings)
     }
 
     /// Work of the joints on what is not driven from outside.

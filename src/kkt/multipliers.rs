@@ -101,10 +101,11 @@ pub(super) fn position_rows(island: &mut Island, b0: f64) {
     island.problem.statuses.clear();
     for (index, contact) in island.contacts.iter().enumerate() {
         let row = &contact.kinematics;
-        let friction = island.candidates[contact.candidate].law.friction;
+        let law = island.candidates[contact.candidate].law;
+        let friction = law.friction;
         let slip = match contact.base {
             Some(_) => contact.slip,
-            None => slip(row, &island.blocks) - contact.aside,
+            None => slip(row, &island.blocks) - contact.aside - law.carried.dot(&row.tangent()),
         };
         let free = [row.gap, slip].map(|way| way / b0);
         island.problem.push(index, row, friction, free);

@@ -3,6 +3,7 @@
 use super::active_contact::ActiveContact;
 use super::joints::{ActiveJoint, add_wrench};
 use super::settings::SolveSettings;
+use crate::constraint::contact::Candidate;
 use crate::constraint::joint::{JointGrip, JointLaw, When, unit_wrench};
 use crate::math::{Vec2, perp};
 use crate::system::{Balance, Block, FlexBlock, RigidBlock, RigidMotion};
@@ -71,13 +72,13 @@ pub(super) fn load_energy(blocks: &[Block]) -> f64 {
     energies.sum()
 }
 
-/// Work of applied forces and of the contact forces of driven bodies, prescribed ones (J).
+/// Work of applied forces and of the contact forces of driven bodies, prescribed ones and belts (J).
 ///
 /// Impulses count that the step has given, times the mean velocity of the driven bodies. Seen from a body that moves evenly that is what the
 /// kinetic energy changes by, so that all that is said of the rest is the same from there.
 pub(super) fn actual_work(
     blocks: &[Block],
-    contacts: &[ActiveContact],
+    (contacts, candidates): (&[ActiveContact], &[Candidate]),
     kept_on: &[(usize, [f64; 3])],
     settings: &SolveSettings,
 ) -> f64 {
@@ -96,6 +97,11 @@ pub(super) fn actual_work(
         let kinematics = &contact.kinematics;
         let along = |[n, t]: [f64; 2]| n * kinematics.normal + t * kinematics.tangent();
         let (impulse, at_end) = (along(contact.given(settings)), along(contact.impulse));
+        // So does what the step before has left of the friction on a belt.
+        let carried = candidates[contact.candidate].law.carried;
+        let kept = settings.late() * contact.remembered.tangent;
+        let pulled = impulse.dot(&kinematics.tangent()) + kept;
+        work += pulled * carried.dot(&kinematics.tangent()) / settings.dt;
         for a in kinematics.attachments() {
             if let Block::Rigid(block) = &blocks[a.block]
                 && block.moves_along() != [true; 3]

@@ -102,7 +102,7 @@ impl FlexPipeline {
     /// [`ContactForceEvent::total_force`](crate::rapier::geometry::ContactForceEvent), as in rapier).
     ///
     /// `modify_solver_contacts` is shown every such contact as a manifold of one point. It may change friction, restitution, normal and
-    /// distance, or clear the contact; `tangent_velocity` is not looked at. Pairs of two rigid bodies it sees in rapier's manifolds
+    /// distance, give it a tangent velocity, or clear the contact. Pairs of two rigid bodies it sees in rapier's manifolds
     /// as well, and the carrier of a flexible body is a rigid body with all axes locked.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! The user's hooks: what they say of flexible and claimed pairs counts, and what they see is the user's world.
 
 use crate::support::*;
+use foil2d::pipeline::Quality;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 const MODIFY: ActiveHooks = ActiveHooks::MODIFY_SOLVER_CONTACTS;
@@ -294,4 +295,95 @@ fn hooks_never_see_claimed_bodies_locked() {
             .map(|n| n.load(Ordering::Relaxed));
     assert!(filtered > 60 && modified > 60, "{filtered} and {modified}");
     assert_eq!(locked, 0);
+}
+
+/// A belt that stands still and moves what lies on it along, to the right where it is the first collider of a contact.
+struct Belt {
+    belt: ColliderHandle,
+    velocity: f64,
+}
+
+impl PhysicsHooks for Belt {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        let sign = match self.belt {
+            belt if belt == context.collider1 => 1.0,
+            belt if belt == context.collider2 => -1.0,
+            _ => return,
+        };
+        if let ModifiableContacts::Rigid(manifold) = &mut context.contacts {
+            for contact in manifold.solver_contacts.iter_mut() {
+                contact.tangent_velocity = vec2(sign * self.velocity, 0.0);
+            }
+        }
+    }
+}
+
+/// What lies on the belt: its horizontal velocity after some steps, what has been dissipated, and whether all of them were solved. With `beside`, a flexible block lies there too, and
+/// the box is solved with it.
+fn on_a_belt(what: &str, beside: bool, n_steps: usize) -> (f64, f64, bool) {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let belt = ColliderBuilder::cuboid(50.0, 0.5)
+        .translation(vec2(0.0, -0.5))
+        .friction(0.5)
+        .active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS);
+    let belt = scene.world.insert_collider(belt, None);
+    let block = |x: f64| {
+        FlexBodyBuilder::rectangle([0.4, 0.4], [4, 4])
+            .material(elastic(1e7, 1000.0, 1e-3))
+            .friction(0.5)
+            .translation([x, 0.0])
+    };
+    let flexible = match what {
+        "large" => Some(scene.flexible(block(-0.2).large_strain())),
+        "small" => Some(scene.flexible(block(-0.2).small_strain())),
+        _ => None,
+    };
+    let cube = RigidBodyBuilder::dynamic().translation(vec2(0.0, 0.2));
+    let shape = ColliderBuilder::cuboid(0.2, 0.2).friction(0.5);
+    let rigid = flexible.is_none().then(|| scene.rigid(cube, shape).0);
+    if beside {
+        scene.flexible(block(0.2).small_strain());
+    }
+    let hooks = Belt {
+        belt,
+        velocity: 2.0,
+    };
+    let mut is_solved = true;
+    for _ in 0..n_steps {
+        let (world, bodies) = (&mut scene.world, &mut scene.bodies);
+        let report = scene.flex.step_with_events(world, bodies, &hooks, &());
+        is_solved &= report.expect("a step").quality() == Quality::Solved;
+    }
+    let velocity = match (flexible, rigid) {
+        (Some(block), _) => scene.body(block).linvel()[0],
+        (_, Some(cube)) => f64::from(scene.world.bodies[cube].linvel().x),
+        _ => f64::NAN,
+    };
+    let dissipated = scene.report().energy().dissipated;
+    (velocity, dissipated, is_solved)
+}
+
+/// Rapier's belt, the tangent velocity of its contacts: what lies on it slides at first, speeds up by `μ g`, and goes along then, as with rapier alone.
+#[test]
+fn a_belt_takes_along_what_lies_on_it() {
+    for (what, beside) in [
+        ("rigid", false),
+        ("rigid", true),
+        ("small", false),
+        ("large", false),
+    ] {
+        for (n_steps, expected) in [(12, 0.2 * 0.5 * 9.81), (90, 2.0)] {
+            let (velocity, dissipated, is_solved) = on_a_belt(what, beside, n_steps);
+            let name = format!("{what}, beside a flexible one {beside}, {n_steps} steps");
+            assert!(is_solved, "{name}");
+            // The first step of a block finds where it lies.
+            assert!((velocity - expected).abs() < 0.1, "{name}: {velocity} m/s");
+            // The belt does twice the work that is left as motion.
+            if n_steps == 90 && what != "rigid" {
+                let expected = 0.5 * 160.0 * 2.0 * 2.0;
+                let off = dissipated - expected;
+                assert!(off.abs() < 0.1 * expected, "{name}: {dissipated} J");
+            }
+        }
+    }
 }

@@ -148,6 +148,7 @@ mod tests {
                 restitution: 0.0,
                 skin,
                 direction: None,
+                carried: Vec2::zeros(),
             },
         };
         candidate.distance(&scene)

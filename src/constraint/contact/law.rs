@@ -13,6 +13,8 @@ pub struct ContactLaw {
     pub skin: f64,
     /// Direction of the normal force, if the user chose it.
     pub direction: Option<Direction>,
+    /// How far the target carries the point along within the step, as a belt that stands still does (m).
+    pub carried: Vec2,
 }
 
 /// A direction for the normal force that geometry did not give.

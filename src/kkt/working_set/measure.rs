@@ -199,7 +199,8 @@ impl ActiveContact {
         if is_asked {
             error = error.max(self.apart);
         }
-        self.slip = slip(&self.kinematics, scene.blocks) - self.aside;
+        let carried = candidate.law.carried.dot(&self.kinematics.tangent());
+        self.slip = slip(&self.kinematics, scene.blocks) - self.aside - carried;
         let [gap, slip] = self.rest();
         error.max(self.law_error(gap, slip, candidate.law.friction))
     }
