@@ -2,14 +2,8 @@
 //!
 //! Each behaviour is a scene and a verdict, our own words for what rapier's tests and documents promise. In the second run a joint that
 //! locks nothing leads from every body to one on which a flexible block lies, a kilometre away: all of them are claimed, and no force
-//! acts that did not before. Both runs must give the same verdict, but for these:
-//!
-//! | behaviour | with the flexible stage |
-//! |---|---|
-//! | `a_conveyor_set_by_the_hook_carries` | `tangent_velocity` of `modify_solver_contacts` is not looked at: contacts know no belts; let a kinematic body move |
-//! | `a_box_slides_over_the_joints_of_a_polyline` | the pseudo-normals of an oriented polyline are not looked at: a face that slides may catch at a joint of two segments, as it does on rapier's plain polylines; use a cuboid or a convex decomposition |
-//!
-//! `DIFFERENCES` in `support` is that list; a behaviour in it that no longer differs fails too.
+//! acts that did not before. Both runs must give the same verdict. What does not would be listed in `DIFFERENCES` in `support`, with the reason; a behaviour in that list that
+//! differs no more fails too.
 
 mod common;
 

@@ -6,11 +6,8 @@ use foil2d::coupling::RapierSets;
 /// A step of 1/60 s.
 pub const DT: f64 = 1.0 / 60.0;
 
-/// Behaviours that the flexible stage does not share, and why.
-pub const DIFFERENCES: &[(&str, &str)] = &[(
-    "a_conveyor_set_by_the_hook_carries",
-    "contacts know no belts: `tangent_velocity` is not looked at",
-)];
+/// Behaviours that the flexible stage does not share, and why: none.
+pub const DIFFERENCES: &[(&str, &str)] = &[];
 
 /// Whether a behaviour holds, and what was measured.
 pub struct Verdict {
