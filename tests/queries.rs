@@ -284,4 +284,15 @@ fn queries_see_what_was_put_elsewhere_at_once() {
     assert_eq!(found, scene.body(block).collider_handle());
     assert!((far - 0.8).abs() < 1e-5, "{far} m");
     assert_eq!(hit(0.2, 3.2), None);
+    // What is out of the world is found nowhere.
+    let scene = &mut scene;
+    let out = scene.bodies.set_enabled(block, false, &mut scene.world);
+    out.expect("it is there");
+    let put = scene
+        .bodies
+        .set_position(block, [-7.0, 5.0], 0.0, &mut scene.world);
+    put.expect("it is there");
+    let ray = Ray::new(vec2(-7.0, 6.0), vec2(0.0, -1.0));
+    let hit = (scene.world).cast_ray(&ray, 1.5, true, QueryFilter::default());
+    assert_eq!(hit, None);
 }

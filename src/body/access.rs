@@ -218,6 +218,9 @@ impl FlexBody {
 
     /// Makes the reactions of the last part of a step those of all of it: `sums` of the parts before, and the last one's share of the step (-).
     pub(crate) fn average_reactions(&mut self, sums: &[f64], last: f64) {
+        if !self.is_fixed.contains(&true) {
+            return;
+        }
         let push = &mut self.state.pin_push;
         push.resize(sums.len(), 0.0);
         for ((told, push), sum) in self.reaction.iter_mut().zip(push).zip(sums) {

@@ -264,6 +264,9 @@ impl FlexBody {
     /// The longest stable step (s) by an explicit member, see [`Beta2::explicit_critical_step`] and [`explicit_frequency`](Self::explicit_frequency).
     pub fn critical_step(&self, integrator: &Beta2) -> f64 {
         let (bound, damping) = (self.explicit_frequency(), self.model().rayleigh().stiffness);
+        if bound == f64::INFINITY {
+            return 0.0;
+        }
         // `ω` of `ω (√(1 + ζ²) + ζ)` with `ζ = β ω / 2`.
         let frequency = bound / (1.0 + damping * bound).sqrt();
         integrator.explicit_critical_step(frequency, damping)

@@ -100,7 +100,9 @@ impl FlexBodySet {
         let (bodies, colliders) = (&world.bodies, &mut world.colliders);
         self.set_position_with_sets(handle, centre_of_mass, angle, bodies, colliders)?;
         let surface = self.try_get(handle)?.collider_handle();
-        if let Some(collider) = world.colliders.get(surface) {
+        // What is out of the world is found nowhere.
+        let surface_in_world = (world.colliders.get(surface)).filter(|one| one.is_enabled());
+        if let Some(collider) = surface_in_world {
             let aabb = collider.compute_aabb();
             (world.broad_phase).set_aabb(&world.integration_parameters, surface, aabb);
         }

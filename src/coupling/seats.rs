@@ -40,16 +40,14 @@ impl Seats {
 
     /// Adds what the flexible bodies of a solved island keep of their forces on rapier's bodies that move as they must, by the index of each.
     pub fn add_kept_forces(&self, island: &Island, all: &mut Vec<(u32, KeptForce)>) {
-        if self.driven.is_empty() {
-            return;
-        }
         for left in left_on_driven(island) {
             let LeftOnDriven {
                 flex,
                 block,
                 wrench,
             } = left;
-            let Some(&(_, on)) = self.driven.iter().find(|(own, _)| *own == block) else {
+            let mut bodies = self.driven.iter().chain(&self.claimed);
+            let Some(&(_, on)) = bodies.find(|(own, _)| *own == block) else {
                 continue;
             };
             let pair = |one: &&mut (u32, KeptForce)| one.0 == flex && one.1.on == on;

@@ -124,7 +124,7 @@
 //! - **Light hubs.** A spring or position motor at a rigid body that carries flexible bodies of small strain alone is resolved by the mass of the rigid body, not of what is welded to that: one of 1,000 N/m at 1/60 s that moves 10 kg is damped away within
 //!   seconds if its own body has less than 0.07 kg. Do: take large strain, which swings, give the hub more mass, or shorten the step.
 //! - **Pins that speed up** give a body the velocity of each step as it begins; what the step does not resolve follows at once, without strain. See: a bar of rubber (ω dt = 0.8) that is drawn at a constant acceleration is stretched by 0.85 of what it should be with small strain, 1.14 with large; the
-//!   [`reaction`](crate::body::FlexBody::reaction) is right. Do: shorten the step, or weld to a world that moves ([`Attachment::set_target`](crate::body::Attachment::set_target)).
+//!   [`reaction`](crate::body::FlexBody::reaction) is right, of a body of small strain on a single pin as long as nothing touches it. Do: shorten the step, or weld to a world that moves ([`Attachment::set_target`](crate::body::Attachment::set_target)).
 //! - **Sleep.** Attached bodies do not sleep.
 //! - **Carriers.** A joint to the rigid body that carries a flexible one is refused ([`StepError::CarrierJoint`](crate::pipeline::StepError::CarrierJoint)). Do: attach nodes, [`FlexBodySet::attach`](crate::body::FlexBodySet::attach).
 //!

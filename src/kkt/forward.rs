@@ -183,9 +183,10 @@ fn pending_energy(island: &mut Island, settings: &SolveSettings) -> Result<f64, 
             continue;
         }
         let kinematics = &contact.kinematics;
-        let free = (foreseen(kinematics, &island.blocks, dt) + kinematics.gap * kinematics.normal)
-            / (dt * dt);
-        let friction = island.candidates[contact.candidate].law.friction;
+        let law = island.candidates[contact.candidate].law;
+        let moved = foreseen(kinematics, &island.blocks, dt) - law.carried;
+        let free = (moved + kinematics.gap * kinematics.normal) / (dt * dt);
+        let friction = law.friction;
         let free = [kinematics.normal, kinematics.tangent()].map(|along| free.dot(&along));
         island.problem.push(index, kinematics, friction, free);
     }

@@ -89,7 +89,7 @@ pub fn late_forces(island: &Island, step: &Step, late: &mut Vec<LateForce>) {
     }
 }
 
-/// What of the forces of a flexible block's contacts acts on in the next step on a block that is moved as it must.
+/// What of the forces of a flexible block's contacts acts on in the next step on a block that is moved as it must, along some axis at least.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LeftOnDriven {
     /// Index of the flexible body.
@@ -115,8 +115,7 @@ pub(crate) fn left_on_driven(island: &Island) -> impl Iterator<Item = LeftOnDriv
         let flex = grips.find_map(|grip| stores(grip.block));
         let flex = flex.filter(|_| force != Vec2::zeros());
         kinematics.attachments().iter().filter_map(move |grip| {
-            let is_driven =
-                matches!(&island.blocks[grip.block], Block::Rigid(block) if block.is_prescribed());
+            let is_driven = matches!(&island.blocks[grip.block], Block::Rigid(block) if block.moves_along() != [true; 3]);
             let share = grip.weight * force;
             Some(LeftOnDriven {
                 flex: flex.filter(|_| is_driven)?,

@@ -85,10 +85,8 @@ pub(super) fn actual_work(
     let mut work = applied_work(blocks);
     // What the step before has left acts on, also of contacts that have opened or are elsewhere now.
     for &(block, wrench) in kept_on {
-        if let Block::Rigid(block) = &blocks[block]
-            && block.is_prescribed()
-        {
-            let along = wrench.iter().zip(block.moved());
+        if let Block::Rigid(block) = &blocks[block] {
+            let along = wrench.iter().zip(block.led());
             let power: f64 = along.map(|(w, x)| w * x).sum();
             work -= settings.late() / settings.dt * power;
         }
@@ -97,18 +95,21 @@ pub(super) fn actual_work(
         let kinematics = &contact.kinematics;
         let along = |[n, t]: [f64; 2]| n * kinematics.normal + t * kinematics.tangent();
         let (impulse, at_end) = (along(contact.given(settings)), along(contact.impulse));
-        // So does what the step before has left of the friction on a belt.
-        let carried = candidates[contact.candidate].law.carried;
-        let kept = settings.late() * contact.remembered.tangent;
-        let pulled = impulse.dot(&kinematics.tangent()) + kept;
-        work += pulled * carried.dot(&kinematics.tangent()) / settings.dt;
+        // What the step before has left of the friction on a belt acts on as well.
+        let kept = match contact.is_hard {
+            true => 0.0,
+            false => settings.late() * contact.remembered.lasting[1],
+        };
+        let tangent = kinematics.tangent();
+        let carried = candidates[contact.candidate].law.carried.dot(&tangent);
+        work += (impulse.dot(&tangent) + kept) * carried / settings.dt;
         for a in kinematics.attachments() {
             if let Block::Rigid(block) = &blocks[a.block]
-                && block.moves_along() != [true; 3]
+                && block.is_led()
             {
                 // What the velocity stage adds acts at the end.
-                let late = led(block, a.grip.lever);
-                let midway = led(block, a.grip.lever - contact.since_midway);
+                let late = led_by(block, a.grip.lever);
+                let midway = led_by(block, a.grip.lever - contact.since_midway);
                 let power = (impulse - at_end).dot(&midway) + at_end.dot(&late);
                 work -= a.weight * power / settings.dt;
             }
@@ -117,14 +118,9 @@ pub(super) fn actual_work(
     work
 }
 
-/// How far a lever goes in the step with what no force of the island moves (m): all of a driven body, and of another one its locked axes, along which it
-/// keeps the velocity that it has.
-fn led(block: &RigidBlock, lever: Vec2) -> Vec2 {
-    if block.is_prescribed() {
-        return block.displacement(lever);
-    }
-    let (moves, moved) = (block.moves_along(), block.moved());
-    let [x, y, turn] = [0, 1, 2].map(|axis| if moves[axis] { 0.0 } else { moved[axis] });
+/// How far what no force of the island moves brings a lever (m), see [`RigidBlock::led`].
+fn led_by(block: &RigidBlock, lever: Vec2) -> Vec2 {
+    let [x, y, turn] = block.led();
     Vec2::new(x, y) + turn * perp(lever)
 }
 
@@ -149,7 +145,8 @@ pub(super) fn joint_work(
     grips: WorkGrips<'_>,
     weights: [f64; 2],
 ) -> JointWork {
-    let is_driven = |grip: &JointGrip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_prescribed());
+    let is_driven =
+        |grip: &JointGrip| matches!(&blocks[grip.block], Block::Rigid(block) if block.is_led());
     let mut sum = JointWork::default();
     for tie in ties {
         let work = work_of(blocks, tie, grips, weights);
@@ -197,10 +194,15 @@ fn work_of(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, [dt, b1]: 
                 let end = unit_wrench(&grips.end[at], tie.end, is_turn);
                 add_wrench(&mut impulse, tie.kick, kept);
                 add_wrench(&mut impulse, tie.impulse, end);
-                block.work_of(impulse)
+                let moves = block.moves_along();
+                block.work_of([0, 1, 2].map(|axis| if moves[axis] { impulse[axis] } else { 0.0 }))
             }
             block => {
-                let moved = block.position(grip.point) - block.start_position(grip.point);
+                let led = match block {
+                    Block::Rigid(block) => led_by(block, grip.lever),
+                    Block::Flex(_) => Vec2::zeros(),
+                };
+                let moved = block.position(grip.point) - block.start_position(grip.point) - led;
                 let acts = tie.force(dt) * tie.row.sign * tie.direction + late;
                 grip.weight * acts.dot(&moved)
             }
@@ -218,7 +220,7 @@ fn driven_work(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, dt: f6
     };
     let (first, last) = tie.row.grips;
     let works = (first..last).map(|at| match &blocks[grips.start[at].block] {
-        Block::Rigid(block) if block.is_prescribed() => {
+        Block::Rigid(block) if block.is_led() => {
             let mut impulse = [0.0; 3];
             let kept = unit_wrench(&grips.start[at], tie.direction, is_turn);
             add_wrench(&mut impulse, impulses[0], kept);
@@ -229,7 +231,7 @@ fn driven_work(blocks: &[Block], tie: &ActiveJoint, grips: WorkGrips<'_>, dt: f6
                     unit_wrench(grip, tie.end, is_turn),
                 );
             }
-            impulse.iter().zip(block.moved()).map(|(p, x)| p * x).sum()
+            impulse.iter().zip(block.led()).map(|(p, x)| p * x).sum()
         }
         _ => 0.0,
     });
@@ -242,8 +244,8 @@ pub(super) fn work_of_driven(blocks: &[Block], wrenches: &[[f64; 3]], dt: f64) -
         .iter()
         .zip(wrenches)
         .map(|(block, wrench)| match block {
-            Block::Rigid(block) if block.is_prescribed() => {
-                let moved = block.moved();
+            Block::Rigid(block) if block.is_led() => {
+                let moved = block.led();
                 wrench.iter().zip(moved).map(|(w, x)| w * x).sum::<f64>()
             }
             _ => 0.0,

@@ -104,6 +104,11 @@ impl BlockMatrix {
         self.pattern.row_start[node]
     }
 
+    /// A number that tells patterns apart, the same on every machine.
+    pub(crate) fn fingerprint(&self) -> u64 {
+        self.pattern.fingerprint
+    }
+
     pub(super) fn pattern(&self) -> &Arc<Pattern> {
         &self.pattern
     }

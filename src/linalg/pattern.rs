@@ -1,11 +1,15 @@
 //! Which nodes of a mesh have blocks with each other.
 
+use crate::math::mix;
+
 /// Where the blocks of a matrix are: compressed rows of nodes, both triangles, columns ascending.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Pattern {
     /// Where each row begins in `columns`, and where the last one ends.
     pub row_start: Vec<usize>,
     pub columns: Vec<u32>,
+    /// A number that is the same for the same places, on every machine.
+    pub fingerprint: u64,
 }
 
 impl Pattern {
@@ -39,7 +43,14 @@ impl Pattern {
             columns[start..].sort_unstable();
             row_start.push(columns.len());
         }
-        Self { row_start, columns }
+        let starts = row_start.iter().map(|&start| start as u64);
+        let places = starts.chain(columns.iter().map(|&column| u64::from(column)));
+        let fingerprint = places.fold(0, mix);
+        Self {
+            row_start,
+            columns,
+            fingerprint,
+        }
     }
 
     /// The places of one row's blocks.

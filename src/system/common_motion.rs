@@ -19,7 +19,9 @@ impl Block {
         match self {
             Self::Flex(block) => block.pinned_hold(),
             Self::Rigid(block) if block.is_prescribed() => Hold::Led,
-            Self::Rigid(block) if block.moves_along().iter().all(|moves| *moves) => Hold::Free,
+            Self::Rigid(block) if block.moves_along() == [true; 3] => Hold::Free,
+            // What is locked keeps the velocity that it has.
+            Self::Rigid(block) if block.is_led() => Hold::Led,
             Self::Rigid(_) => Hold::Held,
         }
     }

@@ -226,6 +226,18 @@ impl RigidBlock {
         [shift.x, shift.y, self.current.angle - self.start.angle]
     }
 
+    /// The part of that along what no force of an island moves (m, m, rad): all of a driven body, and of another one its locked axes, along which it keeps the
+    /// velocity that it has.
+    pub fn led(&self) -> [f64; 3] {
+        let (moves, moved) = (self.moves_along(), self.moved());
+        [0, 1, 2].map(|axis| if moves[axis] { 0.0 } else { moved[axis] })
+    }
+
+    /// Whether it goes anywhere by that.
+    pub fn is_led(&self) -> bool {
+        self.is_prescribed || self.led() != [0.0; 3]
+    }
+
     /// Displacement of the end of a lever over the step, linear in the dofs (m).
     pub fn displacement(&self, lever: Vec2) -> Vec2 {
         let turned = self.current.angle - self.start.angle;
@@ -313,12 +325,14 @@ impl RigidBlock {
         means.zip(impulse).map(|(v, p)| v * p).sum()
     }
 
-    /// Work of the applied forces over the step (J).
+    /// Work of the applied forces over the step (J); what holds the locked axes takes theirs along these.
     pub fn applied_work(&self) -> f64 {
-        let moved = self.current.centre - self.start.centre;
-        self.force[0] * moved.x
-            + self.force[1] * moved.y
-            + self.force[2] * (self.current.angle - self.start.angle)
+        let (moves, moved) = (self.moves_along(), self.moved());
+        let works = [0, 1, 2].map(|axis| match moves[axis] {
+            true => self.force[axis] * moved[axis],
+            false => 0.0,
+        });
+        works.iter().sum()
     }
 
     /// Kinetic energy that the applied forces would give in the step to the body at rest (J).

@@ -283,3 +283,34 @@ fn what_can_have_no_inner_pressure_is_refused_by_name() {
         .expect("a law");
     assert!((ring.gas_pressure(0).expect("a hole") - 1e4).abs() < 1e-8);
 }
+
+/// A gas couples all nodes around its hole, and what it takes the place of did not: the island goes on, also where contacts are so many that its pattern is kept.
+#[test]
+fn a_gas_may_take_the_place_of_a_constant_pressure_under_a_pile() {
+    let mut scene = Scene::new(1.0 / 120.0);
+    let floor = ColliderBuilder::cuboid(5.0, 0.5).translation(vec2(0.0, -0.5));
+    scene.fixed(floor);
+    let ring = balloon(0.1, 0.1, 2e-3).inner_pressure(InnerPressure::constant(1e4));
+    let ring = scene.flexible(ring.translation([0.0, 0.401]));
+    for row in 0..8 {
+        for column in 0..5 {
+            let [x, y] = [f64::from(column) - 2.0, f64::from(row)];
+            let at = vec2(0.11 * x + 0.01 * y, 0.9 + 0.11 * y);
+            let cube = ColliderBuilder::cuboid(0.05, 0.05).density(100.0);
+            scene.rigid(RigidBodyBuilder::dynamic().translation(at), cube);
+        }
+    }
+    let mut most = 0;
+    for pressure in [
+        InnerPressure::isothermal(2e4),
+        InnerPressure::constant(1e4),
+        InnerPressure::adiabatic(2e4, 1.4),
+    ] {
+        scene.steps(60);
+        most = most.max(scene.report().contacts().len());
+        let body = &mut scene.bodies[ring];
+        body.set_inner_pressure(0, pressure).expect("a pressure");
+        scene.steps(2);
+    }
+    assert!(most > 40, "{most} contacts");
+}

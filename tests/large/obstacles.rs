@@ -25,6 +25,29 @@ fn grid(size: [f64; 2], cells: [usize; 2], young: f64) -> (FiniteStrainModel, Ve
     (model, rest)
 }
 
+/// Nothing but obstacles loads what is held as `is_held` says.
+fn unloaded<'a>(
+    none: &'a [f64],
+    is_held: &'a [bool],
+    places: &'a [f64],
+    n_increments: usize,
+) -> LoadCase<'a> {
+    LoadCase {
+        from: none,
+        to: none,
+        is_held,
+        places,
+        n_increments,
+    }
+}
+
+/// Both dofs of each node, held where the place of the node says so.
+fn held_where(rest: &[f64], is_there: impl Fn(&[f64]) -> bool) -> Vec<bool> {
+    rest.chunks_exact(2)
+        .flat_map(|place| [is_there(place); 2])
+        .collect()
+}
+
 /// A way that starts at zero with cells of the same size and goes on with growing ones: `sinh` of a parameter in `[-1, 1]`.
 fn graded(reach: f64, steepness: f64, s: f64) -> f64 {
     reach * (steepness * s).sinh() / steepness.sinh()
@@ -47,18 +70,9 @@ fn a_cylinder_on_a_plane_has_the_pressure_of_hertz() {
     }
     let rest = description.rest_positions.clone();
     let model = FiniteStrainModel::assemble(description).expect("half a cylinder");
-    let is_held: Vec<bool> = rest
-        .chunks_exact(2)
-        .flat_map(|p| [p[0].hypot(p[1]) < 0.1 + 1e-9; 2])
-        .collect();
+    let is_held = held_where(&rest, |p| p[0].hypot(p[1]) < 0.1 + 1e-9);
     let none = vec![0.0; rest.len()];
-    let load = LoadCase {
-        from: &none,
-        to: &none,
-        is_held: &is_held,
-        places: &rest,
-        n_increments: 3,
-    };
+    let load = unloaded(&none, &is_held, &rest, 3);
     let plane = Obstacle::half_plane([0.0, -1.0], [0.0, 1.0]).moving_by([0.0, 0.0041]);
     let mut stepper = ContactStepper::new(model, exactly()).expect("good settings");
     let mut positions = rest.clone();
@@ -291,18 +305,9 @@ fn obstacles_that_are_none_and_nodes_between_two_are_refused_and_nothing_moves()
         Arc::clone(&laws(1e3, 0.3)[2]),
     );
     let rest = model.rest_positions().to_vec();
-    let is_held: Vec<bool> = rest
-        .chunks_exact(2)
-        .flat_map(|x| [x[1] == 1.0; 2])
-        .collect();
+    let is_held = held_where(&rest, |x| x[1] == 1.0);
     let none = vec![0.0; rest.len()];
-    let load = LoadCase {
-        from: &none,
-        to: &none,
-        is_held: &is_held,
-        places: &rest,
-        n_increments: 1,
-    };
+    let load = unloaded(&none, &is_held, &rest, 1);
     let mut stepper = ContactStepper::new(model, exactly()).expect("good settings");
     let mut positions = rest.clone();
     for obstacle in [
@@ -339,18 +344,9 @@ fn no_obstacle_goes_through_a_body_within_an_increment() {
     for n_increments in [1, 2, 4, 10] {
         // A strip that is held at both ends, and a disc that goes down by a quarter of its length.
         let (model, rest) = grid([1.0, 0.02], [40, 1], 1e6);
-        let is_held: Vec<bool> = rest
-            .chunks_exact(2)
-            .flat_map(|p| [p[0] == 0.0 || p[0] == 1.0; 2])
-            .collect();
+        let is_held = held_where(&rest, |p| p[0] == 0.0 || p[0] == 1.0);
         let none = vec![0.0; rest.len()];
-        let load = LoadCase {
-            from: &none,
-            to: &none,
-            is_held: &is_held,
-            places: &rest,
-            n_increments,
-        };
+        let load = unloaded(&none, &is_held, &rest, n_increments);
         let disc = Obstacle::disc([0.5, 0.08], 0.05).moving_by([0.0, -0.25]);
         let mut stepper =
             ContactStepper::new(model, LargeSettings::conserving()).expect("good settings");
@@ -366,18 +362,9 @@ fn no_obstacle_goes_through_a_body_within_an_increment() {
     for way in [0.5, 0.9, 1.2, 2.0] {
         // Into the side of a block, and out of the other one.
         let (model, rest) = grid([1.0, 1.0], [8, 8], 1e5);
-        let is_held: Vec<bool> = rest
-            .chunks_exact(2)
-            .flat_map(|p| [p[1] == 1.0; 2])
-            .collect();
+        let is_held = held_where(&rest, |p| p[1] == 1.0);
         let none = vec![0.0; rest.len()];
-        let load = LoadCase {
-            from: &none,
-            to: &none,
-            is_held: &is_held,
-            places: &rest,
-            n_increments: 1,
-        };
+        let load = unloaded(&none, &is_held, &rest, 1);
         let disc = Obstacle::disc([-0.3, 0.5], 0.1).moving_by([way, 0.0]);
         let mut stepper =
             ContactStepper::new(model, LargeSettings::default()).expect("good settings");

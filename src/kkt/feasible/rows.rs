@@ -1,26 +1,19 @@
 //! What the rows of contact need of the path: the near pairs at the base, their names, levers and motions.
 
+mod corners;
+
 use super::{Carrier, FeasiblePath};
 use crate::constraint::contact::{ContactKey, ContactLaw, Kinematics};
 use crate::math::{Vec2, cross, node_vec, perp};
 use crate::path::{NearPair, Target, add_beyond};
 use crate::system::{Block, Grip, Point};
+use corners::{Around, CoreVertex};
 
 /// Marks the names of near pairs in contact keys.
 ///
 /// Names of points are counted through a body or a collider: with the bit that tells edges from vertices they stay below this mark and that of
 /// meetings until one has 2^29 points.
 const PATH_NAMES: u32 = 1 << 31;
-
-/// How what is round meets a sharp corner.
-struct Around {
-    /// Gap beyond the distance at which they close (m).
-    gap: f64,
-    /// Normal from the target to the point.
-    normal: Vec2,
-    /// Where they touch, on the target's surface (m).
-    position: Vec2,
-}
 
 impl FeasiblePath {
     /// Lists what is near at the base, a sharp corner from its tip on.
@@ -268,46 +261,24 @@ impl FeasiblePath {
     }
 
     /// What is round and a sharp corner of rigid bodies, whose cores' vertices are near at these places (m); `None` of other pairs.
-    ///
-    /// What is round touches the corner along the line to its centre, which is not the one to the core's vertex; beside the corner it touches the faces,
-    /// whose normals are those on which the corner stands out by the rounding.
     fn around_corner(&self, near: &NearPair, place: impl Fn(usize) -> Vec2) -> Option<Around> {
         let Target::Vertex(vertex) = near.target else {
             return None;
         };
         let members = self.members_of(near).map(|member| self.carriers[member]);
-        let ends = [near.point, vertex];
-        let rounds = ends.map(|end| self.points[end].round);
-        let sharp = match rounds.map(|round| round > 0.0) {
-            [true, false] => 0,
-            [false, true] => 1,
-            _ => return None,
-        };
         if members.iter().any(|member| member.is_flex) {
             return None;
         }
-        let corner = self.base[members[sharp].block].axes() * self.points[ends[sharp]].corner;
-        let outward = corner / corner.norm();
-        let centre = place(ends[1 - sharp]);
-        let away = centre - (place(ends[sharp]) + corner);
-        let cos = (rounds[sharp] / corner.norm()).min(1.0);
-        let along = outward.dot(&away);
-        if along.is_nan() || along <= 0.0 {
-            return None;
-        }
-        let normal = if along >= cos * away.norm() {
-            away.normalize()
-        } else {
-            let side = cross(outward, away).signum();
-            cos * outward + side * (1.0 - cos * cos).sqrt() * perp(outward)
-        };
-        let span = normal.dot(&away);
-        let of_round = if sharp == 0 { members[1].depth } else { span };
-        Some(Around {
-            gap: span + rounds[sharp] - self.ways[near.pair].closing,
-            normal: if sharp == 0 { -normal } else { normal },
-            position: centre - of_round * normal,
-        })
+        let closing = self.ways[near.pair].closing;
+        let ends = [(near.point, members[0]), (vertex, members[1])].map(|(vertex, member)| {
+            let point = &self.points[vertex];
+            CoreVertex {
+                place: place(vertex),
+                corner: self.base[member.block].axes() * point.corner,
+                round: point.round,
+            }
+        });
+        Around::between(ends, members[1].depth, closing)
     }
 
     /// How deep the target's core is under the surface that the point meets (m).

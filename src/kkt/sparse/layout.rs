@@ -14,13 +14,16 @@ use std::sync::Arc;
 pub(super) enum Shape {
     None,
     Rigid,
-    Flex(Arc<Model>),
+    /// With the fingerprint of the matrix's pattern, which a gas that is let in changes.
+    Flex(Arc<Model>, u64),
 }
 
 impl Shape {
     pub(in crate::kkt) fn of(block: &Block) -> Self {
         match block {
-            Block::Flex(block) => Self::Flex(Arc::clone(block.model())),
+            Block::Flex(block) => {
+                Self::Flex(Arc::clone(block.model()), block.effective().fingerprint())
+            }
             Block::Rigid(block) if block.is_prescribed() => Self::None,
             Block::Rigid(_) => Self::Rigid,
         }
@@ -28,7 +31,9 @@ impl Shape {
 
     pub(in crate::kkt) fn is_that_of(&self, block: &Block) -> bool {
         match (self, block) {
-            (Self::Flex(model), Block::Flex(block)) => Arc::ptr_eq(model, block.model()),
+            (Self::Flex(model, pattern), Block::Flex(block)) => {
+                Arc::ptr_eq(model, block.model()) && *pattern == block.effective().fingerprint()
+            }
             (Self::None, Block::Rigid(block)) => block.is_prescribed(),
             (Self::Rigid, Block::Rigid(block)) => !block.is_prescribed(),
             _ => false,

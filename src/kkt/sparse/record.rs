@@ -15,8 +15,8 @@ use std::sync::Arc;
 enum ShapeRecord {
     None,
     Rigid,
-    /// The model of the flexible body at this index of its set.
-    Flex(u32),
+    /// The model of the flexible body at this index of its set, and the fingerprint of its pattern.
+    Flex(u32, u64),
 }
 
 /// What is kept of an island.
@@ -45,7 +45,9 @@ impl Sparse {
             let shapes = kept.shapes.iter().map(|shape| match shape {
                 Shape::None => Some(ShapeRecord::None),
                 Shape::Rigid => Some(ShapeRecord::Rigid),
-                Shape::Flex(model) => index_of(model).map(ShapeRecord::Flex),
+                Shape::Flex(model, pattern) => {
+                    index_of(model).map(|index| ShapeRecord::Flex(index, *pattern))
+                }
             });
             let solvers = match &kept.restored {
                 Some(restored) => restored.solvers.clone(),
@@ -69,7 +71,9 @@ impl Sparse {
             let shapes = shapes.into_iter().map(|shape| match shape {
                 ShapeRecord::None => Some(Shape::None),
                 ShapeRecord::Rigid => Some(Shape::Rigid),
-                ShapeRecord::Flex(index) => model_of(index).map(Shape::Flex),
+                ShapeRecord::Flex(index, pattern) => {
+                    model_of(index).map(|model| Shape::Flex(model, pattern))
+                }
             });
             self.kept.push(Kept {
                 shapes: shapes.collect::<Option<_>>()?,

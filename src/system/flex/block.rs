@@ -333,7 +333,6 @@ impl FlexBlock {
             // They have followed the positions.
             Method::Large(large) => large.place_velocities(shared),
         }
-        self.note_hinge_push();
     }
 
     /// Measures the elastic energy of the iterate, before anything but positions has been corrected.

@@ -19,6 +19,7 @@ mod large;
 mod loads;
 mod massless_surface;
 mod motion;
+mod pins;
 mod response;
 mod shape;
 mod shared;

@@ -2,8 +2,8 @@
 
 use super::block::{FlexBlock, Method};
 use super::iterate::{Balance, Momentum};
+use super::pins;
 use crate::body::{Frame, FrameMotion};
-use crate::fe::model::MassMatrix;
 use crate::math::{Vec2, add_node_vec, node_vec, perp, rotation, set_node_vec, sum_over};
 use crate::system::common_motion::Hold;
 use crate::system::moments::Moments;
@@ -233,90 +233,18 @@ impl FlexBlock {
     }
 
     fn pin_work(&self) -> f64 {
-        if let Some(large) = self.large_strain() {
-            return large.pin_work(&self.shared);
+        match self.large_strain() {
+            Some(large) => large.pin_work(&self.shared),
+            None => pins::work(&self.shared),
         }
-        let mut work = self.shared.energy.jump_work;
-        for &dof in &self.shared.shape.fixed_dofs {
-            let moved = self.shared.now.position[dof] - self.shared.start.position[dof];
-            if moved != 0.0 {
-                let end = self.reaction(dof / 2)[dof % 2];
-                work += 0.5 * (self.shared.start.reaction[dof] + end) * moved;
-            }
-        }
-        work
     }
 
     /// Reaction at a pinned node, the force the pin exerts on the body (N).
     pub fn reaction(&self, node: usize) -> Vec2 {
-        if !(self.shared.shape.is_fixed[2 * node] || self.shared.shape.is_fixed[2 * node + 1]) {
-            return Vec2::zeros();
+        match self.large_strain() {
+            Some(large) => node_vec(large.reaction(), node),
+            None => pins::reaction(&self.shared, node),
         }
-        if let Some(large) = self.large_strain() {
-            return node_vec(large.reaction(), node);
-        }
-        let rayleigh = self.shared.shape.model.rayleigh();
-        let stiffness = self.shared.shape.model.stiffness();
-        let mut force = Vec2::zeros();
-        for (&other, block) in stiffness
-            .neighbours(node)
-            .iter()
-            .zip(stiffness.row_blocks(node))
-        {
-            let other = other as usize;
-            let u = node_vec(&self.shared.now.displacement, other)
-                + rayleigh.stiffness * node_vec(&self.shared.now.rate, other);
-            force += Vec2::new(
-                block[0] * u.x + block[1] * u.y,
-                block[2] * u.x + block[3] * u.y,
-            );
-        }
-        let turn = self.shared.now.turn;
-        let mut reaction = turn * force
-            - node_vec(&self.shared.loads.force, node)
-            - node_vec(&self.shared.contact.nodal, node);
-        if let MassMatrix::Lumped(mass) = self.shared.shape.model.mass() {
-            reaction += mass[node] * rayleigh.mass * node_vec(&self.shared.now.velocity, node);
-        }
-        if let Frame::Hinged(_) = self.shared.shape.kind {
-            // What is at the pin moves with the frame.
-            let mass = self.shared.shape.arms.node_mass[node];
-            reaction += mass * self.shared.now.frame.acceleration;
-        }
-        for axis in 0..2 {
-            if !self.shared.shape.is_fixed[2 * node + axis] {
-                reaction[axis] = 0.0;
-            }
-        }
-        reaction
-    }
-
-    /// Notes what the pin that speeds up a body of small strain gives in the step beside the force that its stiffness tells of, which a stiff body has
-    /// still to come to; where nothing touches the body the rest of its change of momentum.
-    pub(super) fn note_hinge_push(&mut self) {
-        let shared = &self.shared;
-        let Frame::Hinged(node) = shared.shape.kind else {
-            return;
-        };
-        let [before, now] = [&shared.start.frame, &shared.now.frame].map(|frame| frame.velocity);
-        if self.is_large() || self.is_explicit() || now == before || shared.contact.is_used {
-            return;
-        }
-        let dt = shared.step.dt;
-        let mut force = Vec2::zeros();
-        for (node, mass) in shared.shape.arms.node_mass.iter().enumerate() {
-            let [end, start] =
-                [&shared.now.velocity, &shared.start.velocity].map(|values| node_vec(values, node));
-            force += mass / dt * (end - start) - node_vec(&shared.loads.force, node);
-        }
-        let late = shared.loads.late.chunks_exact(2);
-        force -= late.map(|late| Vec2::new(late[0], late[1])).sum::<Vec2>();
-        let push = force - self.reaction(node);
-        let shared = &mut self.shared;
-        shared.energy.jump_work = 0.5 * dt * push.dot(&(before + now));
-        shared.pin_push.clear();
-        shared.pin_push.resize(shared.now.position.len(), 0.0);
-        set_node_vec(&mut shared.pin_push, node, push);
     }
 
     /// Whether the body follows forces, as its pins tell.

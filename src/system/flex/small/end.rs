@@ -7,6 +7,7 @@ use crate::fe::model::MassMatrix;
 use crate::integrator::Weights;
 use crate::math::{Mat2, Vec2, cos, node_vec, perp, rotation, set_node_vec};
 use crate::system::flex::impulse::Gathered;
+use crate::system::flex::pins::note_hinge_push;
 use crate::system::flex::shared::Shared;
 use crate::system::rigid_way::RigidWay;
 use crate::system::step::Response;
@@ -193,6 +194,7 @@ impl SmallStrain {
             let own = node_vec(&shared.now.rate, node) + frame.spin * perp(arm);
             set_node_vec(&mut shared.now.velocity, node, frame.velocity + turn * own);
         }
+        note_hinge_push(shared);
     }
 
     /// Acceleration of a node at the end of the step, linear in the increments (m/s²).
