@@ -254,7 +254,7 @@ impl FlexBody {
     /// The first call costs one small eigenvalue problem per cell.
     pub fn explicit_frequency(&self) -> f64 {
         *self.frequency.get_or_init(|| {
-            let bound = frequency_bound(self.model(), self.fixed_dofs());
+            let bound = frequency_bound(self.touched_model(), self.fixed_dofs());
             let omega = bound.unwrap_or(f64::INFINITY);
             let ratio = 0.5 * self.model().rayleigh().stiffness * omega;
             omega * (ratio + hypot(ratio, 1.0))
@@ -283,7 +283,7 @@ impl FlexBody {
         let is_fixed = self.fixed_dofs();
         match self.large() {
             Some(large) => lowest_modes_at(large, self.positions(), is_fixed, n_modes, tolerance),
-            None => lowest_modes(self.model(), is_fixed, n_modes, tolerance),
+            None => lowest_modes(self.free_model(), is_fixed, n_modes, tolerance),
         }
     }
 }

@@ -64,6 +64,12 @@ impl FlexBodyBuilder {
         check_range(&model)?;
         let large = large.map(FiniteStrainModel::assemble).transpose()?;
         let nodal_force = self.gather_nodal_forces(n_nodes)?;
+        // Until something touches it, the surface has its mass.
+        let is_lasting = matches!(self.contact_inertia, ContactInertia::RedistributedAt(_));
+        let (model, touched) = match model.has_massless_nodes() && !is_lasting {
+            true => (model.remade(|of| of.massless.fill(false))?, Some(model)),
+            false => (model, None),
+        };
         let mut body = FlexBody::new(
             (Arc::new(model), large.map(Arc::new)),
             is_fixed,
@@ -74,6 +80,7 @@ impl FlexBodyBuilder {
         body.set_initial_velocity(&self.initial_velocity(&body, &placed)?);
         body.load(nodal_force, self.body_force, self.gravity_scale);
         body.n_idle_pins = self.n_idle_pins;
+        body.other_model = touched.map(Arc::new);
         Ok(body)
     }
 

@@ -3,8 +3,10 @@
 /// Whether the contact boundary of a body carries inertia.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum ContactInertia {
-    /// The mass of the boundary moves to the nodes inside (Khenous, Laborde, Renard 2008), so that an impact conserves
-    /// energy. A body without inside nodes, or with a consistent mass, keeps its inertia.
+    /// While something may touch a body of small strain, or a pin or weld holds it, the mass of its boundary is with the nodes inside (Khenous, Laborde,
+    /// Renard 2008), so that an impact conserves energy; else it is where it belongs, and the body vibrates as without contact. It
+    /// goes from one to the other with its momentum, its angular momentum about the centre of mass and its energy. In explicit
+    /// steps it stays inside. A body without inside nodes, or with a consistent mass, keeps its inertia.
     #[default]
     Redistributed,
     /// Only these nodes give their mass away, which may be a consistent one: for bodies one element thick, and for impacts on a

@@ -5,6 +5,7 @@ use super::frame::{Arms, Frame};
 use super::kept_force::KeptForce;
 use super::state::{BodyEnergy, FlexState};
 use super::stillness::Stillness;
+use super::surface_mass::{Measured, take_over};
 use crate::fe::finite_strain::FiniteStrainModel;
 use crate::fe::mesh::Mesh;
 use crate::fe::model::Model;
@@ -16,6 +17,8 @@ use std::sync::{Arc, OnceLock};
 #[derive(Debug)]
 pub struct FlexBody {
     pub(super) model: Arc<Model>,
+    /// The one without mass on its surface while the body is stepped by one with it, and the other way round; none of bodies that change neither way.
+    pub(super) other_model: Option<Arc<Model>>,
     pub(super) large: Option<Arc<FiniteStrainModel>>,
     pub(super) frame: Frame,
     pub(super) arms: Arms,
@@ -92,6 +95,7 @@ impl FlexBody {
             is_new: true,
             n_idle_pins: 0,
             model,
+            other_model: None,
             large,
         }
     }
@@ -127,9 +131,61 @@ impl FlexBody {
         self.large.as_ref()
     }
 
-    /// The assembled model.
+    /// The assembled model. Bodies of small strain have one whose surface has no mass while something may touch or holds them, see
+    /// [`ContactInertia::Redistributed`](super::ContactInertia::Redistributed).
     pub fn model(&self) -> &Arc<Model> {
         &self.model
+    }
+
+    /// The model while nothing touches the body.
+    pub(crate) fn free_model(&self) -> &Arc<Model> {
+        let other = self.other_model.as_ref();
+        other
+            .filter(|_| self.model.has_massless_nodes())
+            .unwrap_or(&self.model)
+    }
+
+    /// The model while something touches the body, and in explicit steps.
+    pub(crate) fn touched_model(&self) -> &Arc<Model> {
+        let other = self.other_model.as_ref();
+        other
+            .filter(|_| !self.model.has_massless_nodes())
+            .unwrap_or(&self.model)
+    }
+
+    /// Whether a model is one of the body's.
+    pub(crate) fn has_model(&self, model: &Arc<Model>) -> bool {
+        let mut both = self.other_model.iter().chain([&self.model]);
+        both.any(|own| Arc::ptr_eq(own, model))
+    }
+
+    /// Lets the surface have no mass, or its own, if the body is one that changes between these and its motion can go on so.
+    ///
+    /// - `insists`: whether it has to.
+    ///
+    /// Returns whether it has changed.
+    pub(crate) fn set_touched(&mut self, is_touched: bool, insists: bool) -> bool {
+        if self.model.has_massless_nodes() == is_touched {
+            return false;
+        }
+        let Some(other) = &self.other_model else {
+            return false;
+        };
+        let arms = Arms::new(other, self.frame);
+        let measured = [(&self.model, &self.arms), (other, &arms)]
+            .map(|(model, arms)| Measured { model, arms });
+        let goes_on = take_over(
+            &mut self.state,
+            self.frame,
+            &self.is_fixed,
+            measured,
+            insists,
+        );
+        if goes_on {
+            self.other_model = Some(std::mem::replace(&mut self.model, Arc::clone(other)));
+            self.arms = arms;
+        }
+        goes_on
     }
 
     /// The mesh, in its own coordinates.

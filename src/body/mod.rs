@@ -32,6 +32,7 @@ mod state;
 mod steering;
 mod stillness;
 mod surface;
+mod surface_mass;
 
 pub(crate) use access::KeptMotion;
 pub(crate) use attachment::{Anchor, Choice, Plan, Shift};

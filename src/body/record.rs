@@ -23,6 +23,8 @@ use std::sync::{Arc, OnceLock};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct BodyRecord {
     model: ModelRecord,
+    /// Which nodes have no mass in the other model, if there is one.
+    other_massless: Option<Vec<bool>>,
     is_fixed: Vec<bool>,
     prescribed: Vec<f64>,
     nodal_force: Vec<f64>,
@@ -54,6 +56,10 @@ impl BodyRecord {
     fn of(body: &FlexBody) -> Result<Self, ModelRecordError> {
         Ok(Self {
             model: ModelRecord::of(body.model())?,
+            other_massless: body.other_model.as_ref().map(|other| {
+                let nodes = 0..other.n_nodes();
+                nodes.map(|node| other.is_massless(node)).collect()
+            }),
             is_fixed: body.is_fixed.clone(),
             prescribed: body.prescribed.clone(),
             nodal_force: body.nodal_force.clone(),
@@ -87,6 +93,13 @@ impl BodyRecord {
 
     fn build(self, laws: &KnownLaws) -> Result<FlexBody, ModelRecordError> {
         let model = Arc::new(self.model.build(laws)?);
+        let other = match self.other_massless {
+            Some(massless) if massless.len() != model.n_nodes() => {
+                return Err(ModelRecordError::Length("masses"));
+            }
+            Some(massless) => Some(model.remade(|of| of.massless = massless)?),
+            None => None,
+        };
         let state = &self.state;
         let nodal = [
             &self.prescribed,
@@ -132,6 +145,7 @@ impl BodyRecord {
         Ok(FlexBody {
             arms: Arms::new(&model, frame),
             model,
+            other_model: other.map(Arc::new),
             large,
             frame,
             is_fixed: self.is_fixed,

@@ -182,8 +182,9 @@ impl FlexBody {
     /// be computed; nothing is then changed.
     pub fn set_material(&mut self, material: impl Material + 'static) -> Result<(), BuildError> {
         material.validate()?;
+        let material: Arc<dyn Material> = Arc::new(material);
         self.remake(|description| {
-            description.material = Arc::new(material);
+            description.material = Arc::clone(&material);
             description.regions.clear();
         })
     }
@@ -199,9 +200,10 @@ impl FlexBody {
     ) -> Result<(), BuildError> {
         material.validate()?;
         let region = number_of(&region.into(), self.mesh())?;
+        let material: Arc<dyn Material> = Arc::new(material);
         self.remake(|description| {
             description.regions.retain(|(own, _)| *own != region);
-            description.regions.push((region, Arc::new(material)));
+            description.regions.push((region, Arc::clone(&material)));
         })
     }
 
@@ -275,9 +277,11 @@ impl FlexBody {
         self.hole(hole).map(|[_, pressure]| pressure)
     }
 
-    fn remake(&mut self, change: impl FnOnce(&mut ModelDescription)) -> Result<(), BuildError> {
-        let model = self.model.remade(change)?;
+    fn remake(&mut self, change: impl Fn(&mut ModelDescription)) -> Result<(), BuildError> {
+        let model = self.model.remade(&change)?;
         check_range(&model)?;
+        let other = self.other_model.as_ref();
+        let other = other.map(|other| other.remade(&change)).transpose()?;
         let large = match &self.large {
             None => None,
             Some(before) => {
@@ -295,6 +299,7 @@ impl FlexBody {
         let before = self.mass();
         self.arms = Arms::new(&model, self.frame);
         (self.model, self.large) = (Arc::new(model), large);
+        self.other_model = other.map(Arc::new);
         self.frequency = OnceLock::new();
         self.state.elastic_energy = self.energy().elastic;
         self.velocity_changed();

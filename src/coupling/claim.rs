@@ -15,7 +15,7 @@ use super::strikes::Strikes;
 use super::sweep::Sweep;
 use super::waking::{wake_met, wake_surfaces};
 use super::walk::{ClaimedPair, Map, Walk};
-use crate::body::{FlexBody, FlexBodySet};
+use crate::body::{Attachment, AttachmentKind, FlexBody, FlexBodySet};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 
@@ -177,6 +177,22 @@ impl Claims {
     /// Component that a flexible body belongs to.
     pub fn component_of_flex(&self, flex: usize) -> usize {
         self.walk.members.component_of_flex(flex)
+    }
+
+    /// Whether something may touch a flexible body in the step, or a pin or weld holds it.
+    pub fn may_press(&self, flex: usize, flex_bodies: &FlexBodySet) -> bool {
+        let meets = |pair: &ClaimedPair| match *pair {
+            ClaimedPair::FlexRigid(own, _) => own == flex,
+            ClaimedPair::FlexFlex(one, other) => one == flex || other == flex,
+            ClaimedPair::RigidRigid(..) => false,
+        };
+        let holds = |tie: &ClaimedAttachment| {
+            let attachment = flex_bodies.attachments().get(tie.parts);
+            let kind = attachment.map(Attachment::kind);
+            !matches!(kind, None | Some(AttachmentKind::Spring { .. }))
+        };
+        let is_own = |tie: &&ClaimedAttachment| tie.flex == flex || tie.other == Some(flex);
+        self.pairs().iter().any(meets) || self.attached().iter().filter(is_own).any(holds)
     }
 
     /// Component that a claimed rigid body belongs to, `None` if it was not claimed.

@@ -130,13 +130,20 @@ impl Gatherer {
         let Some(handle) = flex_bodies.at_index(index).map(|(handle, _)| handle) else {
             return Ok(());
         };
+        let is_explicit = settings.step.is_explicit();
+        let is_touched = is_explicit || sources.claims.may_press(flex, flex_bodies);
         let Some(body) = flex_bodies.at_index_mut(index) else {
             return Ok(());
         };
+        let has_changed = body.set_touched(is_touched, is_explicit);
         let mut block = self.pool.take(index, body, &settings.step);
         let own: Vec2 = body.body_force().into();
         let gravity = body.gravity_scale() * from_rapier(sets.gravity) + own;
         let mut outcome = Ok(());
+        if has_changed && is_touched {
+            let force = body.nodal_forces().to_vec();
+            outcome = block.lose_surface_mass(settings.step, body.state_mut(), &force);
+        }
         if !body.is_started() {
             body.start_with(|state, force, prescribed, reaction| {
                 outcome = block.start(

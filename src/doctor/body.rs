@@ -106,7 +106,7 @@ impl Patient<'_> {
     }
 
     fn look_at_modes(&self, findings: &mut Vec<Finding>) {
-        let (body, model) = (self.handle, self.body.model());
+        let (body, model) = (self.handle, self.body.free_model());
         let fixed = self.body.fixed_dofs();
         // At rest, whatever the body is doing; rounding is no matter here.
         let found = match lowest_modes(model, fixed, N_MODES, 1e-4) {

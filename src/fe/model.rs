@@ -155,6 +155,11 @@ impl Model {
         self.support.iter()
     }
 
+    /// Whether some node has no mass.
+    pub fn has_massless_nodes(&self) -> bool {
+        self.support.iter().next().is_some()
+    }
+
     /// The nodes that carry the mass of a massless node; none for a node with mass.
     pub fn support_of(&self, node: usize) -> &[usize] {
         self.support.of(node)
@@ -186,7 +191,7 @@ impl Model {
     /// massless nodes, and the frequency itself.
     pub fn largest_frequency(&self) -> f64 {
         *self.largest_frequency.get_or_init(|| {
-            if !self.description.massless.contains(&true) {
+            if !self.has_massless_nodes() {
                 frequency_bound(self, &[]).unwrap_or(f64::INFINITY)
             } else {
                 f64::INFINITY

@@ -41,9 +41,9 @@
 //! # Small strain
 //!
 //! - **Spin of small strain.** The tension of what spins does not stiffen it: a ring or strip that spins faster than it bends (its lowest frequency of bending) grows without bound. See: [`StepReport::overbent`], late. Do: take `large_strain`.
-//! - **Frequencies of coarse meshes.** By default the mass of the surface moves to the nodes inside, so that impacts are right; with few cells the frequencies of free vibration change by that. See: the first of bending of a free bar ten times as long as high is +17 % off at
-//!   10 × 2 cells (-3 % if the surface keeps its mass), +5 % at 20 × 2, +1.4 % at 40 × 4, that of one 3.3 times as long +53 % at 7 × 2, +19 % at 10 × 3, +1.7 % at 20 × 6; clamped bars are right in the first, +2 to +13 % off in the second. Do: take
-//!   [`ContactInertia::Kept`](crate::body::ContactInertia::Kept) where vibrations matter more than impacts, more cells, or large strain, which keeps it.
+//! - **Frequencies in contact.** While something may touch a body (rapier has a pair with its surface), or a pin or weld holds it, and in explicit steps, the mass of its surface is with the nodes inside, so that impacts are right; with few cells
+//!   its frequencies change by that. See: the first of bending of a free bar ten times as long as high is then +17 % off at 10 × 2 cells (-3 % while nothing is near), +5 % at 20 × 2, +1.4 % at 40 × 4, that of one 3.3 times as long +53 % at 7 × 2, +19 % at 10 × 3, +1.7 % at 20 × 6;
+//!   clamped bars are right in the first, +2 to +13 % off in the second. Do: take [`ContactInertia::Kept`](crate::body::ContactInertia::Kept) where vibrations matter more than impacts, more cells, or large strain, which keeps it.
 //! - **Welded to what turns.** Nodes that a weld turns with its partner turn exactly, and the frame of the body sees `θ²/2` of it as a strain across the weld: a root or a tip that is welded stiffens with amplitude, by 0.6 % where the tip goes by a hundredth of the length, 2.3 % at two, 7.5 % at four.
 //!   Do: pin by one node, or leave `small_strain` out.
 //! - **Slender and taut.** The frame is the mean of the nodes, against which tension bends a slender body more and more: from a strain of about `25 (h/L)²` on, .05 % for a steel tie two hundred times as long as wide. See: [`StepReport::overbent`], late. Do: leave

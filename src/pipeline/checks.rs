@@ -129,7 +129,7 @@ fn check_integrator(
         };
         return if dt > critical { Err(unstable) } else { Ok(()) };
     }
-    integrator.check_step(dt, body.model().largest_frequency())
+    integrator.check_step(dt, body.touched_model().largest_frequency())
 }
 
 /// Refuses a solved island whose motion rapier cannot represent.

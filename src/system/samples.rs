@@ -17,7 +17,8 @@ pub(crate) fn body_of(builder: FlexBodyBuilder) -> FlexBody {
 /// The block of a body at the beginning of a step of this length (s), predicted under the body's own loads without gravity.
 pub(crate) fn predicted(body: &FlexBody, dt: f64) -> FlexBlock {
     let fixed = body.fixed_dofs().to_vec();
-    let mut block = FlexBlock::new(Arc::clone(body.model()), fixed, body.frame());
+    let model = Arc::clone(body.touched_model());
+    let mut block = FlexBlock::new(model, fixed, body.frame());
     let step = Step::new(&Beta2::default(), dt);
     let load = FlexLoad {
         force: body.nodal_forces(),

@@ -276,6 +276,35 @@ fn bodies_of_large_strain_restored_after_every_step_never_differ() {
     step_by_step(run, 120);
 }
 
+/// Surfaces have their mass in the air, and none at the ground.
+#[test]
+fn bodies_of_small_strain_that_bounce_restored_after_every_step_never_differ() {
+    let mut run = everything();
+    let bar = FlexBodyBuilder::rectangle([1.0, 0.3], [10, 3])
+        .small_strain()
+        .material(rubber())
+        .restitution(1.0)
+        .translation([-0.5, 8.0])
+        .linvel([0.0, -20.0])
+        .angvel(2.0);
+    let bar = run
+        .flex_bodies
+        .insert(bar, &mut run.world)
+        .expect("the description is right");
+    let has_mass = |run: &Run| !run.flex_bodies[bar].model().has_massless_nodes();
+    assert!(has_mass(&run));
+    let mut touched = run.resumed();
+    let log = Recorder::default();
+    let n_steps = (0..200)
+        .take_while(|_| {
+            touched.step(&log);
+            has_mass(&touched)
+        })
+        .count();
+    assert!((2..100).contains(&n_steps), "{n_steps} steps in the air");
+    step_by_step(run, n_steps + 60);
+}
+
 /// A bar that its spin pulls in two, but for its hardening: what has flowed, and what is flowing.
 #[test]
 fn a_body_that_flows_restored_after_every_step_never_differs() {

@@ -184,6 +184,25 @@ impl FlexBlock {
         }
     }
 
+    /// Takes over the motion of a body whose surface has just lost its mass.
+    ///
+    /// - `force`: on the nodes, interleaved (N).
+    ///
+    /// # Errors
+    /// If the effective matrix is not positive definite.
+    pub fn lose_surface_mass(
+        &mut self,
+        step: Step,
+        state: &mut FlexState,
+        force: &[f64],
+    ) -> Result<(), CholeskyError> {
+        match &mut self.method {
+            Method::Small(small) => small.lose_surface_mass(&mut self.shared, step, state, force),
+            // The surface is balanced in each step, or keeps its mass.
+            Method::Explicit(_) | Method::Large(_) => Ok(()),
+        }
+    }
+
     /// Begins a step: takes over the committed state and the loads, writes the operators and, if the weights are new,
     /// factorizes the effective matrix.
     ///

@@ -208,6 +208,29 @@ impl Following {
         (b0 + damping * b1) / (1.0 + damping / step.dt)
     }
 
+    /// Writes how far the nodes are from where their springs balance forces (m), in the frame, and zero at all others.
+    ///
+    /// - `displacement`: of all nodes, in the frame (m).
+    /// - `force`: at a node, in the frame (N).
+    pub fn write_imbalance(
+        &mut self,
+        shape: &Shape,
+        displacement: &[f64],
+        force: impl Fn(usize) -> Vec2,
+        imbalance: &mut [f64],
+    ) {
+        imbalance.fill(0.0);
+        if let Some(surface) = &mut self.surface {
+            imbalance.copy_from_slice(displacement);
+            surface.relax(&shape.model, &shape.is_fixed, imbalance, |node, _| {
+                force(node)
+            });
+            for (balanced, displaced) in imbalance.iter_mut().zip(displacement) {
+                *balanced -= displaced;
+            }
+        }
+    }
+
     /// Moves the nodes by the increments, then to where they balance under the forces of the iterate.
     ///
     /// - `u`: displacements before the increment (m).

@@ -14,9 +14,9 @@ use crate::body::{FlexState, Frame, FrameMotion};
 use crate::integrator::{Beta2, Weights};
 use crate::linalg::cholesky::CholeskyError;
 use crate::math::{
-    Vec2, cross,
+    Vec2, add_node_vec, cross,
     judged::{Judged, NEGLIGIBLE},
-    node_vec, perp, set_node_vec,
+    node_vec, perp, rotation, set_node_vec,
 };
 use crate::system::step::{FlexLoad, Step};
 
@@ -182,6 +182,44 @@ impl SmallStrain {
                 applied,
             );
         }
+        Ok(())
+    }
+
+    /// Lets the masses of a body whose surface has lost its own feel the springs of the surface in balance, as they will in the steps
+    /// to come: `M ü = ... - K̃ u`. What the surface still is from there would else do work in the first of them that nothing gives.
+    ///
+    /// - `force`: on the nodes, interleaved (N).
+    ///
+    /// # Errors
+    /// If the effective matrix is not positive definite.
+    pub fn lose_surface_mass(
+        &mut self,
+        shared: &mut Shared,
+        step: Step,
+        state: &mut FlexState,
+        force: &[f64],
+    ) -> Result<(), CholeskyError> {
+        self.factorize(shared, step.weights)?;
+        let (shape, damping) = (&shared.shape, shared.shape.model.rayleigh().stiffness);
+        for ((sum, u), rate) in shared
+            .scratch
+            .iter_mut()
+            .zip(&state.displacement)
+            .zip(&state.rate)
+        {
+            *sum = u + damping * rate;
+        }
+        let back = rotation(-state.frame.angle);
+        let own = |node: usize| back * node_vec(force, node);
+        self.following
+            .write_imbalance(shape, &shared.scratch, own, &mut shared.local);
+        for node in 0..shape.model.n_nodes() {
+            let push = shape.model.stiffness().multiply_node(node, &shared.local);
+            let change = shape.inverse_mass(node) * Vec2::from(push);
+            add_node_vec(&mut state.acceleration, node, -change);
+        }
+        shape.spread_accelerations(&mut state.acceleration);
+        shape.arms.split(shape.kind, &mut state.acceleration);
         Ok(())
     }
 
