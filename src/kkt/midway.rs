@@ -104,8 +104,11 @@ fn key(island: &Island, contact: &ActiveContact) -> ContactKey {
     island.candidates[contact.candidate].key
 }
 
-/// By how much the normal of a contact that is met within the step has turned against the nearest contact of the same bodies that pressed before (rad).
+/// By how much the normal of a contact that is met within the step has turned against the contacts of the same bodies that pressed before (rad).
 /// Bodies that meet have no normal before.
+///
+/// Their mean counts, weighted by the inverse square of their distance: where two give way to one between them, rounding would
+/// choose the nearest, and push to its side.
 fn turn_of_met(island: &Island, contact: &ActiveContact) -> f64 {
     let own = key(island, contact);
     let [_, met @ ..] = contact.kinematics.attachments() else {
@@ -115,17 +118,24 @@ fn turn_of_met(island: &Island, contact: &ActiveContact) -> f64 {
         .iter()
         .map(|grip| grip.weight * island.blocks[grip.block].displacement(grip.grip));
     let place = contact.kinematics.position + moved.sum::<Vec2>();
-    let away = |before: &&ActiveContact| (before.kinematics.position - place).norm_squared();
-    let pressed = island.passes.parted.iter();
-    let of_pair = pressed.filter(|before| key(island, before).owners() == own.owners());
-    let Some(before) = of_pair.min_by(|one, other| away(one).total_cmp(&away(other))) else {
-        return 0.0;
+    let away = |before: &ActiveContact| (before.kinematics.position - place).norm_squared();
+    let of_pair = || {
+        let pressed = island.passes.parted.iter();
+        pressed.filter(|before| key(island, before).owners() == own.owners())
     };
-    let now = contact.kinematics.normal;
-    let before = match key(island, before).contactor == own.contactor {
-        true => before.kinematics.normal,
-        false => -before.kinematics.normal,
-    };
+    let nearest = of_pair().map(away).fold(f64::INFINITY, f64::min);
+    let normals = of_pair().map(|before| {
+        let distance = away(before);
+        let weight = match distance > nearest {
+            true => nearest / distance,
+            false => 1.0,
+        };
+        match key(island, before).contactor == own.contactor {
+            true => weight * before.kinematics.normal,
+            false => -weight * before.kinematics.normal,
+        }
+    });
+    let (before, now) = (normals.sum::<Vec2>(), contact.kinematics.normal);
     atan2(cross(before, now), before.dot(&now))
 }
 

@@ -282,7 +282,9 @@ impl StepReport {
         all.filter(move |contact| [contact.contactor, contact.target].contains(&participant))
     }
 
-    /// Sum of the normal and tangential contact forces on a participant (N).
+    /// Sum of the normal and tangential contact forces on a participant (N), in the directions at the end of the step. Where normals turn within it,
+    /// bodies of large strain are pushed by [`FlexBody::total_contact_force`](crate::body::FlexBody::total_contact_force), and what meets
+    /// them by its opposite; see [`ContactReport::normal_force`].
     pub fn force_on(&self, participant: Participant) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for contact in &self.contacts {

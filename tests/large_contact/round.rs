@@ -230,3 +230,46 @@ fn a_pad_on_a_driven_disc_dissipates_what_the_motor_does() {
         }
     }
 }
+
+/// A taut band that is drawn to a V and let go meets a ball on its axis: two edges of the band, and then the node between them. Nothing chooses a side.
+#[test]
+fn a_band_shoots_a_ball_along_its_axis() {
+    for (n_cells, dt) in [(10, 1.0 / 120.0), (10, 1.0 / 240.0), (20, 1.0 / 120.0)] {
+        let mut scene = Scene::in_free_space(dt);
+        let band = FlexBodyBuilder::rectangle([THICK, 1.0], [1, n_cells])
+            .material(LinearElastic::plane_stress(2e6, 0.3).density(900.0))
+            .friction(0.0)
+            .pre_stretch(PreStretch::along_y(1.2))
+            .translation([0.0, -0.5])
+            .pin_where(|[_, y]| y == 0.0 || y == 1.0, Pin::both());
+        let band = scene.flexible(band);
+        let middle = n_cells / 2 * 2;
+        let hand = RigidBodyBuilder::kinematic_position_based();
+        let hand = scene.world.insert_body(hand);
+        let grip = AttachmentBuilder::pin(band)
+            .node(middle)
+            .to_rigid_body(hand);
+        let grip = scene.bodies.attach(grip, &scene.world.bodies);
+        let grip = grip.expect("a node of the band");
+        let n_steps = (0.5 / dt) as usize;
+        for step in 1..=2 * n_steps {
+            let drawn = 0.4 * (step as f64 / n_steps as f64).min(1.0);
+            scene.world.bodies[hand].set_next_kinematic_translation(vec2(-drawn, 0.0));
+            scene.step();
+        }
+        let x = scene.body(band).position(middle + 1)[0];
+        let (ball, _) = scene.rigid(
+            RigidBodyBuilder::dynamic().translation(vec2(x + 0.08, 0.0)),
+            ColliderBuilder::ball(real(0.05))
+                .mass(real(0.5))
+                .friction(0.0),
+        );
+        scene.bodies.detach(grip).expect("it holds");
+        scene.steps((0.2 / dt) as usize);
+        let velocity = scene.world.bodies[ball].linvel();
+        let [along, across] = [velocity.x, velocity.y].map(f64::from);
+        println!("{n_cells} cells, {dt} s: {along}, {across} m/s");
+        assert!(along > 20.0, "{along} m/s");
+        assert!(across.abs() < 1e-3 * along, "{across} m/s");
+    }
+}
