@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Scene, is_solved, vec2};
+use common::{Dice, Scene, is_solved, vec2};
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::ColliderBuilder;
 
@@ -70,16 +70,22 @@ fn it_vibrates_as_without_contact_when_nothing_touches() {
 }
 
 /// Energy that a vibrating bar has left of its vibration when it has flown past a pillar, near enough for a pair.
-fn left_behind_a_pillar(divisions: [usize; 2], young: f64, dt: f64) -> f64 {
+///
+/// - `place`: of the pillar (m), which chooses the phases of the vibration.
+fn left_behind_a_pillar(
+    builder: FlexBodyBuilder,
+    velocities: Vec<[f64; 2]>,
+    place: f64,
+    dt: f64,
+) -> f64 {
     let mut scene = Scene::in_free_space(dt).with_integrator(Beta2::trapezoidal());
-    scene.fixed(ColliderBuilder::cuboid(0.1, 0.5).translation(vec2(2.0, -0.512)));
-    let builder = bar(divisions, young);
-    let built = builder.clone().build().expect("a sound bar");
-    let body = scene.flexible(builder.velocities(bending(&built, [2.0, 0.0])));
+    scene.fixed(ColliderBuilder::cuboid(0.1, 0.5).translation(vec2(place, -0.512)));
+    let body = scene.flexible(builder.velocities(velocities));
     let figures = |scene: &Scene| {
         let body = scene.body(body);
         let energy = body.energy();
-        let translation = 2.0 * body.mass();
+        let [x, y] = body.linvel();
+        let translation = 0.5 * body.mass() * (x * x + y * y);
         let spin = body.polar_moment() * body.angvel();
         (
             body.momentum(),
@@ -87,7 +93,7 @@ fn left_behind_a_pillar(divisions: [usize; 2], young: f64, dt: f64) -> f64 {
             energy.kinetic + energy.elastic - translation,
         )
     };
-    let (momentum, _, before) = figures(&scene);
+    let (momentum, spun, before) = figures(&scene);
     let mut energy = before;
     let mut changes = 0;
     let mut had_mass = true;
@@ -107,9 +113,10 @@ fn left_behind_a_pillar(divisions: [usize; 2], young: f64, dt: f64) -> f64 {
                 "{now} of {before}"
             );
         }
-        assert!(spin.abs() < 1e-9, "{spin}");
-        assert!(left < energy * (1.0 + 1e-9), "{left} J after {energy} J");
-        energy = left;
+        assert!((spin - spun).abs() < 1e-9, "{spin} of {spun}");
+        // A frame that turns keeps it to some 1e-5 in a step.
+        assert!(left < (1.0 + 1e-3) * energy, "{left} J after {energy} J");
+        energy = energy.min(left);
     }
     assert_eq!(changes, 2, "near the pillar, and away from it");
     energy / before
@@ -119,13 +126,23 @@ fn left_behind_a_pillar(divisions: [usize; 2], young: f64, dt: f64) -> f64 {
 #[test]
 fn what_flies_past_keeps_momentum_and_gains_no_energy() {
     let dt = 1.0 / 500.0;
-    let coarse = left_behind_a_pillar([10, 2], 1e7, dt);
-    let fine = left_behind_a_pillar([20, 4], 1e7, dt);
+    let [coarse, fine] = [[10, 2], [20, 4]].map(|divisions| {
+        let builder = bar(divisions, 1e7);
+        let built = builder.clone().build().expect("a sound bar");
+        left_behind_a_pillar(builder, bending(&built, [2.0, 0.0]), 2.0, dt)
+    });
     println!("{coarse} {fine}");
     assert!(coarse > 0.95 && fine > 0.99);
-    for young in [1e6, 1e8, 1e9, 1e10] {
+    let mut dice = Dice(7);
+    for young in [1e5, 1e6, 1e7, 1e8, 1e9, 1e10] {
         for dt in [1.0 / 500.0, 1.0 / 60.0] {
-            left_behind_a_pillar([10, 2], young, dt);
+            for phase in 0..10 {
+                // Every node by itself, which no step resolves.
+                let mut own = |mean: f64| mean + dice.between(-5e-3, 5e-3);
+                let velocities = (0..33).map(|_| [own(2.0), own(0.0)]).collect();
+                let place = 1.6 + 0.05 * f64::from(phase);
+                left_behind_a_pillar(bar([10, 2], young), velocities, place, dt);
+            }
         }
     }
 }

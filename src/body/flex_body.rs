@@ -137,6 +137,11 @@ impl FlexBody {
         &self.model
     }
 
+    /// Whether its surface has mass at some times and none at others.
+    pub(crate) fn changes_mass(&self) -> bool {
+        self.other_model.is_some()
+    }
+
     /// The model while nothing touches the body.
     pub(crate) fn free_model(&self) -> &Arc<Model> {
         let other = self.other_model.as_ref();

@@ -127,11 +127,12 @@ impl Gatherer {
     ) -> Result<(), GatherError> {
         let Sources { settings, sets, .. } = sources;
         let index = sources.claims.flex[flex].index;
-        let Some(handle) = flex_bodies.at_index(index).map(|(handle, _)| handle) else {
+        let Some((handle, body)) = flex_bodies.at_index(index) else {
             return Ok(());
         };
         let is_explicit = settings.step.is_explicit();
-        let is_touched = is_explicit || sources.claims.may_press(flex, flex_bodies);
+        let may_press = || sources.claims.may_press(flex, flex_bodies);
+        let is_touched = body.changes_mass() && (is_explicit || may_press());
         let Some(body) = flex_bodies.at_index_mut(index) else {
             return Ok(());
         };
