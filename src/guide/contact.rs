@@ -49,7 +49,7 @@
 //! | | where |
 //! |---|---|
 //! | every contact, its place, normal, gap, force, and whether it sticks | [`StepReport::contacts`], [`contacts_of`](crate::pipeline::StepReport::contacts_of) one participant |
-//! | what acts on a body or collider together, in the directions at the end of the step | [`StepReport::force_on`] |
+//! | what acts on a body or collider together | [`StepReport::force_on`] |
 //! | what acts on a node | [`FlexBody::contact_force`], [`contact_pressure`](crate::body::FlexBody::contact_pressure) |
 //! | supports | [`FlexBody::reaction`] |
 //! | joints and attachments | [`StepReport::joints`] |

@@ -101,6 +101,11 @@ impl ActiveContact {
         }
     }
 
+    /// What the force has beyond [`Self::force`] as it acts midway through the step, along the same axes (N).
+    pub fn midway_force(&self, dt: f64) -> [f64; 2] {
+        self.midway.map(|impulse| impulse / dt)
+    }
+
     /// Impulse that the step's own force has given, normal and tangential (N s): of one in the stored accelerations `β1`, for the rest acts in the next step.
     pub(super) fn given(&self, settings: &SolveSettings) -> [f64; 2] {
         if self.is_hard {

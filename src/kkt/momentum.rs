@@ -134,8 +134,8 @@ pub(super) fn publish_forces(island: &mut Island, dt: f64) {
         }
     }
     for contact in &island.contacts {
-        let [told, midway] = [contact.force(dt), contact.midway];
-        let force = [0, 1].map(|axis| told[axis] + midway[axis] / dt);
+        let [told, midway] = [contact.force(dt), contact.midway_force(dt)];
+        let force = [0, 1].map(|axis| told[axis] + midway[axis]);
         gathered::spread(
             &mut island.blocks,
             &contact.kinematics,

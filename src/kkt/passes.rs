@@ -43,6 +43,8 @@ pub(super) struct Passes {
     pub fresh: Vec<usize>,
     /// Contacts of the last list that have taken over the force of another one.
     pub handed_over: Vec<usize>,
+    /// Contacts that may take over the force of one, and how far their normals point its way.
+    pub successors: Vec<(usize, f64)>,
     /// The first impact of a step, the best place that the whole of the step has reached, and the best with contacts that slid off.
     pub impact: Waypoint,
     pub arrival: Waypoint,

@@ -128,6 +128,9 @@ impl StepReport {
             let [nx, ny] = nearest.normal;
             nearest.normal_force += force[0] * nx + force[1] * ny;
             nearest.tangential_force += force[1] * nx - force[0] * ny;
+            for axis in 0..2 {
+                nearest.midway[axis] += contact.midway[axis];
+            }
         }
     }
 

@@ -17,13 +17,15 @@ pub struct ContactReport {
     pub gap: f64,
     /// Compressive force on the contactor along the normal (N): the impulse that the step adds to the bodies over its length. The
     /// part `1 - β1` of a force that lasts acts in the next step, so that sums over time, not single steps, balance momentum.
-    /// On a body of large strain it acts along the normal midway through the step, turned back by half of the way that this has turned.
     /// Negative where energy that the last step's force had added is taken back; at a contact that has just opened, only
     /// [`FlexBody::total_contact_force`](crate::body::FlexBody::total_contact_force) knows of that.
     pub normal_force: f64,
     /// Force on the contactor along the tangent, a quarter turn counter-clockwise from the normal (N). Where the normal turns within steps, what the energy stage
     /// takes from what slides there is in it, without friction too.
     pub tangential_force: f64,
+    /// What the force on the contactor is beyond these two as it acts (N): with a body of large strain it does so midway through the step, along the
+    /// normal and at the lever that the contact has there. [`StepReport::force_on`](super::StepReport::force_on) counts it.
+    pub midway: [f64; 2],
     /// Whether friction holds.
     pub sticks: bool,
     /// The body whose point touches.
@@ -33,7 +35,7 @@ pub struct ContactReport {
 }
 
 impl ContactReport {
-    /// The force on the contactor (N).
+    /// The force on the contactor (N), in the directions at the end of the step: with [`position`](Self::position) it gives torques.
     pub fn force(&self) -> [f64; 2] {
         let [nx, ny] = self.normal;
         [

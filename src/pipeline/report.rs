@@ -282,9 +282,7 @@ impl StepReport {
         all.filter(move |contact| [contact.contactor, contact.target].contains(&participant))
     }
 
-    /// Sum of the normal and tangential contact forces on a participant (N), in the directions at the end of the step. Where normals turn within it,
-    /// bodies of large strain are pushed by [`FlexBody::total_contact_force`](crate::body::FlexBody::total_contact_force), and what meets
-    /// them by its opposite; see [`ContactReport::normal_force`].
+    /// Sum of the contact forces on a participant (N), as they act: those of [`ContactReport::force`] and [`ContactReport::midway`].
     pub fn force_on(&self, participant: Participant) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for contact in &self.contacts {
@@ -293,8 +291,9 @@ impl StepReport {
                 [contact.contactor, contact.target].map(|one| one == participant);
             let sign = f64::from(as_point) - f64::from(as_target);
             let force = contact.force();
-            sum[0] += sign * force[0];
-            sum[1] += sign * force[1];
+            for axis in 0..2 {
+                sum[axis] += sign * (force[axis] + contact.midway[axis]);
+            }
         }
         sum
     }

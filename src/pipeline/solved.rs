@@ -7,6 +7,7 @@ use crate::constraint::joint::JointMemory;
 use crate::coupling::{PressedPoint, Seats, Span};
 use crate::kkt::{ActiveContact, Island, IslandSummary};
 use crate::linalg::complementarity::Status;
+use crate::math::Vec2;
 use crate::system::Step;
 
 /// A part of the step of an island, as solved.
@@ -43,6 +44,13 @@ impl SolvedPart<'_> {
     fn force(&self, contact: &ActiveContact) -> [f64; 2] {
         let force = contact.force(self.step.dt);
         force.map(|force| self.span.share() * force)
+    }
+
+    /// What it has beyond that as it acts midway through the step (N).
+    fn midway(&self, contact: &ActiveContact) -> Vec2 {
+        let [normal, tangent] = contact.midway_force(self.step.dt);
+        let row = &contact.kinematics;
+        self.span.share() * (normal * row.normal + tangent * row.tangent())
     }
 
     /// A contact as events tell of it, if it presses or is closed.
@@ -82,6 +90,7 @@ impl SolvedPart<'_> {
             gap: contact.gap(),
             normal_force,
             tangential_force,
+            midway: self.midway(contact).into(),
             sticks: contact.status[1] == Status::Stick,
             contactor: names.participant(key.contactor)?,
             target: names.participant(key.target)?,

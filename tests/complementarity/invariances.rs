@@ -223,3 +223,76 @@ fn it_does_not_matter_how_much_of_a_contact_has_acted_already() {
         }
     }
 }
+
+/// A ball in a wedge of two flexible sides, both alike: normal and tangent of one and of the other, the tangents mirrors of each other.
+fn wedge(numbers: &mut Numbers) -> [f64; 16] {
+    let mut between = |low: f64, high: f64| low + (high - low) * numbers.unit();
+    let slope = between(0.01, 0.9);
+    let height = (1.0 - slope * slope).sqrt();
+    let sides = [
+        ([slope, height], 0.0),
+        ([height, -slope], 1.0),
+        ([-slope, height], 0.0),
+        ([-height, -slope], -1.0),
+    ];
+    let (inertia, size) = (between(0.3, 1.0), 10.0_f64.powf(between(-2.0, 1.0)));
+    let (soft, stiff, turn) = (between(0.01, 1.0), between(0.01, 1.0), between(0.0, 3.0));
+    let (sin, cos) = turn.sin_cos();
+    let both = (soft - stiff) * sin * cos;
+    let own = [
+        [soft * cos * cos + stiff * sin * sin, both],
+        [both, soft * sin * sin + stiff * cos * cos],
+    ];
+    let mut delassus = [0.0; 16];
+    for (i, (along, turned)) in sides.iter().enumerate() {
+        for (j, (other, turns)) in sides.iter().enumerate() {
+            let rigid = along[0] * other[0] + along[1] * other[1] + turned * turns / inertia;
+            let yielded = if i / 2 == j / 2 {
+                size * own[i % 2][j % 2]
+            } else {
+                0.0
+            };
+            delassus[4 * i + j] = rigid + yielded;
+        }
+    }
+    delassus
+}
+
+/// Coulomb's law may have others, in which the ball sticks to one side and slides on the other.
+#[test]
+fn what_is_its_own_mirror_image_gets_an_answer_that_is_too() {
+    let mut numbers = Numbers(7);
+    for case in 0..2000 {
+        let delassus = wedge(&mut numbers);
+        let (sin, cos) = (6.3 * numbers.unit()).sin_cos();
+        let normal = numbers.unit();
+        let friction = 0.5 * normal * numbers.signed();
+        let acted = match case % 2 {
+            0 => [0.0; 4],
+            _ => [normal, friction, normal, friction],
+        };
+        let rows = [0, 2].map(|normal| RowKind::Friction {
+            normal,
+            coefficient: 0.5,
+        });
+        let problem = Problem {
+            delassus: &delassus,
+            free: &[cos, sin, cos, sin],
+            rows: &[RowKind::Unilateral, rows[0], RowKind::Unilateral, rows[1]],
+            acted: &acted,
+        };
+        let (open, stick) = (Status::Open, Status::Stick);
+        let slides = [Status::SlipPositive, Status::SlipNegative].map(|slip| [stick, slip]);
+        for [normal, friction] in [[open, open], [stick, stick], slides[0], slides[1]] {
+            let mut status = [normal, friction, normal, friction];
+            let mut p = [0.0; 4];
+            let outcome = Solver::new()
+                .solve(&problem, &mut p, &mut status)
+                .expect("the data is finite");
+            assert!(outcome.residual <= 1e-10, "case {case}: {outcome:?}");
+            let size = p.iter().fold(1.0_f64, |size, p| size.max(p.abs()));
+            let apart = (p[0] - p[2]).abs().max((p[1] - p[3]).abs());
+            assert!(apart <= 1e-8 * size, "case {case}: {p:?}, {outcome:?}");
+        }
+    }
+}

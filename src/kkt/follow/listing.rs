@@ -121,48 +121,77 @@ fn follow_contact(
     } else {
         contact.kinematics
     };
-    let next = if base.is_meeting {
-        None
-    } else {
-        next_of(island, contact, base)
-    };
-    let Some(next) = next else {
-        lose_contact(island, contact, applied);
-        // Corners of rigid bodies lose forces for good.
-        let may_meet =
-            !contact.is_hard && !listing.is_again && !base.is_meeting && !contact.is_lost;
-        if may_meet && !island.path.is_at_meeting(&base.near) {
-            note_slide(island, contact, base, None, listing);
+    let mut successors = std::mem::take(&mut island.passes.successors);
+    successors.clear();
+    if !base.is_meeting {
+        list_successors(island, contact, base, &mut successors);
+    }
+    match successors
+        .iter()
+        .reduce(|a, b| if b.1 > a.1 { b } else { a })
+    {
+        Some(&(next, _)) => {
+            let met = island.contacts[next];
+            hand_over(island, (contact, applied), (next, base), &successors);
+            if !listing.is_again {
+                note_slide(island, contact, base, Some(&met), listing);
+            }
         }
-        return;
-    };
+        None => {
+            lose_contact(island, contact, applied);
+            // Corners of rigid bodies lose forces for good.
+            let may_meet =
+                !contact.is_hard && !listing.is_again && !base.is_meeting && !contact.is_lost;
+            if may_meet && !island.path.is_at_meeting(&base.near) {
+                note_slide(island, contact, base, None, listing);
+            }
+        }
+    }
+    island.passes.successors = successors;
+}
+
+/// Hands the force of a contact, which acts along `applied`, over to the `next` one; all `successors` slide on from where it has stuck.
+fn hand_over(
+    island: &mut Island,
+    (contact, applied): (&ActiveContact, Kinematics),
+    (next, base): (usize, &AtBase),
+    successors: &[(usize, f64)],
+) {
     let met = island.contacts[next];
     if island.passes.handed_over.contains(&next) {
-        // It has one force already, and takes one only.
+        // It has one force already, and takes one only; it slides on from between both.
+        let forces = [met, *contact].map(|one| one.multiplier[0].max(0.0));
+        let share = forces[1] / (forces[0] + forces[1]).max(f64::MIN_POSITIVE);
+        let other = slip_before(island, contact, &met);
+        island.contacts[next].slip_before += share * (other - met.slip_before);
         lose_contact(island, contact, applied);
+        return;
+    }
+    for &(slot, _) in successors {
+        if island.passes.handed_over.contains(&slot) {
+            continue;
+        }
+        let slip_before = slip_before(island, contact, &island.contacts[slot]);
+        island.contacts[slot].slip_before = slip_before;
+    }
+    let is_swapped = met
+        .base
+        .is_some_and(|now| now.near.point != base.near.point);
+    let applied = if is_swapped {
+        applied.swapped()
     } else {
-        let is_swapped = met
-            .base
-            .is_some_and(|now| now.near.point != base.near.point);
-        let applied = if is_swapped {
-            applied.swapped()
-        } else {
-            applied
-        };
-        island.passes.handed_over.push(next);
-        island.contacts[next] = ActiveContact {
-            candidate: met.candidate,
-            kinematics: met.kinematics,
-            base: met.base,
-            applied,
-            slip_before: slip_before(island, contact, &met),
-            is_lost: false,
-            ..*contact
-        };
-    }
-    if !listing.is_again {
-        note_slide(island, contact, base, Some(&met), listing);
-    }
+        applied
+    };
+    island.passes.handed_over.push(next);
+    island.contacts[next] = ActiveContact {
+        candidate: met.candidate,
+        kinematics: met.kinematics,
+        base: met.base,
+        applied,
+        slip_before: island.contacts[next].slip_before,
+        is_lost: false,
+        ..*contact
+    };
 }
 
 /// Keeps a contact that is near no more for one solve, which takes its force out.
@@ -201,9 +230,17 @@ fn slip_before(island: &Island, contact: &ActiveContact, next: &ActiveContact) -
     contact.slip_before + slid(&contact.kinematics) - slid(&next.kinematics)
 }
 
-/// The contact, new in this list or without a force, of the vertices where another one has slid off.
-fn next_of(island: &Island, contact: &ActiveContact, base: &AtBase) -> Option<usize> {
-    let vertices = island.path.slid_over(&base.near)?;
+/// Lists the contacts, new in this list or without a force, of the vertices where another one has slid off, on its side, and how far their normals
+/// point its way.
+fn list_successors(
+    island: &Island,
+    contact: &ActiveContact,
+    base: &AtBase,
+    successors: &mut Vec<(usize, f64)>,
+) {
+    let Some(vertices) = island.path.slid_over(&base.near) else {
+        return;
+    };
     let normal = contact.kinematics.normal;
     let side = |near: &NearPair| {
         if near.point == base.near.point {
@@ -223,8 +260,7 @@ fn next_of(island: &Island, contact: &ActiveContact, base: &AtBase) -> Option<us
         !next.is_lost && (next.multiplier == [0.0; 2] || island.passes.fresh.contains(&slot))
     };
     let found = (0..island.contacts.len()).filter(is_free).filter_map(along);
-    let nearest = found.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
-    (nearest.1 > 0.0).then_some(nearest.0)
+    successors.extend(found.filter(|&(_, along)| along > 0.0));
 }
 
 /// Adds a row of the base to the contacts, with what it was before.

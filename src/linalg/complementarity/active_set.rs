@@ -1,7 +1,7 @@
 //! The primary solver: a primal-dual active set, which is a semismooth Newton method on the natural map.
 //!
 //! Each pivot solves `w_i = 0` on the rows that stick, with `p_t = ±mu p_n` put in for the rows that slip,
-//! and reads the next statuses from `p_i - w_i / W_ii`. It ends after finitely many pivots with the exact
+//! and reads the next statuses from `p_i - c w_i / W_ii`. It ends after finitely many pivots with the exact
 //! answer, or repeats itself. (Alart and Curnier 1991; Hintermüller, Ito and Kunisch 2002; Hüeber and
 //! Wohlmuth 2005.) Sticking and frictionless rows give a symmetric matrix (Cholesky), slipping ones do not
 //! (LU); a redundant set of rows gets the multipliers of minimum norm, or those nearest to the present ones.
@@ -106,12 +106,14 @@ impl ActiveSet {
     ///
     /// - `start`: the multipliers that the iterative solves and [`Redundancy::LeastChange`] start from.
     /// - `status`: the statuses to start from, then those of the last iterate.
+    /// - `weight`: `c`, 1 where velocities count by the rows' own mobilities. Where two mirrored contacts hardly move by friction that is mirrored, as
+    ///   a ball between two sides of a taut strip, statuses that this makes repeat themselves end by a larger one.
     /// - `redundancy`: what redundant rows get, and the residual up to which they are averaged if they
     ///   contradict each other.
     pub fn run(
         &mut self,
         problem: Checked,
-        (start, status): (&[f64], &mut [Status]),
+        (start, status, weight): (&[f64], &mut [Status], f64),
         (redundancy, redundancy_tolerance): (Redundancy, f64),
         best: &mut Answer,
         outcome: &mut Outcome,
@@ -142,7 +144,7 @@ impl ActiveSet {
             if !now.residual.is_finite() {
                 return false;
             }
-            if !self.update(problem, now, status) {
+            if !self.update(problem, (now, weight), status) {
                 let unavoidable = matches!(problem.rows[now.worst_row], RowKind::Bilateral);
                 let is_small = unavoidable || now.residual <= redundancy_tolerance;
                 return now.residual <= GOOD || redundant && is_small && now.is_moderate();
@@ -291,12 +293,17 @@ impl ActiveSet {
     }
 
     /// Reads the next statuses from the natural map; true if one of them changed.
-    fn update(&self, problem: Checked, now: Measure, status: &mut [Status]) -> bool {
+    fn update(
+        &self,
+        problem: Checked,
+        (now, weight): (Measure, f64),
+        status: &mut [Status],
+    ) -> bool {
         identify(
             problem,
             &self.multipliers,
             |row| self.velocities[row],
-            EXACT * now.scale,
+            (EXACT * now.scale, weight),
             status,
         )
     }

@@ -81,7 +81,7 @@ impl Solver {
             approach(giving, problem.free, multipliers, free);
             let giving = problem.with(&softened.delassus, &softened.free);
             self.start(giving, &softened.multipliers, &softened.status);
-            let is_found = self.follow_active_set(giving, Redundancy::MinimumNorm, outcome)
+            let is_found = self.follow_active_set(giving, (Redundancy::MinimumNorm, 1.0), outcome)
                 || self.rescue(giving, &NEAR, outcome);
             let next @ [step, motion] = softened.go_on(problem, &self.best);
             let multipliers = &softened.multipliers;

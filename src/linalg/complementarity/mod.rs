@@ -58,12 +58,13 @@ use contradiction::Softened;
 use lemke::Lemke;
 use problem::Checked;
 use residual::{Measure, measure};
-use status::identify;
+use status::{identify, slide};
 
 /// What is tried in turn when the active set repeats itself: its warm start once more with the least
-/// change of multipliers, sweeps (how many at most), Lemke's method (which path).
-const NEAR: [(Method, usize); 3] = [
-    (Method::ActiveSet, 0),
+/// change of multipliers, then with another weight of the velocities, sweeps (how many at most), Lemke's method (which path).
+const NEAR: [(Method, usize); 4] = [
+    (Method::ActiveSet, 1),
+    (Method::ActiveSet, 1000),
     (Method::GaussSeidel, 50),
     (Method::Lemke, 0),
 ];
@@ -155,6 +156,8 @@ pub struct Solver {
     best: Answer,
     trial: Vec<f64>,
     status: Vec<Status>,
+    /// The statuses of the start.
+    given: Vec<Status>,
     condensed: Condensed,
     softened: Softened,
 }
@@ -170,6 +173,7 @@ impl Default for Solver {
             best: Answer::default(),
             trial: Vec::new(),
             status: Vec::new(),
+            given: Vec::new(),
             condensed: Condensed::default(),
             softened: Softened::default(),
         }
@@ -246,8 +250,7 @@ impl Solver {
             outcome.method = Method::GaussSeidel;
             return Ok(outcome);
         }
-        if !self.follow_active_set(problem, Redundancy::MinimumNorm, &mut outcome) {
-            self.status.copy_from_slice(status);
+        if !self.follow_active_set(problem, (Redundancy::MinimumNorm, 1.0), &mut outcome) {
             if !self.rescue(problem, &NEAR, &mut outcome) {
                 self.give_way(problem, &mut outcome);
             }
@@ -268,6 +271,8 @@ impl Solver {
         self.best.status.resize(n, Status::Open);
         self.status.clear();
         self.status.extend_from_slice(status);
+        self.given.clear();
+        self.given.extend_from_slice(status);
         for (row, (start, &given)) in self.trial.iter_mut().zip(multipliers).enumerate() {
             let usable = given.is_finite() && problem.is_movable(row);
             let normal = problem.normal_multiplier(row, multipliers);
@@ -299,7 +304,7 @@ impl Solver {
     fn follow_active_set(
         &mut self,
         problem: Checked,
-        redundancy: Redundancy,
+        (redundancy, weight): (Redundancy, f64),
         outcome: &mut Outcome,
     ) -> bool {
         let Self {
@@ -310,7 +315,8 @@ impl Solver {
             ..
         } = self;
         let redundancy = (redundancy, self.redundancy_tolerance);
-        active_set.run(problem, (trial, status), redundancy, best, outcome)
+        let start = (&trial[..], &mut status[..], weight);
+        active_set.run(problem, start, redundancy, best, outcome)
     }
 
     /// Tries one way after the other until an answer is exact; returns whether one is.
@@ -322,8 +328,12 @@ impl Solver {
     ) -> bool {
         ways.iter().any(|&(method, effort)| {
             self.best.candidate = method;
+            let weight = match method {
+                Method::ActiveSet => effort as f64,
+                Method::GaussSeidel | Method::Lemke => 1.0,
+            };
             self.look_elsewhere(problem, method, effort, outcome)
-                && self.follow_active_set(problem, Redundancy::LeastChange, outcome)
+                && self.follow_active_set(problem, (Redundancy::LeastChange, weight), outcome)
         })
     }
 
@@ -337,7 +347,13 @@ impl Solver {
     ) -> bool {
         match method {
             // the warm start itself, unless it was empty and has just been tried
-            Method::ActiveSet => return self.trial.iter().any(|&multiplier| multiplier != 0.0),
+            Method::ActiveSet => {
+                self.status.copy_from_slice(&self.given);
+                if effort > 1 {
+                    return slide(problem, &mut self.status);
+                }
+                return self.trial.iter().any(|&multiplier| multiplier != 0.0);
+            }
             Method::GaussSeidel => {
                 self.trial.copy_from_slice(&self.best.multipliers);
                 outcome.n_sweeps +=
@@ -365,7 +381,7 @@ impl Solver {
             problem,
             trial,
             |row| problem.velocity(row, trial),
-            slack,
+            (slack, 1.0),
             &mut self.status,
         );
         self.best.offer(trial, &self.status, now);

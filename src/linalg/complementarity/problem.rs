@@ -212,8 +212,11 @@ impl<'a> Checked<'a> {
     }
 
     pub fn has_friction(&self) -> bool {
-        let is_friction = |kind: &RowKind| matches!(kind, RowKind::Friction { .. });
-        self.rows.iter().any(is_friction)
+        (0..self.n_rows()).any(|row| self.is_friction(row))
+    }
+
+    pub fn is_friction(&self, row: usize) -> bool {
+        matches!(self.rows[row], RowKind::Friction { .. })
     }
 
     pub fn n_rows(&self) -> usize {

@@ -1,9 +1,9 @@
-//! Reading, repairing and comparing statuses: which piece of its law, `p_i = proj_i(p_i - w_i / W_ii)`,
+//! Reading, repairing and comparing statuses: which piece of its law, `p_i = proj_i(p_i - c w_i / W_ii)`, `c > 0`,
 //! a row is on, with the whole of its multiplier.
 
 use super::problem::{Checked, RowKind, Status};
 
-/// Reads the statuses from `p_i - w_i / W_ii`, `p_i` with what has acted; true if one of them changed.
+/// Reads the statuses from `p_i - c w_i / W_ii`, with the `weight` `c` and `p_i` with what has acted; true if one of them changed.
 ///
 /// A status is kept while it is wrong by less than `slack` (in square roots of energy, as in
 /// [`Measure::scale`](super::residual::Measure::scale)): round-off must not open and close contacts that carry nothing.
@@ -11,11 +11,13 @@ pub(super) fn identify(
     problem: Checked,
     multipliers: &[f64],
     velocity: impl Fn(usize) -> f64,
-    slack: f64,
+    (slack, weight): (f64, f64),
     status: &mut [Status],
 ) -> bool {
-    let moved =
-        |row: usize| multipliers[row] + problem.acted(row) - velocity(row) / problem.diagonal(row);
+    let moved = |row: usize| {
+        let step = weight * velocity(row) / problem.diagonal(row);
+        multipliers[row] + problem.acted(row) - step
+    };
     let mut changed = false;
     // friction last: whether it can act depends on the new status of its normal
     for friction_pass in [false, true] {
@@ -53,6 +55,26 @@ pub(super) fn identify(
         }
     }
     changed
+}
+
+/// Lets every contact that presses, has pressed, or would meet, slide as it does without multipliers; whether there is friction.
+pub(super) fn slide(problem: Checked, status: &mut [Status]) -> bool {
+    for row in 0..problem.n_rows() {
+        let presses = problem.free[row] < 0.0 || problem.acted(row) > 0.0;
+        if problem.rows[row] == RowKind::Unilateral && presses {
+            status[row] = Status::Stick;
+        }
+    }
+    for row in 0..problem.n_rows() {
+        if problem.is_friction(row) {
+            status[row] = match problem.free[row] > 0.0 {
+                true => Status::SlipNegative,
+                false => Status::SlipPositive,
+            };
+        }
+    }
+    make_admissible(problem, status);
+    problem.has_friction()
 }
 
 /// Where `value` lies with respect to its bounds, in favour of the present status.
