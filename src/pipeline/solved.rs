@@ -5,7 +5,7 @@ use super::names::Names;
 use crate::constraint::contact::{ContactMemory, Remembered};
 use crate::constraint::joint::JointMemory;
 use crate::coupling::{PressedPoint, Seats, Span};
-use crate::kkt::{ActiveContact, Island, IslandSummary};
+use crate::kkt::{ActiveContact, ActiveJoint, Island, IslandSummary};
 use crate::linalg::complementarity::Status;
 use crate::math::Vec2;
 use crate::system::Step;
@@ -35,8 +35,14 @@ impl SolvedPart<'_> {
             };
             contacts.remember(self.island.candidates[contact.candidate].key, state);
         }
-        for tie in &self.island.joints.ties {
-            joints.remember(tie.row.key, tie.left_behind());
+        let of_joint =
+            |one: &ActiveJoint, other: &ActiveJoint| one.row.key.owner == other.row.key.owner;
+        for ties in self.island.joints.ties.chunk_by(of_joint) {
+            // Where bodies turn, what one row has not closed yet is another one's.
+            let closes = ties.iter().any(ActiveJoint::closes_on);
+            for tie in ties {
+                joints.remember(tie.row.key, tie.left_behind(closes));
+            }
         }
     }
 

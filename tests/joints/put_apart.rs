@@ -123,3 +123,71 @@ fn a_falling_chain_of_bars_of_small_strain_gains_no_energy() {
         }
     }
 }
+
+/// An arc of ten links between two posts, at rest, whose hinges are open by less than a millimetre each, as rapier leaves them: together they are open by a tenth
+/// of a metre across where the chain is nearly straight. A soft block is near, and touches nothing.
+#[test]
+fn what_rapier_leaves_open_closes_without_a_bang() {
+    const N: usize = 10;
+    let mut findings = Findings::default();
+    for (ratio, open) in [(0.99, 2e-4), (0.99, 5e-4), (0.99, 9e-4), (0.999, 5e-4)] {
+        for rate in [60.0, 240.0] {
+            let mut scene = Scene::in_free_space(1.0 / rate);
+            let (length, middle) = (0.9, 0.5 * (N - 1) as f64);
+            let gap = ratio * length * N as f64;
+            let slope = |turn: f64, k: usize| (k as f64 - middle) * turn;
+            let span =
+                |turn: f64| -> f64 { (0..N).map(|k| (length + open) * slope(turn, k).cos()).sum() };
+            let (mut low, mut high) = (0.0, 0.2);
+            for _ in 0..60 {
+                let turn = 0.5 * (low + high);
+                if span(turn) > gap {
+                    low = turn;
+                } else {
+                    high = turn;
+                }
+            }
+            let post = |x: f64| RigidBodyBuilder::fixed().translation(vec2(x, 0.0));
+            let [first, last] = [-0.5 * gap, 0.5 * gap].map(|x| scene.world.insert_body(post(x)));
+            let hinge = |from: f64, to: f64| {
+                RevoluteJointBuilder::new()
+                    .contacts_enabled(false)
+                    .local_anchor1(vec2(from, 0.0))
+                    .local_anchor2(vec2(to, 0.0))
+            };
+            let (mut place, mut before, mut lowest) = ([-0.5 * gap, 0.0], first, 0.0_f64);
+            for k in 0..N {
+                let (sin, cos) = slope(low, k).sin_cos();
+                let half = 0.5 * (length + open);
+                let at = [place[0] + half * cos, place[1] + half * sin];
+                lowest = lowest.min(at[1]);
+                place = [at[0] + half * cos, at[1] + half * sin];
+                let link = RigidBodyBuilder::dynamic()
+                    .translation(vec2(at[0], at[1]))
+                    .rotation(real(slope(low, k)));
+                let shape = ColliderBuilder::cuboid(real(0.43), real(0.05)).density(300.0);
+                let link = scene.rigid(link, shape).0;
+                let from = if k > 0 { 0.5 * length } else { 0.0 };
+                let hinge = hinge(from, -0.5 * length);
+                scene.world.insert_impulse_joint(before, link, hinge);
+                before = link;
+            }
+            scene
+                .world
+                .insert_impulse_joint(before, last, hinge(0.5 * length, 0.0));
+            let block = FlexBodyBuilder::rectangle([0.6, 0.3], [6, 3])
+                .material(elastic(3e5, 1000.0, 1e-2))
+                .translation([-0.3, lowest + 0.052]);
+            scene.flexible(block.friction(0.0));
+            let mut most = 0.0_f64;
+            for _ in 0..20 {
+                scene.try_step().expect("the input is right");
+                most = most.max(scene.report().energy().kinetic);
+            }
+            findings.check(most < 5.0, || {
+                format!("{ratio}, {open} m, {rate} Hz: {most} J")
+            });
+        }
+    }
+    findings.report();
+}

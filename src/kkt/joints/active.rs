@@ -63,13 +63,22 @@ pub struct ActiveJoint {
 }
 
 impl ActiveJoint {
-    /// What the row leaves for the next step.
-    pub fn left_behind(&self) -> RememberedJoint {
+    /// Whether its ends were put apart, and are not where they are to be yet.
+    pub fn closes_on(&self) -> bool {
+        self.closing != 0.0 && self.goal != self.target
+    }
+
+    /// What the row leaves for the next step; `closes`: whether a row of its joint [closes on](Self::closes_on).
+    pub fn left_behind(&self, closes: bool) -> RememberedJoint {
         RememberedJoint {
             multiplier: self.multiplier - self.closer,
             lasting: self.lasting(),
             driven: self.driven,
-            closes: self.closing != 0.0 && self.goal != self.target,
+            closes: if self.is_hard {
+                closes
+            } else {
+                self.closes_on()
+            },
         }
     }
 

@@ -5,7 +5,7 @@ use crate::constraint::joint::{JointLaw, JointRow, Spring};
 use crate::kkt::settings::SolveSettings;
 use crate::kkt::tolerances::PARTING_RATE;
 use crate::linalg::complementarity::RowKind;
-use crate::math::exp;
+use crate::math::{exp, judged::NEGLIGIBLE};
 
 /// What the velocity stage does about a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +56,7 @@ pub(super) fn resolve(
     } else {
         1.0
     };
-    // Ends that are farther apart than what rests on each other have been put there: they close over several steps.
+    // Ends that are farther apart than what rests on each other have been put there.
     let slack = match row.measure.is_turn() {
         true => put_apart(1.0),
         false => put_apart(settings.length_unit),
@@ -65,8 +65,8 @@ pub(super) fn resolve(
         JointLaw::Rigid { goal, rate } => {
             let (goal, rate) = (row.sign * goal, row.sign * rate);
             let off = start + settings.dt * rate - goal;
-            let is_far = (off - yielded).abs() > slack;
-            let [left, closing] = closed(row, off, is_far, settings.dt);
+            let off_itself = (off - yielded).abs();
+            let [left, closing] = closed((row, is_hard), off, [off_itself, slack], settings.dt);
             Resolved {
                 goal: goal + left,
                 target: goal,
@@ -79,8 +79,13 @@ pub(super) fn resolve(
         JointLaw::Limit { bound } => {
             let bound = row.sign * bound;
             let off = start - bound;
-            let is_far = off - yielded < -slack;
-            let [left, closing] = closed(row, off.min(0.0), is_far, settings.dt);
+            let off_itself = yielded - off;
+            let [left, closing] = closed(
+                (row, is_hard),
+                off.min(0.0),
+                [off_itself, slack],
+                settings.dt,
+            );
             Resolved {
                 goal: bound + left,
                 target: bound,
@@ -112,14 +117,29 @@ pub(super) fn resolve(
 }
 
 /// How far a row that is off is left open at the end of the step, and how far it moves towards its place because it was put elsewhere, as it goes on to do
-/// until it is there.
-fn closed(row: &JointRow, off: f64, is_far: bool, dt: f64) -> [f64; 2] {
-    if is_far {
-        let left = exp(-PARTING_RATE * dt) * off;
-        return [left, left - off];
+/// until it is there: by a share of what it is off by, at last of the slack. What rigid bodies are off by in the first step of a row is not what its
+/// own steps have left: someone has put them there, or rapier has.
+fn closed(
+    (row, is_hard): (&JointRow, bool),
+    off: f64,
+    [off_itself, slack]: [f64; 2],
+    dt: f64,
+) -> [f64; 2] {
+    let left = exp(-PARTING_RATE * dt);
+    if off_itself > slack {
+        return [left * off, (left - 1.0) * off];
     }
-    let was_put = row.remembered.is_some_and(|last| last.closes);
-    [0.0, if was_put { -off } else { 0.0 }]
+    let is_there = is_hard && off_itself <= NEGLIGIBLE.get() * slack;
+    let was_put = row.remembered.map_or(is_hard, |last| last.closes);
+    if is_there || !was_put {
+        return [0.0; 2];
+    }
+    let nearer = match is_hard {
+        true => off.abs().min((1.0 - left) * slack),
+        false => off.abs(),
+    };
+    let left = off - nearer.copysign(off);
+    [left, left - off]
 }
 
 /// A spring that the step resolves acts with its mean force, `q` in the middle of the step, where multipliers act wholly within the step
