@@ -336,3 +336,40 @@ fn a_pin_that_draws_a_bar_gives_what_moves_it() {
         );
     }
 }
+
+/// Rapier goes by substeps, each rounded where numbers are coarse: what rides goes as far.
+#[test]
+fn what_rides_far_from_the_origin_goes_with_its_platform() {
+    for x in [0.0, 1000.0, 5000.0] {
+        for is_small in [false, true] {
+            let mut scene = Scene::new(DT);
+            let platform = RigidBodyBuilder::kinematic_velocity_based()
+                .linvel(vec2(3.0, 0.0))
+                .angvel(0.0);
+            let platform = scene.rigid(
+                platform.translation(vec2(x, 0.0)),
+                ColliderBuilder::cuboid(5.0, 0.5)
+                    .translation(vec2(0.0, -0.5))
+                    .friction(1.0),
+            );
+            let rider = FlexBodyBuilder::rectangle([0.8, 0.4], [8, 4])
+                .material(LinearElastic::plane_stress(5e5, 0.3).density(1000.0))
+                .translation([x - 0.4, 1e-3])
+                .linvel([3.0, 0.0])
+                .friction(1.0);
+            let rider = scene.flexible(match is_small {
+                true => rider.small_strain(),
+                false => rider,
+            });
+            let ahead = |scene: &Scene| {
+                let platform = scene.world.bodies[platform.0].translation().x;
+                scene.body(rider).centre_of_mass()[0] - f64::from(platform)
+            };
+            scene.steps(60);
+            let before = ahead(&scene);
+            scene.steps(600);
+            let slipped = ahead(&scene) - before;
+            assert!(slipped.abs() < 3e-3, "{slipped} m at {x} m, {is_small}");
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! What a user changes on a body between steps. All of it wakes the body.
+//! What a user changes on a body between steps. All of it wakes the body, but for a load or a pin that is set to what it is.
 
 use super::build::check_range;
 use super::error::{BuildError, FlexBodyError, check_finite, check_held};
@@ -24,8 +24,9 @@ impl FlexBody {
     pub fn set_nodal_force(&mut self, node: usize, force: [f64; 2]) -> Result<(), FlexBodyError> {
         self.check_node(node)?;
         check_finite("the force", &force)?;
-        self.nodal_force[2 * node..2 * node + 2].copy_from_slice(&force);
-        self.is_disturbed = true;
+        let own = &mut self.nodal_force[2 * node..2 * node + 2];
+        self.is_disturbed |= *own != force;
+        own.copy_from_slice(&force);
         Ok(())
     }
 
@@ -35,8 +36,8 @@ impl FlexBody {
     /// If it is not finite, or rapier's precision cannot hold it.
     pub fn set_body_force(&mut self, acceleration: [f64; 2]) -> Result<(), FlexBodyError> {
         check_held("the body force", &acceleration)?;
+        self.is_disturbed |= self.body_force != Vec2::from(acceleration);
         self.body_force = acceleration.into();
-        self.is_disturbed = true;
         Ok(())
     }
 
@@ -46,8 +47,8 @@ impl FlexBody {
     /// If it is not finite, or rapier's precision cannot hold it.
     pub fn set_gravity_scale(&mut self, scale: f64) -> Result<(), FlexBodyError> {
         check_held("the gravity scale", &[scale])?;
+        self.is_disturbed |= self.gravity_scale != scale;
         self.gravity_scale = scale;
-        self.is_disturbed = true;
         Ok(())
     }
 
@@ -65,8 +66,9 @@ impl FlexBody {
             return Err(FlexBodyError::NotPinned(node));
         }
         check_held("the displacement", &displacement)?;
-        self.prescribed[2 * node..2 * node + 2].copy_from_slice(&displacement);
-        self.is_disturbed = true;
+        let own = &mut self.prescribed[2 * node..2 * node + 2];
+        self.is_disturbed |= *own != displacement;
+        own.copy_from_slice(&displacement);
         Ok(())
     }
 

@@ -2,7 +2,8 @@
 //!
 //! Rapier asks the hooks about its own manifolds, in two steps of which the second shows locked bodies at velocities that
 //! are none. For pairs of the flexible stage they are asked here, before anything is locked: every candidate is shown as
-//! a manifold of one point, whose `user_data` lasts as long as the candidate does. Rapier is given the answers.
+//! a manifold of its own point, and of the one that is farthest behind its face where flexible bodies reach farther. Its `user_data`
+//! lasts as long as the candidate does, and begins with that of the nearest one, or of any in the last step. Rapier is given the answers.
 
 use super::claim::Claims;
 use super::pair_name::{PairName, pair_name};
@@ -16,6 +17,7 @@ use crate::math::{HashMap, from_rapier, to_rapier};
 use crate::rapier::math::Real;
 use crate::rapier::parry::shape::PackedFeatureId;
 use crate::rapier::prelude::*;
+use crate::system::Block;
 
 /// What the hooks said of the contacts of the flexible stage.
 #[derive(Debug, Default)]
@@ -24,7 +26,18 @@ pub(crate) struct HookBook {
     next: HashMap<ContactKey, u32>,
     /// Pairs the hooks were asked about: whether they left any contact.
     pub(super) left: HashMap<PairName, bool>,
+    seen: Vec<Seen>,
     unseen: Vec<Candidate>,
+}
+
+/// A candidate with what is shown of it.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    candidate: Candidate,
+    kinematics: Kinematics,
+    /// The gap when the step begins (m), and by how much the bodies reach farther behind its face than it does.
+    gap: f64,
+    reaches: f64,
 }
 
 /// A pair of colliders whose contacts the user may modify.
@@ -75,34 +88,31 @@ impl HookBook {
         if !hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS) {
             return Ok(());
         }
-        let mut kept = first;
-        self.unseen.clear();
-        let mut removes = false;
+        self.look_at(first, island);
+        let seen = std::mem::take(&mut self.seen);
+        let of_pair = self.of_pair(pair);
+        let (mut removes, mut fault) = (false, None);
         let mut nearest: Option<(f64, ContactLaw)> = None;
-        for index in first..island.candidates.len() {
-            let mut candidate = island.candidates[index];
-            let scene = Scene {
-                blocks: &island.blocks,
-                parts: &island.parts,
-                segments: &island.segments,
-            };
-            let Some(kinematics) = candidate.evaluate(&scene, &Remembered::default()) else {
-                self.unseen.push(candidate);
-                continue;
-            };
-            let moved = kinematics.relative(scene.blocks, |block, grip| block.displacement(grip));
-            let gap = kinematics.gap - kinematics.normal.dot(&moved);
-            if self.ask(pair, &mut candidate, &kinematics, gap, (sets, dt))? {
-                island.candidates[kept] = candidate;
-                kept += 1;
-                if nearest.is_none_or(|(least, _)| gap < least) {
-                    nearest = Some((gap, candidate.law));
+        for one in &seen {
+            let known = self.known(one, &seen).unwrap_or(of_pair);
+            match self.ask(pair, one, known, (sets, dt)) {
+                Ok(Some(law)) => {
+                    island.candidates.push(Candidate {
+                        law,
+                        ..one.candidate
+                    });
+                    if nearest.is_none_or(|(least, _)| one.gap < least) {
+                        nearest = Some((one.gap, law));
+                    }
                 }
-            } else {
-                removes = true;
+                Ok(None) => removes = true,
+                Err(error) => fault = Some(error),
             }
         }
-        island.candidates.truncate(kept);
+        self.seen = seen;
+        if let Some(error) = fault {
+            return Err(error);
+        }
         if !removes {
             self.keep_unseen(nearest.map(|(_, law)| law), island);
         }
@@ -110,6 +120,60 @@ impl HookBook {
         let is_left = island.candidates.len() > first;
         self.left.insert(pair_name(one, other), is_left);
         Ok(())
+    }
+
+    /// Takes the candidates of a pair, those from the `first` on, out of the island, with what can be shown of them.
+    fn look_at(&mut self, first: usize, island: &mut Island) {
+        self.seen.clear();
+        self.unseen.clear();
+        let scene = Scene {
+            blocks: &island.blocks,
+            parts: &island.parts,
+            segments: &island.segments,
+        };
+        for candidate in &island.candidates[first..] {
+            let Some(kinematics) = candidate.evaluate(&scene, &Remembered::default()) else {
+                self.unseen.push(*candidate);
+                continue;
+            };
+            let moved = kinematics.relative(scene.blocks, |block, grip| block.displacement(grip));
+            self.seen.push(Seen {
+                candidate: *candidate,
+                kinematics,
+                gap: kinematics.gap - kinematics.normal.dot(&moved),
+                reaches: reaches(&island.blocks, &kinematics),
+            });
+        }
+        island.candidates.truncate(first);
+    }
+
+    /// The user data that the first candidate of a pair had in the last step, or zero.
+    fn of_pair(&self, pair: HookedPair) -> u32 {
+        let [one, other] = pair.owners;
+        let of_pair = |key: &ContactKey| {
+            let owners = [key.contactor, key.target];
+            owners == [one, other] || owners == [other, one]
+        };
+        let known = self.last.iter().filter(|(key, _)| of_pair(key));
+        let first = known.min_by_key(|(key, _)| **key);
+        first.map_or(0, |(_, known)| *known)
+    }
+
+    /// The user data that a candidate begins the step with: its own, or that of the nearest one that has some.
+    fn known(&self, one: &Seen, seen: &[Seen]) -> Option<u32> {
+        if let Some(own) = self.last.get(&one.candidate.key) {
+            return Some(*own);
+        }
+        let away = |other: &Seen| {
+            let way = other.kinematics.position - one.kinematics.position;
+            way.norm_squared()
+        };
+        let others = seen.iter().filter_map(|other| {
+            let known = self.last.get(&other.candidate.key)?;
+            Some((away(other), *known))
+        });
+        let nearest = others.reduce(|a, b| if b.0 < a.0 { b } else { a });
+        nearest.map(|(_, known)| known)
     }
 
     /// Keeps what faces away now and may turn up within the step: under the law of the nearest contact that was shown.
@@ -127,23 +191,28 @@ impl HookBook {
         island.candidates.extend(unseen);
     }
 
-    /// Shows one candidate to the hook; returns whether it is kept.
+    /// Shows one candidate to the hook, with the user data that is `known` of it; returns its law if it is kept.
     fn ask(
         &mut self,
         pair: HookedPair,
-        candidate: &mut Candidate,
-        kinematics: &Kinematics,
-        gap: f64,
+        seen: &Seen,
+        known: u32,
         (sets, dt): (&RapierSets<'_>, f64),
-    ) -> Result<bool, GatherError> {
+    ) -> Result<Option<ContactLaw>, GatherError> {
+        let &Seen {
+            candidate,
+            kinematics,
+            gap,
+            reaches,
+        } = seen;
         let owns_first = candidate.key.contactor == pair.owners[0];
         let [contactor, target] = if owns_first {
             pair.colliders
         } else {
             [pair.colliders[1], pair.colliders[0]]
         };
-        let known = sets.narrow_phase.contact_pair(contactor, target);
-        let [first, second] = known.map_or(pair_name(contactor, target), |pair| {
+        let met = sets.narrow_phase.contact_pair(contactor, target);
+        let [first, second] = met.map_or(pair_name(contactor, target), |pair| {
             [pair.collider1, pair.collider2]
         });
         // Rapier's normal points from the first collider to the second, ours from the target to the contactor.
@@ -154,12 +223,12 @@ impl HookBook {
             restitution: candidate.law.restitution as Real,
             gap: gap as Real,
             belt: Vector::ZERO,
-            user_data: self.last.get(&candidate.key).copied().unwrap_or(0),
+            user_data: known,
             is_kept: true,
         };
         if !given.is_finite() {
             // Centres that lie upon each other have no normal yet: nothing to show, and no mistake of the user's.
-            return Ok(true);
+            return Ok(Some(candidate.law));
         }
         let at = [
             to_rapier(kinematics.position),
@@ -170,15 +239,15 @@ impl HookBook {
         } else {
             [at[1], at[0]]
         };
-        let answer = given.asked([first, second], points, sets);
+        let answer = given.asked([first, second], (points, reaches as Real), sets);
         self.next.insert(candidate.key, answer.user_data);
         if !answer.is_kept {
-            return Ok(false);
+            return Ok(None);
         }
         if !answer.is_finite() {
             return Err(GatherError::Hook([first, second]));
         }
-        let law = &mut candidate.law;
+        let mut law = candidate.law;
         if answer.friction != given.friction {
             law.friction = f64::from(answer.friction).max(0.0);
         }
@@ -196,8 +265,33 @@ impl HookBook {
         } else {
             law.skin -= farther;
         }
-        Ok(true)
+        Ok(Some(law))
     }
+}
+
+/// By how much the flexible bodies of a contact reach farther behind its face than its own points, along its normal, when the step begins (m).
+fn reaches(blocks: &[Block], kinematics: &Kinematics) -> f64 {
+    let normal = kinematics.normal;
+    let (mut reaches, mut own) = (0.0, [None::<(usize, f64)>; 2]);
+    for attachment in kinematics.attachments() {
+        if let (Block::Flex(_), point) = (&blocks[attachment.block], attachment.grip.point) {
+            let place = blocks[attachment.block].start_position(point);
+            let side = &mut own[usize::from(attachment.weight < 0.0)];
+            let along = side.map_or(0.0, |(_, along)| along);
+            let share = attachment.weight * normal.dot(&place);
+            *side = Some((attachment.block, along + share));
+        }
+    }
+    for (side, sign) in own.into_iter().zip([1.0, -1.0]) {
+        if let Some((block, along)) = side
+            && let Block::Flex(block) = &blocks[block]
+        {
+            let nodes = block.start_positions().chunks_exact(2);
+            let nodes = nodes.map(|at| sign * (normal.x * at[0] + normal.y * at[1]));
+            reaches += along - nodes.fold(along, f64::min);
+        }
+    }
+    reaches
 }
 
 /// A contact as the hook sees it and leaves it.
@@ -218,7 +312,7 @@ impl Shown {
     fn asked(
         self,
         [collider1, collider2]: [ColliderHandle; 2],
-        [anchor1, anchor2]: [Vector; 2],
+        ([anchor1, anchor2], reaches): ([Vector; 2], Real),
         sets: &RapierSets<'_>,
     ) -> Self {
         let mut answer = self;
@@ -241,21 +335,28 @@ impl Shown {
         manifold.data.friction = self.friction;
         manifold.data.restitution = self.restitution;
         manifold.data.user_data = self.user_data;
-        manifold.points.push(Contact::new(
-            pose1.inverse_transform_point(anchor1),
-            pose2.inverse_transform_point(anchor2),
-            PackedFeatureId::UNKNOWN,
-            PackedFeatureId::UNKNOWN,
-            self.gap,
-        ));
         let mut solver_contacts = SolverContacts::new();
-        solver_contacts.push(SolverContact {
-            anchor1,
-            anchor2,
-            dist: self.gap,
-            tangent_velocity: self.belt,
-            contact_id: [0],
-        });
+        let behind = anchor1 + self.normal * reaches;
+        let shown = [(anchor1, self.gap), (behind, self.gap - reaches)];
+        for (id, (anchor1, dist)) in shown.into_iter().enumerate() {
+            if id > 0 && reaches == 0.0 {
+                continue;
+            }
+            manifold.points.push(Contact::new(
+                pose1.inverse_transform_point(anchor1),
+                pose2.inverse_transform_point(anchor2),
+                PackedFeatureId::UNKNOWN,
+                PackedFeatureId::UNKNOWN,
+                dist,
+            ));
+            solver_contacts.push(SolverContact {
+                anchor1,
+                anchor2,
+                dist,
+                tangent_velocity: self.belt,
+                contact_id: [id as u32],
+            });
+        }
         sets.hooks
             .modify_solver_contacts(&mut ContactModificationContext {
                 bodies: sets.bodies,
@@ -273,8 +374,11 @@ impl Shown {
                     user_data: &mut answer.user_data,
                 }),
             });
-        answer.is_kept = !solver_contacts.is_empty();
-        if let Some(contact) = solver_contacts.first() {
+        let own = solver_contacts
+            .iter()
+            .find(|contact| contact.contact_id == [0]);
+        answer.is_kept = own.is_some();
+        if let Some(contact) = own {
             (answer.gap, answer.belt) = (contact.dist, contact.tangent_velocity);
         }
         answer

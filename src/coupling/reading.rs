@@ -10,6 +10,7 @@ use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
 use crate::linalg::cholesky::CholeskyError;
 use crate::math::{Vec2, atan2, from_rapier, is_held, judged::Judged};
+use crate::rapier::math::{Pose, Real, Rotation};
 use crate::rapier::prelude::*;
 use crate::system::{RigidBlock, RigidLoad, RigidMotion};
 use thiserror::Error;
@@ -74,9 +75,13 @@ pub(super) fn at_rest(pose: &Pose2) -> RigidMotion {
 /// A fixed or kinematic body, or one rapier keeps for itself: it moves as rapier says.
 ///
 /// - `is_link`: whether it is a link of a multibody, of which rapier moves no root that is not dynamic.
-/// - `dt`: length of the part of the step (s).
-pub(super) fn prescribed_block(body: &RigidBody, is_link: bool, dt: f64, span: Span) -> RigidBlock {
-    let dt = dt / span.share();
+pub(super) fn prescribed_block(
+    body: &RigidBody,
+    is_link: bool,
+    parameters: &IntegrationParameters,
+    span: Span,
+) -> RigidBlock {
+    let dt = f64::from(parameters.dt);
     let start = read_motion(body);
     if body.is_fixed() || is_link && body.is_kinematic() {
         let rest = RigidMotion {
@@ -88,7 +93,7 @@ pub(super) fn prescribed_block(body: &RigidBody, is_link: bool, dt: f64, span: S
     }
     let next = match body.body_type() {
         RigidBodyType::KinematicPositionBased => *body.next_position(),
-        _ => body.predict_position_using_velocity(dt as crate::rapier::math::Real),
+        _ => driven_to(body, parameters),
     };
     let next = pose_of(&next);
     let centre = next.transform(local_centre(body));
@@ -103,6 +108,25 @@ pub(super) fn prescribed_block(body: &RigidBody, is_link: bool, dt: f64, span: S
     };
     let [start, end] = span.of(start, end);
     RigidBlock::prescribed(start, end)
+}
+
+/// Where its velocity takes a body in a step, as rapier goes: by its substeps, each rounded.
+fn driven_to(body: &RigidBody, parameters: &IntegrationParameters) -> Pose {
+    let n_substeps = parameters.num_solver_iterations.max(1);
+    let dt = parameters.dt / n_substeps as Real;
+    let (way, turn) = (body.linvel() * dt, body.angvel() * dt);
+    let centre = body.local_center_of_mass();
+    let mut pose = *body.position();
+    let mut place = pose.transform_point(centre);
+    for _ in 0..n_substeps {
+        place += way;
+        let (cos, sin) = (pose.rotation.re, pose.rotation.im);
+        let (cos, sin) = (cos - turn * sin, sin + turn * cos);
+        let size = (cos * cos + sin * sin).sqrt();
+        pose.rotation = Rotation::from_cos_sin_unchecked(cos / size, sin / size);
+    }
+    pose.translation = place - pose.rotation * centre;
+    pose
 }
 
 /// Share of its inertia by which a body of negative dominance is felt by those that dominate it.

@@ -29,6 +29,8 @@ pub(crate) struct ClaimedFlex {
     pub fall: f64,
     /// By how much the box is larger than where its velocity takes it (m).
     pub slack: Real,
+    /// Whether it has stayed where it is since the step before, at least.
+    pub rests: bool,
     /// What it pushes; its surface in rapier pushes nothing.
     pub solver_groups: InteractionGroups,
 }
@@ -51,6 +53,7 @@ impl ClaimedFlex {
             edge,
             fall,
             slack,
+            rests: body.time_still() > 0.0,
             solver_groups: body.contact_settings().solver_groups,
         }
     }

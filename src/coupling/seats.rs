@@ -125,10 +125,11 @@ impl OpenIsland<'_, '_> {
         if let Some(&block) = self.seats.rigid.get(&handle) {
             return Some(block);
         }
-        let GatherSettings { step, span, .. } = *self.settings;
+        let span = self.settings.span;
         let is_link = self.sets.multibody_joints.rigid_body_link(handle).is_some();
         let body = self.sets.bodies.get(handle)?;
-        let block = prescribed_block(body, is_link, step.dt, span);
+        let parameters = self.sets.integration_parameters;
+        let block = prescribed_block(body, is_link, parameters, span);
         let block = self.seats.add_rigid(block, Some(handle), self.island);
         if !body.is_fixed() {
             self.seats.driven.push((block, handle));

@@ -26,9 +26,13 @@ pub(super) fn wake_met(
     let dt = sets.integration_parameters.dt;
     let fall = sets.gravity.length() * dt * dt;
     let margin = sets.integration_parameters.prediction_distance() + fall;
-    let mut woken = Vec::new();
+    let (mut woken, mut beside) = (Vec::new(), Vec::new());
     for one in flex {
-        list_met(flex, sets, &loosened(one.swept, margin), &mut woken);
+        let list = match one.rests {
+            true => &mut beside,
+            false => &mut woken,
+        };
+        list_met(flex, sets, &loosened(one.swept, margin), list);
     }
     for (handle, collider) in changes.unsettled(sets) {
         if is_awake(sets, collider) && flex.slot_of(handle).is_none() {
@@ -44,7 +48,28 @@ pub(super) fn wake_met(
             woken.push(carrier);
         }
     });
-    wake_carriers(sets, &woken)
+    let has_woken = wake_carriers(sets, &woken);
+    beside.retain(|&carrier| sets.bodies.get(carrier).is_some_and(RigidBody::is_sleeping));
+    wake_for_now(sets, &beside) || has_woken
+}
+
+/// Wakes bodies beside others that have come to rest: they sleep on as soon as they may, or each would wake the other for ever, asleep in turns.
+fn wake_for_now(sets: &mut RapierSets<'_>, carriers: &[RigidBodyHandle]) -> bool {
+    if carriers.is_empty() {
+        return false;
+    }
+    let asleep = sets.bodies.iter().filter(|(_, body)| body.is_sleeping());
+    let asleep: Vec<_> = asleep.map(|(handle, _)| handle).collect();
+    let has_woken = wake_carriers(sets, carriers);
+    for handle in asleep {
+        if let Some(body) = sets.bodies.get_mut(handle)
+            && !body.is_sleeping()
+        {
+            let activation = body.activation_mut();
+            activation.time_since_can_sleep = activation.time_until_sleep;
+        }
+    }
+    has_woken
 }
 
 /// Wakes the bodies of surfaces; returns whether one woke.

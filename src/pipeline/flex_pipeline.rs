@@ -101,8 +101,9 @@ impl FlexPipeline {
     /// step in which it presses, or when rapier sees it coming, and forces are those that acted (normal ones in
     /// [`ContactForceEvent::total_force`](crate::rapier::geometry::ContactForceEvent), as in rapier).
     ///
-    /// `modify_solver_contacts` is shown every such contact as a manifold of one point. It may change friction, restitution, normal and
-    /// distance, give it a tangent velocity, or clear the contact. Pairs of two rigid bodies it sees in rapier's manifolds
+    /// `modify_solver_contacts` is shown every such contact as a manifold: its point, and after it that of the flexible body which is farthest
+    /// behind the same face, if another one is. It may change friction, restitution, and normal and distance of the first, give it a tangent velocity,
+    /// or clear it. `user_data` lasts as long as the contact, and begins with that of a neighbour. Pairs of two rigid bodies it sees in rapier's manifolds
     /// as well, and the carrier of a flexible body is a rigid body with all axes locked.
     ///
     /// # Errors

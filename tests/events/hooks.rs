@@ -171,6 +171,11 @@ fn one_way_platforms_let_bodies_up_and_hold_them_when_they_come_down() {
     let thrown = scene.flexible(block().translation([0.0, 0.5]).linvel([0.0, 9.0]));
     let dropped = scene.flexible(block().translation([3.0, 2.5]));
     let slow = scene.flexible(block().translation([6.0, 0.5]).linvel([0.0, 3.0]));
+    // Two whose heads pass, and not their feet: the one by half, the other by a tenth of its height.
+    let half = [(9.0, 5.0), (-4.0, 5.3)].map(|(x, speed)| {
+        let jumps = block().translation([x, 0.5]).linvel([0.0, speed]);
+        scene.flexible(jumps)
+    });
     let (hooks, listener) = (OneWay(platform), Listener::default());
     let mut highest = f64::NEG_INFINITY;
     for _ in 0..240 {
@@ -185,7 +190,9 @@ fn one_way_platforms_let_bodies_up_and_hold_them_when_they_come_down() {
     );
     assert!((y(thrown) - 2.55).abs() < 0.02, "{} m", y(thrown));
     assert!((y(dropped) - 2.55).abs() < 0.02, "{} m", y(dropped));
-    assert!(y(slow) < -10.0, "{} m", y(slow));
+    for below in [slow, half[0], half[1]] {
+        assert!(y(below) < -10.0, "{} m", y(below));
+    }
 }
 
 #[test]
@@ -225,6 +232,34 @@ fn one_way_platforms_hold_claimed_boxes_too() {
     let y = f64::from(scene.world.bodies[ball].translation().y);
     assert!(highest > 2.0, "it passes: {highest} m");
     assert!((y - 1.3).abs() < 0.02, "it rests on the platform: {y} m");
+}
+
+/// A platform as thick as the block is high: some of its faces meet the block's head from inside, others its feet.
+#[test]
+fn thick_one_way_platforms_let_fall_what_does_not_come_above_them() {
+    for small in [false, true] {
+        let mut scene = Scene::new(DT);
+        let platform = ColliderBuilder::cuboid(40.0, 0.5).active_hooks(MODIFY);
+        let platform = scene.fixed(platform.translation(vec2(0.0, 2.0)));
+        // From 0.5 m up to 1.5 m, so that this is how high its feet come.
+        let jumps = [0.9, 1.3, 1.7, 1.95, 2.2].map(|feet: f64| {
+            let speed = (2.0 * G * (feet - 0.2)).sqrt();
+            let jumps = block().translation([8.0 * feet, 0.2]).linvel([0.0, speed]);
+            let jumps = if small { jumps.small_strain() } else { jumps };
+            (feet, scene.flexible(jumps))
+        });
+        let (hooks, listener) = (OneWay(platform), Listener::default());
+        let mut most = 0.0_f64;
+        for _ in 0..480 {
+            let before = scene.report().energy().dissipated;
+            scene.hear_with(&hooks, &listener);
+            most = most.max(before - scene.report().energy().dissipated);
+        }
+        assert!(most < 1.0, "{most} J gained, small {small}");
+        for (feet, handle) in jumps {
+            assert!(scene.body(handle).centre_of_mass()[1] < -10.0, "{feet} m");
+        }
+    }
 }
 
 /// Counts what it is shown that is not the user's.
