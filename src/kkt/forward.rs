@@ -233,6 +233,6 @@ fn part_to_take([curvature, slope, gain]: [f64; 3]) -> f64 {
 /// Relative motion over the next step without multipliers (m).
 fn foreseen(kinematics: &Kinematics, blocks: &[Block], dt: f64) -> Vec2 {
     kinematics.relative(blocks, |block, grip| {
-        dt * block.velocity(grip) + 0.5 * dt * dt * block.smooth_acceleration(grip)
+        dt * block.velocity(grip) + 0.5 * dt * dt * block.smooth_acceleration(grip, 1.0)
     })
 }

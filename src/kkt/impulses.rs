@@ -250,8 +250,13 @@ pub(super) fn acceleration_rows(
     state_rows(island, counts, |island, index| {
         let contact = &island.contacts[index];
         let row = &contact.kinematics;
+        // What vibrates faster than steps has no acceleration that lasts: a force that holds it is still there when the contact has opened.
+        let share = match contact.is_massless {
+            true => 1.0 - contact.unresolved,
+            false => 1.0,
+        };
         let mut acceleration = row.relative(&island.blocks, |block, grip| {
-            block.smooth_acceleration(grip)
+            block.smooth_acceleration(grip, share)
         });
         for a in row.attachments() {
             let answer = island.blocks[a.block].acceleration_under(island.wrenches[a.block]);

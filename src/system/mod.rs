@@ -190,10 +190,11 @@ impl Block {
         }
     }
 
-    /// Acceleration of a grip at the end of the step, without hard contact forces (m/s²).
-    pub fn smooth_acceleration(&self, grip: Grip) -> Vec2 {
+    /// Acceleration of a grip at the end of the step, without hard contact forces, of flexible blocks of small strain with this `share` of its
+    /// vibration (m/s²).
+    pub fn smooth_acceleration(&self, grip: Grip, share: f64) -> Vec2 {
         match (self, grip.point) {
-            (Self::Flex(block), Point::Node(node)) => block.end_acceleration(node),
+            (Self::Flex(block), Point::Node(node)) => block.end_acceleration(node, share),
             (Self::Rigid(block), Point::Arm(_)) => block.smooth_acceleration(grip.lever),
             _ => mismatch(),
         }

@@ -351,7 +351,7 @@ fn total_acceleration(block: &Block, grip: &JointGrip, wrenches: &[[f64; 3]]) ->
             ]
         }
         Block::Flex(_) => {
-            let sum = block.smooth_acceleration(grip.grip()) + centripetal;
+            let sum = block.smooth_acceleration(grip.grip(), 1.0) + centripetal;
             [sum.x, sum.y, 0.0]
         }
     }

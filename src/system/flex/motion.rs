@@ -97,10 +97,10 @@ impl FlexBlock {
         &self.shared.now.velocity
     }
 
-    /// Acceleration of a node at the end of the step, linear in the increments (m/s²).
-    pub fn end_acceleration(&self, node: usize) -> Vec2 {
+    /// Acceleration of a node at the end of the step, linear in the increments, of small strain with this `share` of its vibration (m/s²).
+    pub fn end_acceleration(&self, node: usize, share: f64) -> Vec2 {
         match &self.method {
-            Method::Small(small) => small.end_acceleration(&self.shared, node),
+            Method::Small(small) => small.end_acceleration(&self.shared, node, share),
             Method::Explicit(explicit) => node_vec(&explicit.acceleration, node),
             Method::Large(large) => node_vec(&large.acceleration, node),
         }

@@ -197,8 +197,8 @@ impl SmallStrain {
         note_hinge_push(shared);
     }
 
-    /// Acceleration of a node at the end of the step, linear in the increments (m/s²).
-    pub fn end_acceleration(&self, shared: &Shared, node: usize) -> Vec2 {
+    /// Acceleration of a node at the end of the step, linear in the increments, with so much of its vibration (m/s²).
+    pub fn end_acceleration(&self, shared: &Shared, node: usize, share: f64) -> Vec2 {
         let own = shared.shape.carried(node, |node| {
             node_vec(&shared.start.acceleration, node) + node_vec(&self.increment, node)
         });
@@ -207,7 +207,7 @@ impl SmallStrain {
         }
         let arm = node_vec(&shared.now.position, node) - shared.now.frame.centre;
         let rigid = self.frame_acceleration(shared) + self.torque / shared.now.inertia * perp(arm);
-        rigid + shared.now.turn * own
+        rigid + share * (shared.now.turn * own)
     }
 
     fn frame_acceleration(&self, shared: &Shared) -> Vec2 {
