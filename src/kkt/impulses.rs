@@ -90,6 +90,7 @@ pub(super) fn solve_impulses(island: &mut Island, of: Response, dt: f64) -> Resu
             &island.contacts,
             [&island.problem.free, &island.problem.multipliers]
                 .map(|values| &values[..island.problem.rows.len()]),
+            dt,
         )
     {
         island.problem.impulse_give = give(INDEPENDENT);

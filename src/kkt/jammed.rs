@@ -13,13 +13,16 @@ use crate::system::Block;
 ///
 /// Where nothing is driven, the laws take no more than the kinetic energy, whatever the masses: `-½ P·w` of all rows. Between driven bodies that is what
 /// there would be if each body came against all others with the largest velocity of these; what gets out of a wedge takes more, as far as the wedge is
-/// wider than what rows give way by.
+/// wider than what rows give way by. What loads bring within the step is there as well: of a stiff body at rest that is all, and surfaces without mass
+/// move by it.
 ///
 /// - `free`, `impulses`: what the rows of contacts are without impulses (m/s), and these (N s).
+/// - `dt`: length of the step (s).
 pub(super) fn are_jammed(
     blocks: &[Block],
     contacts: &[ActiveContact],
     [free, impulses]: [&[f64]; 2],
+    dt: f64,
 ) -> bool {
     let taken = free.iter().zip(impulses);
     let taken: f64 = taken.map(|(motion, impulse)| -0.5 * motion * impulse).sum();
@@ -38,7 +41,11 @@ pub(super) fn are_jammed(
         .iter()
         .map(|block| {
             let (mass, energy) = mass_and_energy(block);
-            0.5 * ((2.0 * energy).sqrt() + mass.sqrt() * fastest).powi(2)
+            let by_loads = match mass.is_finite() && mass > 0.0 {
+                true => dt * block.resultant().norm() / mass.sqrt(),
+                false => 0.0,
+            };
+            0.5 * ((2.0 * energy).sqrt() + mass.sqrt() * fastest + by_loads).powi(2)
         })
         .sum();
     taken * give(INDEPENDENT) > there
@@ -67,7 +74,7 @@ mod tests {
             };
             let (mass, velocity) = (one.mass()[0], one.current().velocity.x);
             let blocks = [body];
-            let jams = |impulse| are_jammed(&blocks, &[], [&[velocity], &[impulse]]);
+            let jams = |impulse| are_jammed(&blocks, &[], [&[velocity], &[impulse]], 0.0);
             let stops = -mass * velocity;
             let [before, taken] = [kinetic_energy(&blocks), 0.5 * mass * velocity.powi(2)];
             assert!(taken <= before);
@@ -98,7 +105,7 @@ mod tests {
             [(0, 1.0), (1, -1.0)].map(|(block, weight)| (block, arm, weight, Vec2::zeros()));
         let row = Kinematics::with_levers(0.0, ALONG, Vec2::zeros(), &grips);
         let contact = ActiveContact::new(0, row, Remembered::default(), 0.5, &blocks);
-        let jams = |impulse| are_jammed(&blocks, &[contact], [&[-3.0], &[impulse]]);
+        let jams = |impulse| are_jammed(&blocks, &[contact], [&[-3.0], &[impulse]], 0.0);
         assert!(!jams(2.0 * 3.0));
         assert!(!jams(0.9e3 * 2.0 * 3.0));
         assert!(jams(1.1e3 * 2.0 * 3.0));

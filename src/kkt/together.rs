@@ -59,17 +59,6 @@ fn moments(mass: f64, inertia: f64, motion: &RigidMotion) -> Moments {
     }
 }
 
-/// Sum of the forces of the loads on a block that moves freely (N).
-fn resultant(block: &Block) -> Vec2 {
-    match block {
-        Block::Flex(body) => body.resultant(),
-        Block::Rigid(body) => {
-            let [x, y, _] = body.force();
-            Vec2::new(x, y)
-        }
-    }
-}
-
 fn rates_of(motion: &RigidMotion) -> RigidRates {
     RigidRates {
         about: motion.centre,
@@ -120,7 +109,7 @@ pub(super) fn end_together(
     let before = groups.clone();
     if may_go {
         for (block, &leader) in island.blocks.iter().zip(&leaders) {
-            groups[leader].push(dt * resultant(block));
+            groups[leader].push(dt * block.resultant());
         }
     }
     island.contacts.clear();

@@ -190,6 +190,17 @@ impl Block {
         }
     }
 
+    /// Sum of the forces of the loads on a block that moves freely (N).
+    pub fn resultant(&self) -> Vec2 {
+        match self {
+            Self::Flex(block) => block.resultant(),
+            Self::Rigid(block) => {
+                let [x, y, _] = block.force();
+                Vec2::new(x, y)
+            }
+        }
+    }
+
     /// Acceleration of a grip at the end of the step, without hard contact forces, of flexible blocks of small strain with this `share` of its
     /// vibration (m/s²).
     pub fn smooth_acceleration(&self, grip: Grip, share: f64) -> Vec2 {

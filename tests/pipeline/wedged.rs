@@ -208,3 +208,27 @@ fn what_is_changed_into_something_else_among_others_throws_nothing() {
     }
     assert!(n_jammed > 0, "none of them jams");
 }
+
+/// Steel that lands and rests: nothing is driven, and its surface without mass moves by more than its kinetic energy tells.
+#[test]
+fn what_lands_and_rests_is_not_jammed() {
+    for n in [1, 5] {
+        for height in [0.0, 0.3] {
+            let mut scene = Scene::new(1.0 / 60.0);
+            scene.ground(0.5);
+            for k in 0..n {
+                let plate = FlexBodyBuilder::rectangle([0.4, 0.2], [8, 4])
+                    .material(elastic(2.1e11, 7800.0, 1e-4))
+                    .translation([0.0, height + 0.2 * f64::from(k)])
+                    .friction(0.5)
+                    .small_strain();
+                scene.flexible(plate.can_sleep(false));
+            }
+            for step in 0..240 {
+                scene.step();
+                let jammed = scene.report().n_jammed();
+                assert_eq!(jammed, 0, "{n} from {height} m, step {step}");
+            }
+        }
+    }
+}
