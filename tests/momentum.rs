@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use foil2d::pipeline::Participant;
 
 /// Momentum and angular momentum about the origin of every body of a scene, flexible and rigid.
 fn momentum(scene: &Scene) -> [f64; 3] {
@@ -354,6 +355,70 @@ fn what_is_detached_under_load_keeps_the_momentum_that_there_is() {
             assert!(
                 off[0].hypot(off[1]) < 1e-3,
                 "pinned {is_pinned}: {off:?} N s"
+            );
+        }
+    }
+}
+
+/// A block that is thrown on the ground, alone or under a hammer: what is told of each in every step sums up to the momentum it has got. A part of a force of
+/// small strain acts in the next step, whatever has become of its contact; 24 % were missing.
+#[test]
+fn forces_told_over_a_blow_sum_up_to_momentum() {
+    for young in [1e7, 1e8, 1e9, 2e11] {
+        for (small, has_hammer) in [(true, false), (true, true), (false, false), (false, true)] {
+            let dt = 1.0 / 240.0;
+            let mut scene = Scene::new(dt);
+            let ground = scene.ground(0.5);
+            let speed = if has_hammer { 0.0 } else { 10.0 };
+            let height = if has_hammer { 0.0 } else { 0.01 };
+            let block = FlexBodyBuilder::rectangle([0.6, 0.3], [12, 6])
+                .material(elastic(young, 7800.0, 1e-5))
+                .translation([-0.3, height])
+                .linvel([0.0, -speed])
+                .friction(0.5);
+            let block = if small { block.small_strain() } else { block };
+            let block = scene.flexible(block);
+            let hammer = has_hammer.then(|| {
+                let body = RigidBodyBuilder::dynamic()
+                    .translation(vec2(0.0, 0.41))
+                    .linvel(vec2(0.0, -10.0));
+                scene.rigid(body, ColliderBuilder::cuboid(0.1, 0.1).density(7800.0))
+            });
+            let flexible = scene.body(block).mass();
+            let rigid = hammer.map_or(0.0, |(body, _)| f64::from(scene.world.bodies[body].mass()));
+            let momenta = |scene: &Scene| {
+                let velocity = |(body, _): (RigidBodyHandle, ColliderHandle)| {
+                    f64::from(scene.world.bodies[body].linvel().y)
+                };
+                [
+                    flexible * scene.body(block).linvel()[1],
+                    rigid * hammer.map_or(0.0, velocity),
+                ]
+            };
+            let before = momenta(&scene);
+            let (mut on_ground, mut on_hammer) = (0.0, 0.0);
+            let n = 60;
+            for _ in 0..n {
+                scene.step();
+                on_ground -= dt * scene.report().force_on(Participant::Rigid(ground))[1];
+                if let Some((_, shape)) = hammer {
+                    on_hammer += dt * scene.report().force_on(Participant::Rigid(shape))[1];
+                }
+            }
+            let after = momenta(&scene);
+            let time = f64::from(n) * dt;
+            let got = [0, 1].map(|k| after[k] - before[k] + G * time * [flexible, rigid][k]);
+            let name = format!("{young:e} Pa, small {small}, hammer {has_hammer}");
+            let weight = G * (flexible + rigid) * dt;
+            let missing = on_ground - got[0] - got[1];
+            assert!(
+                missing.abs() < weight,
+                "{name}: {missing} N s of {on_ground}"
+            );
+            let missing = on_hammer - got[1];
+            assert!(
+                missing.abs() < weight,
+                "{name}: {missing} N s of {on_hammer}"
             );
         }
     }

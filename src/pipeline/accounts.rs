@@ -92,6 +92,7 @@ impl StepReport {
     fn add_contacts(&mut self, part: &SolvedPart<'_>, names: Names<'_, '_>) {
         for contact in &part.island.contacts {
             if !contact.is_closed() {
+                self.opened.extend(part.opened(contact, names));
                 continue;
             }
             let law = part.island.candidates[contact.candidate].law;

@@ -11,11 +11,14 @@ impl StepReport {
     /// Forgets the islands' solutions of a step that is solved again.
     pub(super) fn forget_solution(&mut self, dissipated: f64) {
         let before = std::mem::take(self);
-        let (mut contacts, mut joints) = (before.contacts, before.joints);
+        let (mut contacts, mut opened) = (before.contacts, before.opened);
+        let mut joints = before.joints;
         contacts.clear();
+        opened.clear();
         joints.clear();
         *self = Self {
             contacts,
+            opened,
             joints,
             contacts_before: before.contacts_before,
             joints_before: before.joints_before,
@@ -38,6 +41,8 @@ impl StepReport {
         let contacts_before = std::mem::take(&mut self.contacts);
         let mut contacts = std::mem::take(&mut self.contacts_before);
         contacts.clear();
+        let mut opened = std::mem::take(&mut self.opened);
+        opened.clear();
         let joints_before = std::mem::take(&mut self.joints);
         let mut joints = std::mem::take(&mut self.joints_before);
         joints.clear();
@@ -47,6 +52,7 @@ impl StepReport {
         *self = Self {
             contacts,
             contacts_before,
+            opened,
             joints,
             joints_before,
             overbent,

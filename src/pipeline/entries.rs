@@ -17,8 +17,9 @@ pub struct ContactReport {
     pub gap: f64,
     /// Compressive force on the contactor along the normal (N): the impulse that the step adds to the bodies over its length. The
     /// part `1 - β1` of a force that lasts acts in the next step, so that sums over time, not single steps, balance momentum.
-    /// Negative where energy that the last step's force had added is taken back; at a contact that has just opened, only
-    /// [`FlexBody::total_contact_force`](crate::body::FlexBody::total_contact_force) knows of that.
+    /// Negative where energy that the last step's force had added is taken back; what is taken at a contact that has just opened is in
+    /// [`StepReport::force_on`](super::StepReport::force_on) and
+    /// [`FlexBody::total_contact_force`](crate::body::FlexBody::total_contact_force) alone.
     pub normal_force: f64,
     /// Force on the contactor along the tangent, a quarter turn counter-clockwise from the normal (N). Where the normal turns within steps, what the energy stage
     /// takes from what slides there is in it, without friction too.
@@ -32,6 +33,19 @@ pub struct ContactReport {
     pub contactor: Participant,
     /// The body whose surface is touched.
     pub target: Participant,
+}
+
+/// What a step has given at a contact that is open at its end, where the force of the step before acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde-serialize",
+    derive(serde::Serialize, serde::Deserialize)
+)]
+pub(super) struct Opened {
+    /// The contactor and the target.
+    pub between: [Participant; 2],
+    /// Force on the contactor (N).
+    pub force: [f64; 2],
 }
 
 impl ContactReport {

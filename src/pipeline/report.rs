@@ -1,6 +1,6 @@
 //! What a step tells about itself.
 
-use super::entries::{ConeExcess, ContactReport, EnergyReport, JointReport, StageTimes};
+use super::entries::{ConeExcess, ContactReport, EnergyReport, JointReport, Opened, StageTimes};
 use super::notes::InsertionNote;
 use super::overbent::Overbent;
 use super::participant::Participant;
@@ -18,6 +18,8 @@ pub struct StepReport {
     pub(super) contacts: Vec<ContactReport>,
     /// Contacts of the step before, of which those of sleepers are kept.
     pub(super) contacts_before: Vec<ContactReport>,
+    /// What the step has given at contacts that are open at its end.
+    pub(super) opened: Vec<Opened>,
     pub(super) joints: Vec<JointReport>,
     /// Joints of the step before, likewise.
     pub(super) joints_before: Vec<JointReport>,
@@ -282,7 +284,8 @@ impl StepReport {
         all.filter(move |contact| [contact.contactor, contact.target].contains(&participant))
     }
 
-    /// Sum of the contact forces on a participant (N), as they act: those of [`ContactReport::force`] and [`ContactReport::midway`].
+    /// Sum of the contact forces on a participant (N), as they act: those of [`ContactReport::force`] and [`ContactReport::midway`], and what the
+    /// step has given or taken back at contacts that have opened. Its sum over time is the momentum given.
     pub fn force_on(&self, participant: Participant) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for contact in &self.contacts {
@@ -293,6 +296,13 @@ impl StepReport {
             let force = contact.force();
             for axis in 0..2 {
                 sum[axis] += sign * (force[axis] + contact.midway[axis]);
+            }
+        }
+        for opened in &self.opened {
+            let [as_point, as_target] = opened.between.map(|one| one == participant);
+            let sign = f64::from(as_point) - f64::from(as_target);
+            for axis in 0..2 {
+                sum[axis] += sign * opened.force[axis];
             }
         }
         sum

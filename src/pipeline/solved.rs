@@ -1,6 +1,6 @@
 //! A part of an island's step as it was solved, and what is read off it.
 
-use super::entries::ContactReport;
+use super::entries::{ContactReport, Opened};
 use super::names::Names;
 use crate::constraint::contact::{ContactMemory, Remembered};
 use crate::constraint::joint::JointMemory;
@@ -79,6 +79,24 @@ impl SolvedPart<'_> {
             force,
             is_closed: contact.is_closed(),
             was_above: false,
+        })
+    }
+
+    /// What has been given at an open contact, if anything has.
+    pub fn opened(&self, contact: &ActiveContact, names: Names<'_, '_>) -> Option<Opened> {
+        let [normal, tangent] = self.force(contact);
+        let row = &contact.kinematics;
+        let force = normal * row.normal + tangent * row.tangent() + self.midway(contact);
+        if force == Vec2::zeros() {
+            return None;
+        }
+        let key = self.island.candidates[contact.candidate].key;
+        Some(Opened {
+            between: [
+                names.participant(key.contactor)?,
+                names.participant(key.target)?,
+            ],
+            force: force.into(),
         })
     }
 

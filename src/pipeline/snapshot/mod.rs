@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Raised with every change of what is written, rapier's own structures included.
-const FORMAT: u32 = 21;
+const FORMAT: u32 = 22;
 
 /// Bits of rapier's numbers.
 const PRECISION: u8 = 8 * size_of::<Real>() as u8;
