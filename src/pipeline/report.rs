@@ -293,17 +293,15 @@ impl StepReport {
             let [as_point, as_target] =
                 [contact.contactor, contact.target].map(|one| one == participant);
             let sign = f64::from(as_point) - f64::from(as_target);
-            let force = contact.force();
-            for axis in 0..2 {
-                sum[axis] += sign * (force[axis] + contact.midway[axis]);
-            }
+            let (force, midway) = (contact.force(), contact.midway);
+            sum[0] += sign * (force[0] + midway[0]);
+            sum[1] += sign * (force[1] + midway[1]);
         }
         for opened in &self.opened {
             let [as_point, as_target] = opened.between.map(|one| one == participant);
             let sign = f64::from(as_point) - f64::from(as_target);
-            for axis in 0..2 {
-                sum[axis] += sign * opened.force[axis];
-            }
+            sum[0] += sign * opened.force[0];
+            sum[1] += sign * opened.force[1];
         }
         sum
     }

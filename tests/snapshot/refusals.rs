@@ -4,7 +4,7 @@ use super::support::*;
 use foil2d::pipeline::{Snapshot, SnapshotError};
 
 const MAGIC: u64 = 0x0000_666f_696c_3264;
-const FORMAT: u32 = 21;
+const FORMAT: u32 = 22;
 
 fn small() -> Run {
     let log = Recorder::default();

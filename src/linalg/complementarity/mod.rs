@@ -250,10 +250,11 @@ impl Solver {
             outcome.method = Method::GaussSeidel;
             return Ok(outcome);
         }
-        if !self.follow_active_set(problem, (Redundancy::MinimumNorm, 1.0), &mut outcome) {
-            if !self.rescue(problem, &NEAR, &mut outcome) {
-                self.give_way(problem, &mut outcome);
-            }
+        let is_solved =
+            self.follow_active_set(problem, (Redundancy::MinimumNorm, 1.0), &mut outcome)
+                || self.rescue(problem, &NEAR, &mut outcome);
+        if !is_solved {
+            self.give_way(problem, &mut outcome);
         }
         multipliers.copy_from_slice(&self.best.multipliers);
         status.copy_from_slice(&self.best.status);

@@ -212,11 +212,8 @@ impl<'a> Checked<'a> {
     }
 
     pub fn has_friction(&self) -> bool {
-        (0..self.n_rows()).any(|row| self.is_friction(row))
-    }
-
-    pub fn is_friction(&self, row: usize) -> bool {
-        matches!(self.rows[row], RowKind::Friction { .. })
+        let is_friction = |kind: &RowKind| matches!(kind, RowKind::Friction { .. });
+        self.rows.iter().any(is_friction)
     }
 
     pub fn n_rows(&self) -> usize {

@@ -59,18 +59,13 @@ pub(super) fn identify(
 
 /// Lets every contact that presses, has pressed, or would meet, slide as it does without multipliers; whether there is friction.
 pub(super) fn slide(problem: Checked, status: &mut [Status]) -> bool {
-    for row in 0..problem.n_rows() {
+    for (row, at) in status.iter_mut().enumerate() {
         let presses = problem.free[row] < 0.0 || problem.acted(row) > 0.0;
-        if problem.rows[row] == RowKind::Unilateral && presses {
-            status[row] = Status::Stick;
-        }
-    }
-    for row in 0..problem.n_rows() {
-        if problem.is_friction(row) {
-            status[row] = match problem.free[row] > 0.0 {
-                true => Status::SlipNegative,
-                false => Status::SlipPositive,
-            };
+        match problem.rows[row] {
+            RowKind::Unilateral if presses => *at = Status::Stick,
+            RowKind::Friction { .. } if problem.free[row] > 0.0 => *at = Status::SlipNegative,
+            RowKind::Friction { .. } => *at = Status::SlipPositive,
+            _ => {}
         }
     }
     make_admissible(problem, status);
