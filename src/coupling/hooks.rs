@@ -90,11 +90,16 @@ impl HookBook {
         }
         self.look_at(first, island);
         let seen = std::mem::take(&mut self.seen);
+        let is_flexible = |owner: &Owner| matches!(owner, Owner::Flex(_));
+        let inherits = pair.owners.iter().any(is_flexible);
         let of_pair = self.of_pair(pair);
         let (mut removes, mut fault) = (false, None);
         let mut nearest: Option<(f64, ContactLaw)> = None;
         for one in &seen {
-            let known = self.known(one, &seen).unwrap_or(of_pair);
+            let known = match inherits {
+                true => self.known(one, &seen).unwrap_or(of_pair),
+                false => self.last.get(&one.candidate.key).copied().unwrap_or(0),
+            };
             match self.ask(pair, one, known, (sets, dt)) {
                 Ok(Some(law)) => {
                     island.candidates.push(Candidate {
@@ -159,21 +164,20 @@ impl HookBook {
         first.map_or(0, |(_, known)| *known)
     }
 
-    /// The user data that a candidate begins the step with: its own, or that of the nearest one that has some.
+    /// The user data that a candidate begins the step with: its own, or of a flexible body those of the nearest one that has some, if there is one of those
+    /// that face the same way. Corners of rigid shapes that are far off know nothing of it.
     fn known(&self, one: &Seen, seen: &[Seen]) -> Option<u32> {
         if let Some(own) = self.last.get(&one.candidate.key) {
             return Some(*own);
         }
-        let away = |other: &Seen| {
-            let way = other.kinematics.position - one.kinematics.position;
-            way.norm_squared()
-        };
         let others = seen.iter().filter_map(|other| {
             let known = self.last.get(&other.candidate.key)?;
-            Some((away(other), *known))
+            let way = other.kinematics.position - one.kinematics.position;
+            let turned = other.kinematics.normal.dot(&one.kinematics.normal) < 0.5;
+            Some((turned, way.norm_squared(), *known))
         });
-        let nearest = others.reduce(|a, b| if b.0 < a.0 { b } else { a });
-        nearest.map(|(_, known)| known)
+        let nearest = others.reduce(|a, b| if (b.0, b.1) < (a.0, a.1) { b } else { a });
+        nearest.map(|(_, _, known)| known)
     }
 
     /// Keeps what faces away now and may turn up within the step: under the law of the nearest contact that was shown.

@@ -29,6 +29,9 @@ const DIRECT_LIMIT: usize = 256;
 /// Pivots from statuses that another method has found: those that are nearly right settle in some four, the others never do.
 const RESCUE_PIVOTS: usize = 12;
 
+/// The same with another weight: what it is for settles in two.
+const WEIGHTED_PIVOTS: usize = 4;
+
 /// Pivots after which statuses that have not settled are given up: a stack of boxes that falls on the
 /// ground closes one layer per pivot.
 fn pivot_budget(n: usize) -> usize {
@@ -128,6 +131,7 @@ impl ActiveSet {
         };
         let n_pivots = match redundancy {
             Redundancy::MinimumNorm => pivot_budget(n),
+            Redundancy::LeastChange if weight != 1.0 => WEIGHTED_PIVOTS,
             Redundancy::LeastChange => RESCUE_PIVOTS.min(pivot_budget(n)),
         };
         while self.seen.len() < n_pivots {
