@@ -341,11 +341,10 @@ impl Shown {
         manifold.data.user_data = self.user_data;
         let mut solver_contacts = SolverContacts::new();
         let behind = anchor1 + self.normal * reaches;
-        let shown = [(anchor1, self.gap), (behind, self.gap - reaches)];
-        for (id, (anchor1, dist)) in shown.into_iter().enumerate() {
-            if id > 0 && reaches == 0.0 {
-                continue;
-            }
+        let own = (0, anchor1, self.gap);
+        let farthest = (1, behind, self.gap - reaches);
+        let shown = [Some(own), (reaches > 0.0).then_some(farthest)];
+        for (id, anchor1, dist) in shown.into_iter().flatten() {
             manifold.points.push(Contact::new(
                 pose1.inverse_transform_point(anchor1),
                 pose2.inverse_transform_point(anchor2),
@@ -358,7 +357,7 @@ impl Shown {
                 anchor2,
                 dist,
                 tangent_velocity: self.belt,
-                contact_id: [id as u32],
+                contact_id: [id],
             });
         }
         sets.hooks
