@@ -397,9 +397,15 @@ fn forces_told_over_a_blow_sum_up_to_momentum() {
             };
             let before = momenta(&scene);
             let (mut on_ground, mut on_hammer) = (0.0, 0.0);
-            let n = 60;
-            for _ in 0..n {
+            // Until all fly for two steps, or rest: of what acts in the last one, half is still to come.
+            let (mut n, mut n_flying) = (0, 0);
+            while n < 10 || n_flying < 2 && n < 480 {
                 scene.step();
+                n += 1;
+                n_flying = match scene.report().contacts().is_empty() {
+                    true => n_flying + 1,
+                    false => 0,
+                };
                 on_ground -= dt * scene.report().force_on(Participant::Rigid(ground))[1];
                 if let Some((_, shape)) = hammer {
                     on_hammer += dt * scene.report().force_on(Participant::Rigid(shape))[1];
