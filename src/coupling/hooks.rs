@@ -3,9 +3,13 @@
 //! Rapier asks the hooks about its own manifolds, in two steps of which the second shows locked bodies at velocities that
 //! are none. For pairs of the flexible stage they are asked here, before anything is locked: every candidate is shown as
 //! a manifold of its own point, and of the one that is farthest behind its face where flexible bodies reach farther. Its `user_data`
-//! lasts as long as the candidate does, and begins with that of the nearest one, or of any in the last step. Rapier is given the answers.
+//! lasts as long as the candidate does, and begins, of a flexible body, with that of the nearest one, or of any in the last step. Rapier is given the answers.
 
-use super::claim::Claims;
+mod gate;
+mod shown;
+
+pub(crate) use gate::HookGate;
+
 use super::pair_name::{PairName, pair_name};
 use super::reading::GatherError;
 use super::sets::RapierSets;
@@ -15,9 +19,9 @@ use crate::constraint::contact::{
 use crate::kkt::Island;
 use crate::math::{HashMap, from_rapier, to_rapier};
 use crate::rapier::math::Real;
-use crate::rapier::parry::shape::PackedFeatureId;
 use crate::rapier::prelude::*;
 use crate::system::Block;
+use shown::Shown;
 
 /// What the hooks said of the contacts of the flexible stage.
 #[derive(Debug, Default)]
@@ -111,7 +115,10 @@ impl HookBook {
                     }
                 }
                 Ok(None) => removes = true,
-                Err(error) => fault = Some(error),
+                Err(error) => {
+                    fault = Some(error);
+                    break;
+                }
             }
         }
         self.seen = seen;
@@ -296,153 +303,4 @@ fn reaches(blocks: &[Block], kinematics: &Kinematics) -> f64 {
         }
     }
     reaches
-}
-
-/// A contact as the hook sees it and leaves it.
-#[derive(Clone, Copy, Debug)]
-struct Shown {
-    normal: Vector,
-    friction: Real,
-    restitution: Real,
-    gap: Real,
-    /// The velocity along the contact that friction leads to (m/s).
-    belt: Vector,
-    user_data: u32,
-    is_kept: bool,
-}
-
-impl Shown {
-    /// What the user's hook makes of it.
-    fn asked(
-        self,
-        [collider1, collider2]: [ColliderHandle; 2],
-        ([anchor1, anchor2], reaches): ([Vector; 2], Real),
-        sets: &RapierSets<'_>,
-    ) -> Self {
-        let mut answer = self;
-        let parent = |handle| sets.colliders.get(handle).and_then(Collider::parent);
-        let pose = |handle| {
-            sets.colliders
-                .get(handle)
-                .map(|collider| *collider.position())
-        };
-        let (pose1, pose2) = (
-            pose(collider1).unwrap_or_default(),
-            pose(collider2).unwrap_or_default(),
-        );
-        let mut manifold = ContactManifold::with_data(0, 0, ContactManifoldData::default());
-        manifold.local_n1 = pose1.rotation.inverse() * self.normal;
-        manifold.local_n2 = pose2.rotation.inverse() * -self.normal;
-        manifold.data.normal = self.normal;
-        manifold.data.rigid_body1 = parent(collider1);
-        manifold.data.rigid_body2 = parent(collider2);
-        manifold.data.friction = self.friction;
-        manifold.data.restitution = self.restitution;
-        manifold.data.user_data = self.user_data;
-        let mut solver_contacts = SolverContacts::new();
-        let behind = anchor1 + self.normal * reaches;
-        let own = (0, anchor1, self.gap);
-        let farthest = (1, behind, self.gap - reaches);
-        let shown = [Some(own), (reaches > 0.0).then_some(farthest)];
-        for (id, anchor1, dist) in shown.into_iter().flatten() {
-            manifold.points.push(Contact::new(
-                pose1.inverse_transform_point(anchor1),
-                pose2.inverse_transform_point(anchor2),
-                PackedFeatureId::UNKNOWN,
-                PackedFeatureId::UNKNOWN,
-                dist,
-            ));
-            solver_contacts.push(SolverContact {
-                anchor1,
-                anchor2,
-                dist,
-                tangent_velocity: self.belt,
-                contact_id: [id],
-            });
-        }
-        sets.hooks
-            .modify_solver_contacts(&mut ContactModificationContext {
-                bodies: sets.bodies,
-                colliders: sets.colliders,
-                collider1,
-                collider2,
-                rigid_body1: parent(collider1),
-                rigid_body2: parent(collider2),
-                contacts: ModifiableContacts::Rigid(ModifiableManifold {
-                    manifold: &manifold,
-                    solver_contacts: &mut solver_contacts,
-                    normal: &mut answer.normal,
-                    friction: &mut answer.friction,
-                    restitution: &mut answer.restitution,
-                    user_data: &mut answer.user_data,
-                }),
-            });
-        let own = solver_contacts
-            .iter()
-            .find(|contact| contact.contact_id == [0]);
-        answer.is_kept = own.is_some();
-        if let Some(contact) = own {
-            (answer.gap, answer.belt) = (contact.dist, contact.tangent_velocity);
-        }
-        answer
-    }
-
-    fn is_finite(&self) -> bool {
-        let numbers = [self.friction, self.restitution, self.gap];
-        numbers.iter().all(|number| number.is_finite())
-            && self.normal.is_finite()
-            && self.belt.is_finite()
-            && self.normal.length() > 0.0
-    }
-}
-
-/// The hooks that rapier is given in place of the user's.
-pub(crate) struct HookGate<'a> {
-    /// The user's.
-    pub user: &'a dyn PhysicsHooks,
-    /// What they said of our contacts.
-    pub book: &'a HookBook,
-    /// Carriers and claimed bodies.
-    pub claims: &'a Claims,
-    /// Whether this is the full step, in which claimed bodies are locked.
-    pub is_full: bool,
-}
-
-impl HookGate<'_> {
-    /// Whether the flexible stage asks the user itself.
-    fn is_ours(&self, handles: [ColliderHandle; 2], colliders: &ColliderSet) -> bool {
-        handles.iter().any(|&handle| {
-            self.claims.flex.is_surface(handle)
-                || (self.is_full && self.claims.has_collider(handle, colliders))
-        })
-    }
-}
-
-impl PhysicsHooks for HookGate<'_> {
-    fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
-        let [one, other] = [context.collider1, context.collider2];
-        let name = pair_name(one, other);
-        let answered = self.claims.answer(name);
-        match answered.filter(|_| self.is_full) {
-            Some(answer) => answer,
-            None => self.user.filter_contact_pair(context),
-        }
-    }
-
-    fn filter_intersection_pair(&self, context: &PairFilterContext) -> bool {
-        self.user.filter_intersection_pair(context)
-    }
-
-    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
-        let handles = [context.collider1, context.collider2];
-        if !self.is_ours(handles, context.colliders) {
-            return self.user.modify_solver_contacts(context);
-        }
-        let [one, other] = handles;
-        let is_left = self.book.left.get(&pair_name(one, other));
-        if let (Some(rigid), false) = (context.rigid_mut(), is_left.copied().unwrap_or(false)) {
-            // What touches nothing must not start a collision.
-            rigid.solver_contacts.clear();
-        }
-    }
 }

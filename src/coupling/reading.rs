@@ -261,3 +261,48 @@ pub(super) fn is_representable_load(load: &RigidLoad) -> bool {
     let all = [load.inverse_mass, load.force, load.damping];
     all.into_iter().flatten().all(f64::is_finite)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rapier::math::Vector;
+
+    /// What is foreseen of a body that is driven by its velocities is where rapier takes it, whatever it turns about, and wherever.
+    #[test]
+    fn what_is_driven_goes_where_rapier_takes_it() {
+        for at in [0.0, 1000.0] {
+            for (spin, off) in [(0.0, 0.0), (3.0, 0.0), (-7.0, 0.4)] {
+                for n_substeps in [1, 4, 7] {
+                    let mut world = PhysicsWorld::new();
+                    world.integration_parameters.num_solver_iterations = n_substeps;
+                    let body = RigidBodyBuilder::kinematic_velocity_based()
+                        .translation(Vector::new(at as Real, 2.0))
+                        .rotation(0.7)
+                        .linvel(Vector::new(3.0, -2.0))
+                        .angvel(spin as Real);
+                    let shape = ColliderBuilder::cuboid(0.3, 0.2);
+                    let shape = shape.translation(Vector::new(off as Real, 0.1));
+                    let (body, _) = world.insert(body, shape);
+                    world.step();
+                    for _ in 0..30 {
+                        let foreseen =
+                            driven_to(&world.bodies[body], &world.integration_parameters);
+                        world.step();
+                        let found = world.bodies[body].position();
+                        let apart = (found.translation - foreseen.translation).length();
+                        let turned = (found.rotation.inverse() * foreseen.rotation).angle();
+                        let spacing = Real::EPSILON * (1.0 + at as Real);
+                        assert!(
+                            apart <= spacing,
+                            "{at} m, {spin} rad/s, {n_substeps}: {apart}"
+                        );
+                        assert!(
+                            turned.abs() <= 4.0 * Real::EPSILON,
+                            "{spin} rad/s: {turned}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}

@@ -110,4 +110,23 @@ mod tests {
         assert!(!jams(0.9e3 * 2.0 * 3.0));
         assert!(jams(1.1e3 * 2.0 * 3.0));
     }
+
+    /// What stops a body at rest that a force has acted on for a step takes what that has brought, and what takes a thousand times as much jams.
+    #[test]
+    fn loads_bring_what_they_do_within_a_step() {
+        let (mass, force, dt) = (2.0, 30.0, 0.1);
+        let load = RigidLoad {
+            inverse_mass: [1.0 / mass, 1.0 / mass, 1.0],
+            force: [force, 0.0, 0.0],
+            damping: [0.0; 3],
+        };
+        let step = Step::new(&Beta2::default(), dt);
+        let mut body = RigidBlock::free(RigidMotion::default(), None, &load, &step);
+        body.stop_at(Vec2::zeros(), 0.0);
+        let blocks = [Block::Rigid(body)];
+        let speed = force * dt / mass;
+        let jams = |impulse: f64| are_jammed(&blocks, &[], [&[-speed], &[impulse]], dt);
+        assert!(kinetic_energy(&blocks) == 0.0);
+        assert!(!jams(0.9e3 * mass * speed) && jams(1.1e3 * mass * speed));
+    }
 }

@@ -234,6 +234,23 @@ fn one_way_platforms_hold_claimed_boxes_too() {
     assert!((y - 1.3).abs() < 0.02, "it rests on the platform: {y} m");
 }
 
+/// A one-way platform that looks whether the points it is shown are as far apart as it is told, and how often there are two.
+struct Watched(OneWay, AtomicUsize);
+
+impl PhysicsHooks for Watched {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        if let Some(shown) = context.rigid_mut() {
+            for contact in shown.solver_contacts.iter() {
+                let apart = (contact.anchor2 - contact.anchor1).dot(*shown.normal);
+                assert!((apart - contact.dist).abs() < 1e-5, "{contact:?}");
+            }
+            let has_two = shown.solver_contacts.len() == 2;
+            self.1.fetch_add(usize::from(has_two), Ordering::Relaxed);
+        }
+        self.0.modify_solver_contacts(context);
+    }
+}
+
 /// A platform as thick as the block is high: some of its faces meet the block's head from inside, others its feet.
 #[test]
 fn thick_one_way_platforms_let_fall_what_does_not_come_above_them() {
@@ -248,7 +265,8 @@ fn thick_one_way_platforms_let_fall_what_does_not_come_above_them() {
             let jumps = if small { jumps.small_strain() } else { jumps };
             (feet, scene.flexible(jumps))
         });
-        let (hooks, listener) = (OneWay(platform), Listener::default());
+        let hooks = Watched(OneWay(platform), AtomicUsize::new(0));
+        let listener = Listener::default();
         let mut most = 0.0_f64;
         for _ in 0..480 {
             let before = scene.report().energy().dissipated;
@@ -256,6 +274,7 @@ fn thick_one_way_platforms_let_fall_what_does_not_come_above_them() {
             most = most.max(before - scene.report().energy().dissipated);
         }
         assert!(most < 1.0, "{most} J gained, small {small}");
+        assert!(hooks.1.into_inner() > 0, "no second point was shown");
         for (feet, handle) in jumps {
             assert!(scene.body(handle).centre_of_mass()[1] < -10.0, "{feet} m");
         }
