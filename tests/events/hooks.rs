@@ -258,12 +258,28 @@ fn thick_one_way_platforms_let_fall_what_does_not_come_above_them() {
         let mut scene = Scene::new(DT);
         let platform = ColliderBuilder::cuboid(40.0, 0.5).active_hooks(MODIFY);
         let platform = scene.fixed(platform.translation(vec2(0.0, 2.0)));
-        // From 0.5 m up to 1.5 m, so that this is how high its feet come.
-        let jumps = [0.9, 1.3, 1.7, 1.95, 2.2].map(|feet: f64| {
-            let speed = (2.0 * G * (feet - 0.2)).sqrt();
-            let jumps = block().translation([8.0 * feet, 0.2]).linvel([0.0, speed]);
-            let jumps = if small { jumps.small_strain() } else { jumps };
-            (feet, scene.flexible(jumps))
+        // How high their feet come, the lowest of them where they are aslant: others are above the platform then.
+        let jumps = [
+            (0.9, 0.0),
+            (1.3, 0.0),
+            (1.7, 0.0),
+            (1.95, 0.0),
+            (2.2, 0.0),
+            (2.3, 0.3),
+            (2.4, -0.3),
+            (2.45, 0.2),
+        ];
+        let jumps = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| {
+            let (feet, turn) = jumps[k];
+            let jumps = block().translation([3.0 * k as f64 - 12.0, -1.0]);
+            let jumps = jumps.rotation(turn);
+            let handle = scene.flexible(if small { jumps.small_strain() } else { jumps });
+            let body = scene.bodies.get_mut(handle).expect("it is there");
+            let heights = body.positions().chunks_exact(2).map(|at| at[1]);
+            let low = heights.fold(f64::INFINITY, f64::min);
+            let speed = (2.0 * G * (feet - low)).sqrt();
+            body.set_linvel([0.0, speed]).expect("a velocity");
+            (feet, handle)
         });
         let hooks = Watched(OneWay(platform), AtomicUsize::new(0));
         let listener = Listener::default();
