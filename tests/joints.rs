@@ -65,6 +65,9 @@ mod touching;
 #[path = "joints/light_hub.rs"]
 mod light_hub;
 
+#[path = "joints/light_partner.rs"]
+mod light_partner;
+
 #[path = "joints/stiff_chain.rs"]
 mod stiff_chain;
 

@@ -7,6 +7,7 @@
 use super::changes::{Changes, WorldChange};
 use super::claim_attachments::{Attached, ClaimedAttachment};
 use super::claim_multibodies::ClaimedMultibodies;
+use super::light_partners::is_lighter;
 use super::pair_name::PairName;
 use super::quarantine::is_out;
 use super::roster::Roster;
@@ -15,7 +16,8 @@ use super::strikes::Strikes;
 use super::sweep::Sweep;
 use super::waking::{wake_met, wake_surfaces};
 use super::walk::{ClaimedPair, Map, Walk};
-use crate::body::{Attachment, AttachmentKind, FlexBody, FlexBodySet};
+use crate::body::{AttachmentKind, FlexBody, FlexBodySet};
+use crate::constraint::contact::Owner;
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 
@@ -179,17 +181,25 @@ impl Claims {
         self.walk.members.component_of_flex(flex)
     }
 
-    /// Whether something may touch a flexible body in the step, or a pin or weld holds it.
-    pub fn may_press(&self, flex: usize, flex_bodies: &FlexBodySet) -> bool {
+    /// Whether something may touch a flexible body in the step, or a pin or weld holds it to what is [not lighter](is_lighter) than the nodes held.
+    pub fn may_press(&self, flex: usize, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) -> bool {
         let meets = |pair: &ClaimedPair| match *pair {
             ClaimedPair::FlexRigid(own, _) => own == flex,
             ClaimedPair::FlexFlex(one, other) => one == flex || other == flex,
             ClaimedPair::RigidRigid(..) => false,
         };
+        let own = flex_bodies.at_index(self.flex[flex].index);
         let holds = |tie: &ClaimedAttachment| {
             let attachment = flex_bodies.attachments().get(tie.parts);
-            let kind = attachment.map(Attachment::kind);
-            !matches!(kind, None | Some(AttachmentKind::Spring { .. }))
+            let (Some(attachment), Some((_, body))) = (attachment, own) else {
+                return false;
+            };
+            if matches!(attachment.kind(), AttachmentKind::Spring { .. }) || tie.other.is_some() {
+                return false;
+            }
+            let rigid = tie.rigid.filter(|&handle| self.has(handle));
+            let rigid = rigid.and_then(|handle| sets.bodies.get(handle));
+            !rigid.is_some_and(|rigid| is_lighter(rigid, body, attachment))
         };
         let is_own = |tie: &&ClaimedAttachment| tie.flex == flex || tie.other == Some(flex);
         self.pairs().iter().any(meets) || self.attached().iter().filter(is_own).any(holds)
@@ -209,6 +219,20 @@ impl Claims {
     pub fn has_collider(&self, handle: ColliderHandle, colliders: &ColliderSet) -> bool {
         let parent = || colliders.get(handle).and_then(Collider::parent);
         self.flex.slot_of(handle).is_some() || parent().is_some_and(|parent| self.has(parent))
+    }
+
+    /// Whether what an owner's forces move takes part in the step: a flexible body, or a dynamic one that was claimed.
+    pub fn moves(&self, owner: Owner, sets: &RapierSets<'_>) -> bool {
+        match owner {
+            Owner::Flex(index) => self.flex.iter().any(|flex| flex.index == index),
+            Owner::Collider(index) => {
+                let collider = sets.colliders.get_unknown_gen(index);
+                let parent = collider.and_then(|(collider, _)| collider.parent());
+                parent.is_some_and(|parent| {
+                    self.has(parent) && sets.bodies.get(parent).is_some_and(RigidBody::is_dynamic)
+                })
+            }
+        }
     }
 
     /// What the user's filter said of a pair in this step, if it was asked.

@@ -131,7 +131,7 @@ impl Gatherer {
             return Ok(());
         };
         let is_explicit = settings.step.is_explicit();
-        let may_press = || sources.claims.may_press(flex, flex_bodies);
+        let may_press = || sources.claims.may_press(flex, sets, flex_bodies);
         let is_touched = body.changes_mass() && (is_explicit || may_press());
         let Some(body) = flex_bodies.at_index_mut(index) else {
             return Ok(());

@@ -29,6 +29,7 @@ mod joint_impulses;
 mod joints;
 mod landing;
 mod lent_multibodies;
+mod light_partners;
 mod loan;
 mod look_again;
 mod masters;

@@ -66,6 +66,14 @@ impl MassMatrix {
         }
     }
 
+    /// Row sum of a node (kg).
+    pub fn node_sum(&self, node: usize) -> f64 {
+        match self {
+            Self::Lumped(mass) => mass[node],
+            Self::Consistent(matrix) => matrix.row_blocks(node).iter().map(|block| block[0]).sum(),
+        }
+    }
+
     /// `x·M y` over all dofs.
     pub fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
         match self {

@@ -70,7 +70,7 @@ pub struct JointReport {
     pub joint: Held,
     /// Where it pulls at the second body, or the mean of the nodes it holds (m).
     pub position: [f64; 2],
-    /// Mean force over the step on the second body of the joint, or on the attached body (N).
+    /// Mean force over the step on the second body of the joint, or on the attached body (N); with small strain a part of it acts in the step after.
     pub force: [f64; 2],
     /// Mean torque on it about the position (N m).
     pub torque: f64,

@@ -121,7 +121,8 @@ impl Attachment {
         &self.nodes
     }
 
-    /// Mean force on the attached body over the last step (N).
+    /// Mean force on the attached body over the last step (N). With small strain a part of it acts in the step after, as that of
+    /// [contacts](crate::pipeline::ContactReport) does.
     pub fn force(&self) -> [f64; 2] {
         self.force
     }

@@ -67,7 +67,7 @@ pub use settings::{ConeOutcome, ConeSettings};
 use crate::math::judged::Judged;
 use interior::Interior;
 use law::project;
-use proximal::{Ending, Proximal};
+use proximal::{Ending, FINE, Proximal};
 use reduced::{Measure, Reduced};
 use sweep::Sweep;
 use system::System;
@@ -270,8 +270,9 @@ impl ConeSolver {
         self.system.solve_bodies(&mut self.state.a);
     }
 
-    /// Allows the error of `w` that the settings admit, but no more than the share [`SETTLING`] of what the start is off: what comes to rest is
-    /// solved the finer the less it moves, and comes to rest.
+    /// Allows the errors that the settings admit, but no more than the share [`SETTLING`] of what the start is off in the mean of squares: what
+    /// comes to rest is solved the finer the less it moves, and comes to rest. In the mean, since errors of all rows together bring that share of
+    /// the energy of what moves, however few rows that are: by the largest, one box that slips would let a thousand others tremble.
     fn set_goal(&mut self, problem: &ConeProblem) {
         let State {
             forces,
@@ -284,7 +285,12 @@ impl ConeSolver {
             .reduced
             .measure(problem, a, forces, slip, &self.settings, status);
         *measure = Some(start);
-        self.reduced.enough = self.settings.gap_tolerance.min(SETTLING.get() * start.miss);
+        let (settings, share) = (&self.settings, SETTLING.get());
+        self.reduced.enough = settings.gap_tolerance.min(share * start.mean.miss);
+        let least = FINE * settings.tolerance;
+        self.reduced.goal = settings
+            .tolerance
+            .min((share * start.mean.residual).max(least));
     }
 
     /// Runs one solver after the other until one succeeds; whether the interior point was among them.

@@ -33,7 +33,7 @@ const PATIENCE: usize = 6;
 const GAIN: f64 = 0.1;
 
 /// Share of the tolerance to which what is solved is refined, as far as the factor at hand goes.
-const FINE: f64 = 1e-4;
+pub(super) const FINE: f64 = 1e-4;
 
 /// Imbalance, relative to forces, that rounding may keep up: stiff penalties times the digits of a number.
 const ROUNDING: f64 = 1e-7;
@@ -143,8 +143,10 @@ impl Proximal {
             let n_before = system.n_changes;
             // what is solved is only refined as far as the factor at hand, or a first one of a penalty, goes
             let most = match &refined {
-                Some(_) => (start + n_refining).min(limit).max(system.spent()),
-                None => limit,
+                Some(best) if best.is_settled(reduced) => {
+                    (start + n_refining).min(limit).max(system.spent())
+                }
+                _ => limit,
             };
             self.place(problem, reduced, state);
             let norm = match self.predict(problem, reduced, system, state, most) {
@@ -183,7 +185,8 @@ impl Proximal {
             // where errors are admitted, only what rests is refined: what has changed its pieces goes on moving
             let has_moved = reduced.enough > 0.0 && system.n_changes > n_changes + 1;
             let is_undilated = measure.relative_dilation <= settings.tolerance;
-            if is_solved && (has_moved || is_fine && is_undilated) {
+            let may_end = has_moved && measure.is_settled(reduced);
+            if is_solved && (may_end || is_fine && is_undilated) {
                 std::mem::swap(&mut state.a, &mut self.settled);
                 state.measure = Some(measure);
                 return (Ending::Solved, measure);
@@ -215,7 +218,7 @@ impl Proximal {
                 (level, n_idle, is_lowered) = (level - 1, 0, true);
                 self.penalize(reduced, LEVELS[level]);
             }
-            let is_slow = measure.residual > settings.tolerance && measure.residual > 0.2 * last;
+            let is_slow = measure.residual > reduced.goal && measure.residual > 0.2 * last;
             last = measure.residual;
             let may_stiffen = system.n_changes == n_before
                 || LEVELS.get(level + 1).is_some_and(|&next| next <= MODERATE);
@@ -223,7 +226,7 @@ impl Proximal {
                 && may_stiffen
                 && !is_lowered
                 && level + 1 < LEVELS.len()
-                && refined.is_none()
+                && refined.is_none_or(|best| !best.is_settled(reduced))
             {
                 level += 1;
                 self.penalize(reduced, LEVELS[level]);

@@ -20,6 +20,17 @@ pub(super) struct Reduced {
     pub largest_load: f64,
     /// The error of `w` that is good enough, in its unit.
     pub enough: f64,
+    /// The residual that what comes to rest is solved to, if it can be (-).
+    pub goal: f64,
+}
+
+/// Root mean squares over the rows that something can move.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Mean {
+    /// Of the natural map, relative to the largest force (-).
+    pub residual: f64,
+    /// The same in the unit of `w`.
+    pub miss: f64,
 }
 
 /// How well forces and motion fit the laws.
@@ -29,6 +40,8 @@ pub(super) struct Measure {
     pub residual: f64,
     /// The same in the unit of `w`.
     pub miss: f64,
+    /// Root mean squares of both over the rows.
+    pub mean: Mean,
     /// What wrong dilation leaves, in the unit of `w`: the gap `mu |sigma - |w_t||` of what carries a force, or the overlap that it hides of what
     /// carries none.
     pub dilation: f64,
@@ -43,6 +56,11 @@ impl Measure {
     pub fn is_within(&self, settings: &ConeSettings, enough: f64) -> bool {
         let is_near = self.residual <= settings.tolerance || self.miss <= enough;
         is_near && !self.is_dilated
+    }
+
+    /// Whether the answer is as good as what the start was off by asks for.
+    pub fn is_settled(&self, reduced: &Reduced) -> bool {
+        self.residual <= reduced.goal || self.miss <= reduced.enough
     }
 
     /// The worse of both defects.
@@ -155,6 +173,7 @@ impl Reduced {
         status: &mut [ConeStatus],
     ) -> Measure {
         let mut measure = Measure::default();
+        let (mut sums, mut n_rows) = (Mean::default(), 0);
         let scale = self.force_scale(forces);
         for (index, row) in problem.rows.iter().enumerate() {
             status[index] = ConeStatus::Open;
@@ -180,6 +199,9 @@ impl Reduced {
             };
             measure.miss = measure.miss.max(miss);
             measure.residual = measure.residual.max(term);
+            sums.miss += miss * miss;
+            sums.residual += term * term;
+            n_rows += 1;
             if row.has_tangent() {
                 // more dilation than slip hides the overlap of what carries no force, any that is wrong leaves a gap under what slides
                 let (gap, admitted) = if force[0] > 0.0 {
@@ -194,6 +216,11 @@ impl Reduced {
                     && gap > settings.tolerance * weight * scale;
             }
         }
+        let root = |sum: f64| (sum / f64::from(n_rows.max(1))).sqrt();
+        measure.mean = Mean {
+            residual: root(sums.residual),
+            miss: root(sums.miss),
+        };
         measure
     }
 

@@ -178,3 +178,31 @@ fn an_open_contact_that_slides_costs_nothing() {
     assert_eq!(answer.outcome.n_factorizations, 0);
     assert_eq!(answer.p, [[0.0; 2]]);
 }
+
+/// One row of many that is off lets the others be off by its share in the mean of squares, not by its own.
+#[test]
+fn what_is_good_enough_goes_by_the_mean_of_what_the_start_misses() {
+    let n = 400;
+    let mut scene = Scene::bodies(&vec![[2.0, 1.0]; n]);
+    for body in 0..n {
+        let grips = Scene::grips(body, 1.0, [0.0, 1.0], [0.0; 2]);
+        let law = ConeLaw::Contact { friction: 0.5 };
+        scene.row(law, [0.0; 2], [0.0; 2], &grips);
+        scene.load[4 * body + 1] = -3.0;
+    }
+    scene.estimate();
+    let mut solver = ConeSolver::new(ConeSettings {
+        gap_tolerance: 1.0,
+        tolerance: 1e-3,
+        ..ConeSettings::default()
+    });
+    // All at rest but for the first, whose force is off by 0.2: its gap changes by that over its mass, and its force by all of it.
+    let mut start = vec![[3.0, 0.0]; n];
+    start[0] = [2.8, 0.0];
+    solve_with(&mut solver, &scene, &start, &vec![0.0; n]);
+    let mean = 0.1 / (n as f64).sqrt();
+    let enough = SETTLING.get() * mean;
+    assert!((solver.reduced.enough - enough).abs() < 1e-12 * mean);
+    let goal = SETTLING.get() * (0.2 / 3.0) / (n as f64).sqrt();
+    assert!((solver.reduced.goal - goal).abs() < 1e-12 * goal);
+}
