@@ -345,3 +345,62 @@ fn what_is_crushed_costs_no_more_pivots_than_may_be_spent() {
         assert!(worst <= budget + 4000, "{worst} pivots of {budget}");
     }
 }
+
+/// A motor turns a ratchet's wheel under a reed of small strain: where the tip of a tooth was about to pass the end of the reed, eight parts of a step were
+/// too few, in every step the same, and the wheel stood still for good.
+#[test]
+fn a_ratchet_turns_on_under_its_reed() {
+    let (n_teeth, outer, inner, speed) = (12, 0.2, 0.17, 1.5);
+    let mut scene = Scene::in_free_space(1.0 / 60.0);
+    let axle = scene.world.insert_body(RigidBodyBuilder::fixed());
+    let properties = MassProperties::new(vec2(0.0, 0.0), 1.0, 0.02);
+    let wheel = RigidBodyBuilder::dynamic().additional_mass_properties(properties);
+    let wheel = scene.world.insert_body(wheel);
+    let corner = |radius: f64, angle: f64| vec2(radius * angle.cos(), radius * angle.sin());
+    for tooth in 0..n_teeth {
+        let [from, to] = [tooth, tooth + 1].map(|k| {
+            let turns = f64::from(k) / f64::from(n_teeth);
+            std::f64::consts::TAU * turns
+        });
+        let corners = [
+            vec2(0.0, 0.0),
+            corner(inner, from + 1e-3),
+            corner(outer, to),
+        ];
+        let shape = ColliderBuilder::convex_hull(&corners).expect("a tooth");
+        let shape = shape.density(10.0).friction(0.3);
+        scene.world.insert_collider(shape, Some(wheel));
+    }
+    let motor = RevoluteJointBuilder::new()
+        .motor_velocity(real(-speed), 1e5)
+        .motor_model(MotorModel::ForceBased);
+    scene.world.insert_impulse_joint(axle, wheel, motor);
+    let (length, turn) = (0.25, -20_f64.to_radians());
+    let root = [-0.01 - length * turn.cos(), 0.185 - length * turn.sin()];
+    let reed = FlexBodyBuilder::rectangle([length, 0.006], [25, 2])
+        .material(
+            LinearElastic::plane_strain(1e9, 0.3)
+                .density(1200.0)
+                .rayleigh(2e-4),
+        )
+        .thickness(0.02)
+        .small_strain()
+        .friction(0.3)
+        .rotation(turn)
+        .translation(root)
+        .pin_where(|[x, _]| x < 1e-9, Pin::both());
+    scene.flexible(reed);
+    let (mut turned, mut last, mut n_stuck) = (0.0, 0.0, 0);
+    for _ in 0..240 {
+        let report = scene.try_step().expect("a step");
+        n_stuck += usize::from(report.quality() == Quality::Unfinished);
+        let angle = turn_of(&scene.world.bodies[wheel]);
+        let way = angle - last;
+        turned += way - std::f64::consts::TAU * (way / std::f64::consts::TAU).round();
+        last = angle;
+    }
+    assert!(
+        turned < -0.9 * 4.0 * speed,
+        "{turned} rad, {n_stuck} steps unfinished"
+    );
+}

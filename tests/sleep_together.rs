@@ -125,3 +125,45 @@ fn a_load_that_is_set_to_what_it_is_wakes_nobody() {
     assert_eq!(set(&mut scene, 1.0), 1);
     assert_eq!(set(&mut scene, 2.0), 0);
 }
+
+/// Balls between soft blocks, too far off to touch: at rest they let sleep what they lie beside, and what they claim in its sleep.
+#[test]
+fn balls_that_rest_between_sleepers_let_them_sleep() {
+    for n_balls in [1, 3] {
+        for (gap, later) in [(0.005, 0.1), (0.02, 0.3), (0.02, 0.45)] {
+            let mut scene = Scene::new(1.0 / 60.0);
+            scene.ground(0.6);
+            let mut x = 0.0;
+            let mut blocks = Vec::new();
+            let mut balls = Vec::new();
+            for _ in 0..3 {
+                blocks.push(scene.flexible(block(2e8).translation([x, 1e-3])));
+                x += 0.4 + gap;
+                for _ in 0..n_balls {
+                    let ball = RigidBodyBuilder::dynamic().translation(vec2(x + 0.08, 0.08));
+                    let shape = ColliderBuilder::ball(0.08).density(500.0);
+                    balls.push(scene.world.insert(ball, shape).0);
+                    x += 0.161;
+                }
+                x += gap;
+            }
+            scene.steps(300);
+            let what = format!("{n_balls} balls, {gap} m, {later} s");
+            for who in 0..3 {
+                let body = scene.bodies.get_mut(blocks[who]).expect("it is there");
+                body.wake_up();
+                scene.steps((later * 60.0) as usize);
+                let ball = scene.world.bodies.get_mut(balls[who]).expect("a ball");
+                ball.wake_up(true);
+                scene.steps((later * 30.0) as usize);
+            }
+            scene.steps(90);
+            for step in 0..60 {
+                scene.step();
+                assert_eq!(scene.report().n_asleep(), 3, "{what}: {step}");
+                let mut all = balls.iter().map(|ball| &scene.world.bodies[*ball]);
+                assert!(all.all(RigidBody::is_sleeping), "{what}: {step}");
+            }
+        }
+    }
+}

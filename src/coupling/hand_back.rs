@@ -7,6 +7,7 @@ use super::landing::Landing;
 use super::masters::{Masters, cap_speed};
 use super::placed::{Placed, pose_after};
 use super::sets::RapierSets;
+use super::waking::keep_timers;
 use crate::math::{REAL_EPSILON, Vec2, atan2, from_rapier, tan, to_rapier, wrap_angle};
 use crate::rapier::math::{Pose, Real, Rotation};
 use crate::rapier::prelude::*;
@@ -20,12 +21,8 @@ pub(super) fn hand_back(
 ) {
     let dt = f64::from(sets.integration_parameters.dt);
     let iterations = sets.integration_parameters.num_solver_iterations;
+    wake(landings, sets);
     for landing in landings {
-        let is_sleeping = |body: &RigidBody| body.is_sleeping();
-        if sets.bodies.get(landing.handle).is_some_and(is_sleeping) {
-            // Rapier knows nothing of attachments and may find an attached body at rest alone.
-            sets.islands.wake_up(sets.bodies, landing.handle, true);
-        }
         if is_link(landing, sets) {
             // Moved by its joints.
             continue;
@@ -46,6 +43,26 @@ pub(super) fn hand_back(
         // Rapier integrates a linearised rotation, `n` times per step.
         body.set_angvel((tan(turned / n) * n / dt) as Real, false);
     }
+}
+
+/// Wakes claimed bodies that sleep, those that move for good: rapier knows nothing of attachments and may find an attached body at rest alone. What
+/// rests beside a body that is awake sleeps on as soon as it may.
+fn wake(landings: &[Landing], sets: &mut RapierSets<'_>) {
+    let is_sleeping = |bodies: &RigidBodySet, handle| {
+        let body: Option<&RigidBody> = bodies.get(handle);
+        body.is_some_and(RigidBody::is_sleeping)
+    };
+    let mut asleep = landings.iter().map(|landing| landing.handle);
+    if !asleep.any(|handle| is_sleeping(sets.bodies, handle)) {
+        return;
+    }
+    keep_timers(sets, |sets| {
+        for landing in landings {
+            if is_sleeping(sets.bodies, landing.handle) {
+                sets.islands.wake_up(sets.bodies, landing.handle, true);
+            }
+        }
+    });
 }
 
 /// Gives claimed bodies their end velocities after rapier's step.

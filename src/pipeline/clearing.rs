@@ -1,11 +1,9 @@
 //! Writing reports: they are cleared with their buffers, and told what belongs to no island.
 
-use super::entries::ContactReport;
 use super::participant::{Held, Participant};
 use super::quality::Unsolved;
 use super::report::StepReport;
 use crate::coupling::RapierSets;
-use crate::math::HashSet;
 
 impl StepReport {
     /// Forgets the islands' solutions of a step that is solved again.
@@ -61,20 +59,16 @@ impl StepReport {
         self.energy.dissipated = dissipated;
     }
 
-    /// Keeps the contacts of the step before whose bodies `sleep`, unless they have been solved again: a body may fall asleep in the step that solves it.
-    pub(super) fn keep_contacts(&mut self, sleeps: impl Fn(Participant) -> bool) {
-        let pair = |contact: &ContactReport| {
-            let [one, other] = [contact.contactor.owner(), contact.target.owner()];
-            if one <= other {
-                (one, other)
-            } else {
-                (other, one)
-            }
-        };
-        let solved: HashSet<_> = self.contacts.iter().map(pair).collect();
+    /// Keeps the contacts of the step before of those who `sleep` and had no `part` in this one. What was solved is told as it was, whether
+    /// its contacts have closed or opened: a body may fall asleep in the step that solves it.
+    pub(super) fn keep_contacts(
+        &mut self,
+        sleeps: impl Fn(Participant) -> bool,
+        part: impl Fn(Participant) -> bool,
+    ) {
         let kept = self.contacts_before.iter().filter(|contact| {
-            (sleeps(contact.contactor) || sleeps(contact.target))
-                && !solved.contains(&pair(contact))
+            let pair = [contact.contactor, contact.target];
+            pair.into_iter().any(&sleeps) && !pair.into_iter().any(&part)
         });
         self.contacts.extend(kept);
     }

@@ -19,13 +19,16 @@ use crate::coupling::Span;
 use crate::kkt::{DOUBLED, GAINED};
 use crate::system::Step;
 
-/// How often a step may be cut at most after this many unfinished ones on end: once less after each, until none is left, and all `most` times again after
-/// as many steps, then twice as many, and so on. A step that ends where it began leaves the next one what it could not finish itself: without
-/// another try what holds it up, long gone, would do so for ever.
+/// How often a step may be cut at most after this many unfinished ones on end: once less after each, until none is left. After as many steps it is tried
+/// again, in halves once more than `most` times, then twice more after twice as many, and so on. A step that ends where it began leaves the next one what
+/// it could not finish itself: without another try what holds it up, long gone, would do so for ever, and so would what `most` cuts are too few for.
 fn n_cuts_after(n_unfinished: usize, most: usize) -> usize {
-    let round = n_unfinished / (most + 1) + 1;
-    let begun = (most + 1) * ((1 << round.ilog2()) - 1);
-    most.saturating_sub(n_unfinished - begun)
+    let n_tries = (n_unfinished / (most + 1) + 1).ilog2();
+    let begun = (most + 1) * ((1 << n_tries) - 1);
+    match n_unfinished - begun {
+        0 if most > 0 => most + n_tries as usize,
+        n_since => most.saturating_sub(n_since),
+    }
 }
 
 impl Solver {
@@ -146,18 +149,20 @@ mod tests {
     use super::n_cuts_after;
 
     #[test]
-    fn what_is_not_finished_is_cut_less_and_less_and_tried_again_ever_more_seldom() {
-        for most in [0, 1, 3, 5] {
+    fn what_is_not_finished_is_cut_less_and_less_and_tried_again_ever_more_seldom_and_finer() {
+        for most in [1, 3, 5] {
             let cuts: Vec<usize> = (0..200).map(|n| n_cuts_after(n, most)).collect();
-            let falling: Vec<usize> = (0..=most).rev().collect();
-            let whole = |n: usize| cuts[n..].starts_with(&falling);
             let round = most + 1;
-            for begun in [0, round, 3 * round, 7 * round, 15 * round] {
-                assert!(whole(begun), "{most}: {begun}");
+            let falling: Vec<usize> = (0..most).rev().collect();
+            for n_tries in 0..4 {
+                let begun = round * ((1 << n_tries) - 1);
+                assert_eq!(cuts[begun], most + n_tries, "{most}: {begun}");
+                assert!(cuts[begun + 1..].starts_with(&falling), "{most}: {begun}");
+                let idle = &cuts[begun + round..2 * begun + round];
+                assert!(idle.iter().all(|n| *n == 0), "{most}: {begun}");
             }
-            let n_whole = cuts.iter().filter(|cut| **cut == most).count();
-            assert!(most == 0 || n_whole <= 1 + (200 / round + 1).ilog2() as usize);
         }
+        assert!((0..200).all(|n| n_cuts_after(n, 0) == 0));
         // Whatever the number of steps is.
         assert_eq!(n_cuts_after(u32::MAX as usize, 5), 0);
     }

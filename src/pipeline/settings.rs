@@ -39,7 +39,8 @@ pub struct FlexParameters {
     /// Most passes (Newton iterations) of an island in a step, at least 1; 20 by default, twice as many along a feasible path. What becomes of an island that needs more is told
     /// by [`StepReport::quality`](super::StepReport::quality).
     pub max_newton: usize,
-    /// How many times the step of an island that is not solved may be cut in halves; 3 by default, so that it is taken in 8 parts at most.
+    /// How many times the step of an island that is not solved may be cut in halves; 3 by default, so that it is taken in 8 parts at most. What is not
+    /// finished for many steps is tried with more cuts now and then.
     /// See [`StepReport::n_parts`](super::StepReport::n_parts). Explicit steps are not cut.
     pub max_cutbacks: usize,
     /// The same of an island with bodies of large strain, whose equations get easier with every cut; 5 by default. A step after which such a

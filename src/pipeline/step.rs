@@ -239,8 +239,10 @@ impl FlexPipeline {
         let flex = &self.claims.flex;
         if !flex.asleep().is_empty() {
             self.memory.keep(|owner| flex.sleeps(sets, owner));
-            self.report
-                .keep_contacts(|one| flex.sleeps(sets, one.owner()));
+            self.report.keep_contacts(
+                |one| flex.sleeps(sets, one.owner()),
+                |one| self.claims.moves(one.owner(), sets),
+            );
             self.report.keep_joints(|held| joins_sleepers(held, sets));
         }
         self.memory.turn_over();
