@@ -111,7 +111,7 @@
 //!
 //! # When a step fails
 //!
-//! A step that returns a [`StepError`](crate::pipeline::StepError) has changed nothing: mend what the text names, or leave it out, and step again. A body whose motion would not be finite leaves the world
+//! A step that returns a [`StepError`](crate::pipeline::StepError) has changed nothing but the report, which is that of no step then (checksums of snapshots count it): mend what the text names, or leave it out, and step again. A body whose motion would not be finite leaves the world
 //! instead ([`quarantined_flex_bodies`](crate::pipeline::StepReport::quarantined_flex_bodies)), and the rest goes on.
 //!
 //! # Saving

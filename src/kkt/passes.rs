@@ -39,6 +39,8 @@ pub(super) struct Passes {
     /// Contacts that pressed in the last step, and their candidates in ascending order.
     pub parted: Vec<ActiveContact>,
     pub pressed: Vec<usize>,
+    /// Candidates of the contacts at hand in ascending order, while what has parted is looked for.
+    pub listed: Vec<usize>,
     /// Contacts that are new in the last list of near pairs.
     pub fresh: Vec<usize>,
     /// Contacts of the last list that have taken over the force of another one.

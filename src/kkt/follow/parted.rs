@@ -21,16 +21,17 @@ pub(super) fn note_pressing(island: &mut Island) {
 /// energy it adds there can be taken back along its row only.
 pub(in crate::kkt) fn list_parted(island: &mut Island) {
     end_losses(island);
+    let listed = island.contacts.iter().map(|contact| contact.candidate);
+    island.passes.listed.clear();
+    island.passes.listed.extend(listed);
+    island.passes.listed.sort_unstable();
     for slot in 0..island.passes.parted.len() {
         let before = island.passes.parted[slot];
         let Some(base) = before.base else {
             continue;
         };
-        if island
-            .contacts
-            .iter()
-            .any(|contact| contact.candidate == before.candidate)
-        {
+        let found = island.passes.listed.binary_search(&before.candidate);
+        if found.is_ok() {
             continue;
         }
         let gap = f64::INFINITY;
