@@ -2,7 +2,7 @@
 
 use super::shapes::ShapePart;
 use crate::constraint::contact::{
-    Candidate, Cone, ContactKey, ContactLaw, Owner, Pair, PlacedPart,
+    Candidate, Cone, ContactKey, ContactLaw, Owner, Pair, PlacedPart, closest_surface_point,
 };
 use crate::constraint::geometry::Pose2;
 use crate::kkt::Island;
@@ -208,7 +208,7 @@ pub(super) fn flex_rigid(
                 flex,
                 segments,
             };
-            if radius == 0.0 {
+            if radius == 0.0 || is_buried(island, flex, segments, ends[0].point(arm)) {
                 let pair = pair(segments);
                 island.candidates.push(Candidate { key, pair, law });
                 continue;
@@ -224,6 +224,17 @@ pub(super) fn flex_rigid(
             }
         }
     }
+}
+
+/// Whether a point begins the step inside the surface of a flexible block, as the centre of a ball that was put there: it leaves by what is nearest, where
+/// single segments and their nodes would let it go through, as it is behind all of them.
+fn is_buried(island: &Island, flex: usize, segments: (usize, usize), point: Vec2) -> bool {
+    let Block::Flex(block) = &island.blocks[flex] else {
+        return false;
+    };
+    let listed = &island.segments[segments.0..segments.1];
+    let nearest = closest_surface_point(block, listed, [point; 2], None);
+    listed.len() > 1 && nearest.is_some_and(|nearest| nearest.distance < 0.0)
 }
 
 /// Candidates between two flexible blocks: nodes of the contactor, and sharp corners of the target, one-sided.

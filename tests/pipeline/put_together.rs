@@ -1,6 +1,6 @@
 //! Bodies that the user puts into others: rigid ones into flexible ones that have been there before, and flexible ones into each other.
 
-use crate::common::{G, Scene, real, vec2};
+use crate::common::{G, Scene, from_outline, place_of, real, vec2};
 use foil2d::pipeline::{InsertionNote, Participant, Quality};
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
@@ -98,6 +98,49 @@ fn what_is_stuck_for_good_is_told_in_every_step_and_costs_one_try() {
     for span in [30..60, 60..120, 120..240] {
         let n_tried = in_parts.iter().filter(|step| span.contains(*step)).count();
         assert!((1..=3).contains(&n_tried), "{span:?}: {in_parts:?}");
+    }
+}
+
+/// A ball, or a capsule, whose centre is inside a block comes out by the nearest way, as a box does: it fell through it.
+#[test]
+fn what_is_round_comes_out_of_what_its_centre_is_in() {
+    for is_small in [false, true] {
+        for (shape, aside) in [
+            (ColliderBuilder::ball(0.25), 0.03),
+            (ColliderBuilder::ball(0.25), 0.0),
+            (ColliderBuilder::capsule_x(0.05, 0.25), 0.03),
+        ] {
+            for y in [0.61, 0.59, 0.45] {
+                let mut scene = Scene::new(1.0 / 60.0);
+                scene.ground(0.5);
+                let block = FlexBodyBuilder::rectangle([1.0, 0.6], [10, 6]).material(
+                    LinearElastic::plane_strain(1e6, 0.3)
+                        .density(1000.0)
+                        .rayleigh(5e-3),
+                );
+                let block = scene.flexible(if is_small {
+                    block.small_strain()
+                } else {
+                    block
+                });
+                scene.steps(60);
+                let body = RigidBodyBuilder::dynamic().translation(vec2(0.5 + aside, y));
+                let (body, _) = scene.world.insert(body, shape.clone().density(1000.0));
+                for _ in 0..90 {
+                    scene.step();
+                    let height = f64::from(scene.world.bodies[body].translation().y);
+                    assert!(
+                        height < 1.2,
+                        "{y}, {aside}, small {is_small}: thrown to {height} m"
+                    );
+                }
+                // Up or down, it is beside the block, not in it.
+                let place = place_of(&scene.world.bodies[body]);
+                let away = from_outline(scene.body(block), place);
+                assert!(away > 0.24, "{y}, {aside}, small {is_small}: {away} m");
+                assert!(scene.report().gap_violation() < 1e-6);
+            }
+        }
     }
 }
 

@@ -70,7 +70,9 @@ impl Candidate {
             } => {
                 let point = scene.blocks[rigid].position(Point::Arm(arm));
                 let start = scene.blocks[rigid].start_position(Point::Arm(arm));
-                let hit = if radius > 0.0 {
+                // What is round has a candidate for each segment, or one for all if it begins inside.
+                let is_of_one = radius > 0.0 && segments.1 == segments.0 + 1;
+                let hit = if is_of_one {
                     facing_point(
                         flex_of(scene, flex)?,
                         &scene.segments[segments.0..segments.1],
