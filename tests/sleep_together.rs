@@ -167,3 +167,30 @@ fn balls_that_rest_between_sleepers_let_them_sleep() {
         }
     }
 }
+
+/// Two blocks on one floor, of which one keeps on being pushed: the other's contacts are told as it sleeps.
+#[test]
+fn contacts_of_a_sleeper_are_told_while_another_moves_on_its_floor() {
+    let mut scene = Scene::new(1.0 / 60.0);
+    let floor = scene.ground(0.6);
+    let [pushed, sleeper] = [-2.0, 1.0].map(|x| scene.flexible(block(2e8).translation([x, 1e-3])));
+    let weight = G * scene.body(sleeper).mass();
+    for step in 0..400 {
+        let push = 0.02 * G * f64::from(step % 2);
+        let body = scene.bodies.get_mut(pushed).expect("it is there");
+        body.set_body_force([push, 0.0]).expect("a push");
+        scene.step();
+        if step >= 300 {
+            assert_eq!(scene.report().n_asleep(), 1, "{step}");
+            let own = Participant::Flex(sleeper);
+            let told = scene.report().contacts().iter().filter(|contact| {
+                contact.contactor == own && contact.target == Participant::Rigid(floor)
+            });
+            let force: f64 = told.map(|contact| contact.normal_force).sum();
+            assert!(
+                (force / weight - 1.0).abs() < 1e-3,
+                "{step}: {force} of {weight} N"
+            );
+        }
+    }
+}

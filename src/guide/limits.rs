@@ -81,7 +81,7 @@
 //!   [`StepReport::slip_violation`].
 //! - **Put into each other**, bodies part by and by; where a surface passes right through another there may be no way out. See: [`StepReport::insertion_notes`] once, `gap_violation` until they are apart. Do: put them apart;
 //!   [`doctor::examine`](crate::doctor::examine) names them. Two that were laid into each other exactly in line may stay so where nothing disturbs them (no gravity, or small strain): `Quality::Unfinished`.
-//!   In `f64` worlds a ball or capsule whose centre is put inside a flexible body falls through it, told by `gap_violation` alone; a body that is put more than a cell deep across a polyline or height field may stay across it. A trimesh is met triangle by triangle: one that is raised into what lies on it may never let it out, at a third of a second a step. Do: move such terrain below what lies on it, in steps of
+//!   A body that is put more than a cell deep across a polyline or height field may stay across it. A trimesh is met triangle by triangle: one that is raised into what lies on it may never let it out, at a third of a second a step. Do: move such terrain below what lies on it, in steps of
 //!   less than its offset, or take a height field.
 //! - **Platforms that accelerate.** What lies on a kinematic body slips on it by a part of `a dt²` in every step though friction would hold: at 3 m/s² and 1/60 s by up to 34 mm in a second with small strain, 9 mm with
 //!   large, 6 mm in rapier alone. Do: shorten the step. On one that falls away by more than some .3 g (half of g with large strain) it presses in alternate steps only, by the right force in the mean, at any step.

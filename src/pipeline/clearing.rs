@@ -116,3 +116,56 @@ impl StepReport {
         before.join(unsolved);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::ContactReport;
+    use crate::rapier::prelude::ColliderHandle;
+
+    fn touch(contactor: u32, target: u32, normal_force: f64) -> ContactReport {
+        let [contactor, target] = [contactor, target]
+            .map(|index| Participant::Rigid(ColliderHandle::from_raw_parts(index, 0)));
+        ContactReport {
+            position: [0.0; 2],
+            normal: [0.0, 1.0],
+            gap: 0.0,
+            normal_force,
+            tangential_force: 0.0,
+            midway: [0.0; 2],
+            sticks: false,
+            contactor,
+            target,
+        }
+    }
+
+    /// 1 and 2 sleep, 3 is fixed; 4 and 5 take part, and 5 falls asleep in the step.
+    #[test]
+    fn contacts_are_kept_of_sleepers_that_had_no_part_in_the_step() {
+        let mut report = StepReport::default();
+        let before = [
+            (1, 2),
+            (1, 3),
+            (3, 2),
+            (1, 4),
+            (4, 2),
+            (5, 3),
+            (5, 4),
+            (4, 3),
+        ];
+        report.contacts_before = before.map(|(one, other)| touch(one, other, 7.0)).to_vec();
+        report.contacts = vec![touch(5, 3, 8.0)];
+        let among = |indices: &'static [u32]| {
+            move |one: Participant| match one {
+                Participant::Rigid(handle) => indices.contains(&handle.into_raw_parts().0),
+                Participant::Flex(_) => false,
+            }
+        };
+        report.keep_contacts(among(&[1, 2, 5]), among(&[4, 5]));
+        let told = [(5, 3, 8.0), (1, 2, 7.0), (1, 3, 7.0), (3, 2, 7.0)];
+        assert_eq!(
+            report.contacts,
+            told.map(|(one, other, force)| touch(one, other, force))
+        );
+    }
+}

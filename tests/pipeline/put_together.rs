@@ -1,6 +1,6 @@
 //! Bodies that the user puts into others: rigid ones into flexible ones that have been there before, and flexible ones into each other.
 
-use crate::common::{G, Scene, real, vec2};
+use crate::common::{G, Scene, from_outline, place_of, real, vec2};
 use foil2d::pipeline::{InsertionNote, Participant, Quality};
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
@@ -101,12 +101,9 @@ fn what_is_stuck_for_good_is_told_in_every_step_and_costs_one_try() {
     }
 }
 
-/// A ball, or a capsule, whose centre is inside a block comes out by the nearest way, as a box does: it fell through it, and still does in `f64` worlds
-/// (see `guide::limits`).
-#[cfg(not(feature = "f64"))]
+/// A ball, or a capsule, whose centre is inside a block comes out by the nearest way, as a box does: it fell through it.
 #[test]
 fn what_is_round_comes_out_of_what_its_centre_is_in() {
-    use crate::common::{from_outline, place_of};
     for is_small in [false, true] {
         for (shape, aside) in [
             (ColliderBuilder::ball(0.25), 0.03),

@@ -230,3 +230,42 @@ fn warm_steps_go_on_as_long_as_they_gain() {
         );
     }
 }
+
+/// One box that is pushed lets no other tremble: what changes sides on the way is no excuse for less than what moved asks for. (The interior point and
+/// what it hands over are good enough by the tolerance.)
+#[test]
+fn what_rests_is_settled_while_one_box_is_pushed() {
+    let (mut n_settled, mut n_asked) = (0, 0);
+    for body in (0..100).step_by(2) {
+        for push in [3.0, -6.0, 9.0, 30.0] {
+            let mut scene = pile(10, 10, |_| 1.0, 0.0);
+            let n = scene.rows.len();
+            let mut solver = ConeSolver::new(ConeSettings {
+                tolerance: 1e-6,
+                gap_tolerance: 1e-3,
+                ..ConeSettings::default()
+            });
+            let first = solve_with(&mut solver, &scene, &vec![[0.0; 2]; n], &vec![0.0; n]);
+            scene.load[4 * body] += push;
+            let again = solve_with(&mut solver, &scene, &first.p, &first.slip);
+            assert!(again.outcome.is_solved, "{body}, {push}");
+            if again.outcome.used_interior_point {
+                continue;
+            }
+            let measure = solver.reduced.measure(
+                &scene.problem(),
+                &again.a,
+                &again.p,
+                &again.slip,
+                &solver.settings,
+                &mut vec![ConeStatus::Open; n],
+            );
+            n_asked += 1;
+            n_settled += usize::from(measure.is_settled(&solver.reduced));
+        }
+    }
+    assert!(
+        n_asked > 50 && n_settled == n_asked,
+        "{n_settled} of {n_asked}"
+    );
+}
