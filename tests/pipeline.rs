@@ -9,6 +9,8 @@ mod half_spaces;
 mod late_loads;
 #[path = "pipeline/loads.rs"]
 mod loads;
+#[path = "pipeline/put_across.rs"]
+mod put_across;
 #[path = "pipeline/put_together.rs"]
 mod put_together;
 #[path = "pipeline/rapier_features.rs"]

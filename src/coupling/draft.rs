@@ -137,7 +137,7 @@ impl Draft {
                     .extend([(0, foot - far, none), (1, foot + far, none)]);
                 self.edges.push([0, 1]);
             }
-            Piece::Chain { points, edges } => {
+            Piece::Chain { points, edges, .. } => {
                 self.place.clear();
                 self.place.resize(points.len(), u32::MAX);
                 for edge in edges {

@@ -14,6 +14,7 @@ use super::rigid_ways::{RigidCores, RigidWay};
 use super::seats::OpenIsland;
 use super::sets::RapierSets;
 use super::shapes::{ShapeCache, pose_of};
+use super::tangles;
 use super::walk::ClaimedPair;
 use super::ways::{self, Draft, RigidSurface};
 use crate::constraint::contact::{ContactLaw, Owner};
@@ -84,7 +85,9 @@ impl PairGatherer {
                     other: owner_of(collider),
                 };
                 let mut law = law_of(sets.colliders, own.collider, collider)?;
-                if settings.uses_path && !HookBook::asks([own.collider, collider], sets) {
+                let is_across =
+                    settings.uses_path && !HookBook::asks([own.collider, collider], sets);
+                if is_across {
                     let led =
                         self.lead(collider, block, (&placed, own.reach()), (names, law), open);
                     match led {
@@ -103,6 +106,9 @@ impl PairGatherer {
                     law,
                     own.edge + 2.0 * (own.fall + law.skin),
                 );
+                if is_across {
+                    self.part(collider, block, (&placed, first), (names, law), open);
+                }
                 hook(
                     [own.collider, collider],
                     names,
@@ -129,7 +135,8 @@ impl PairGatherer {
                 let edge = points_of.edge.max(surface_of.edge);
                 let edge = edge + 2.0 * (points_of.fall.max(surface_of.fall) + law.skin);
                 let colliders = [points_of.collider, surface_of.collider];
-                if settings.uses_path && !HookBook::asks(colliders, sets) {
+                let is_across = settings.uses_path && !HookBook::asks(colliders, sets);
+                if is_across {
                     match ways::flex_flex(
                         open.island,
                         [points, surface],
@@ -144,6 +151,9 @@ impl PairGatherer {
                 let island = &mut *open.island;
                 let first = island.candidates.len();
                 candidates::flex_flex(island, points, surface, names, law, edge);
+                if is_across {
+                    tangles::flex_flex(island, first, [points, surface], names, law);
+                }
                 hook(colliders, names, first, &mut memory.hooks, open)?;
             }
             ClaimedPair::RigidRigid(one, other) => {
@@ -238,6 +248,25 @@ impl PairGatherer {
         };
         let drawing = (&mut self.draft, &mut self.flex_cores);
         ways::flex_rigid(open.island, flex, &surface, names, law, reach, drawing)
+    }
+
+    /// Parts a flexible block and a collider that begin the step across each other; see [`tangles::flex_rigid`].
+    fn part(
+        &mut self,
+        handle: ColliderHandle,
+        flex: usize,
+        (placed, first): (&PlacedCollider, usize),
+        (names, law): (Names, ContactLaw),
+        open: &mut OpenIsland<'_, '_>,
+    ) {
+        if let Some(outline) = self.outlines.known(handle) {
+            let surface = RigidSurface {
+                block: placed.block,
+                outline,
+                offset: placed.offset,
+            };
+            tangles::flex_rigid(open.island, first, flex, &surface, names, law);
+        }
     }
 
     /// Leads two rigid colliders along a path that keeps them apart; returns whether they are.

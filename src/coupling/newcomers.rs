@@ -5,6 +5,8 @@ use super::places::placed_on;
 use super::quarantine::is_out;
 use super::roster::Roster;
 use super::sets::RapierSets;
+use super::shapes;
+use super::tangles;
 use super::walk::ClaimedPair;
 use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
 use crate::constraint::geometry;
@@ -48,14 +50,14 @@ pub(crate) fn overlaps_of_newcomers(
     let overlaps = |pair: &ClaimedPair| match *pair {
         ClaimedPair::FlexRigid(slot, other) => {
             let body = body_of(slot).filter(|body| body.is_new() || claims.has_altered(other));
-            body.is_some_and(|body| depth_in(body, other, sets.into()) > least_depth(flex, slot))
+            body.is_some_and(|body| put_in(body, other, sets.into()) > least_depth(flex, slot))
         }
         ClaimedPair::FlexFlex(one, other) => {
             let [Some(first), Some(second)] = [one, other].map(body_of) else {
                 return false;
             };
             let depth = least_depth(flex, one).min(least_depth(flex, other));
-            (first.is_new() || second.is_new()) && overlap(first, second, depth, sets.into())
+            (first.is_new() || second.is_new()) && overlap(first, second, depth)
         }
         ClaimedPair::RigidRigid(..) => false,
     };
@@ -123,7 +125,7 @@ impl PutTogether {
             let edge = |body: &FlexBody| body.mesh().boundary().mean_segment_length();
             let (met, depth, edge, pushes) = match other {
                 Other::Rigid(met) => {
-                    let depth = depth_in(body, met, sets.into());
+                    let depth = put_in(body, met, sets.into());
                     (met, depth, edge(body), pushes(body, met, sets))
                 }
                 Other::Flex(other) => {
@@ -131,7 +133,7 @@ impl PutTogether {
                         return false;
                     };
                     let met = other.collider_handle();
-                    let depth = crossing(surface, met, sets.into());
+                    let depth = tangles::depth_in_body(body, other);
                     let groups = [body, other].map(|one| one.contact_settings().solver_groups);
                     let pushes = groups[0].test(groups[1]);
                     (met, depth, edge(body).min(edge(other)), pushes)
@@ -159,27 +161,25 @@ fn least_depth(flex: &Roster, slot: usize) -> f64 {
 }
 
 /// Whether the surfaces cross, or a piece of material of one lies in the other.
-pub(crate) fn overlap(one: &FlexBody, other: &FlexBody, depth: f64, sets: ReadSets<'_>) -> bool {
+pub(crate) fn overlap(one: &FlexBody, other: &FlexBody, depth: f64) -> bool {
     one.contains(inner_point(other).into())
         || other.contains(inner_point(one).into())
-        || has_vertex_in(one, other, depth)
-        || has_vertex_in(other, one, depth)
-        || crossing(one.collider_handle(), other.collider_handle(), sets) > depth
+        || tangles::depth_in_body(one, other) > depth
 }
 
-/// Whether a node of one body's surface is deeper than this in the other (m): edges that lie in line do not cross.
-fn has_vertex_in(body: &FlexBody, other: &FlexBody, depth: f64) -> bool {
-    let around = [Vec2::x(), -Vec2::x(), Vec2::y(), -Vec2::y()];
-    let mut nodes = body.mesh().boundary().nodes().iter();
-    nodes.any(|&node| {
-        let place = node_vec(body.positions(), node);
-        let is_in = |away: &Vec2| other.contains((place + depth * away).into());
-        around.iter().all(is_in)
-    })
+/// How deep a collider and a flexible body have been put into each other (m): as [`depth_in`] finds it, and as far as what is on the wrong side of
+/// the other's surface has to go.
+pub(crate) fn put_in(body: &FlexBody, other: ColliderHandle, sets: ReadSets<'_>) -> f64 {
+    let Some(collider) = sets.colliders.get(other) else {
+        return 0.0;
+    };
+    let pose = shapes::pose_of(&pose_of(collider, sets));
+    let astray = tangles::depth_in_shape(body, collider.shape(), &pose);
+    astray.max(depth_in(body, other, sets))
 }
 
 /// How deep a collider is in a flexible body (m), zero where it is not: at the surface, or by half its width if its middle is in there.
-pub(crate) fn depth_in(body: &FlexBody, other: ColliderHandle, sets: ReadSets<'_>) -> f64 {
+pub(super) fn depth_in(body: &FlexBody, other: ColliderHandle, sets: ReadSets<'_>) -> f64 {
     let Some(collider) = sets.colliders.get(other) else {
         return 0.0;
     };

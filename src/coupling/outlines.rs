@@ -6,7 +6,7 @@
 
 use super::shapes::{convert, pose_of};
 use crate::constraint::geometry::{ConvexPart, Pose2};
-use crate::math::{HashMap, Vec2, atan2, from_rapier};
+use crate::math::{HashMap, Vec2, atan2, cross, from_rapier};
 use crate::rapier::parry::shape::{Shape, TypedShape};
 use crate::rapier::prelude::*;
 
@@ -35,6 +35,8 @@ pub(super) enum Piece {
         points: Vec<Vec2>,
         /// Edges between them.
         edges: Vec<[u32; 2]>,
+        /// Whether they run around something solid, on their left.
+        is_rim: bool,
     },
 }
 
@@ -122,7 +124,8 @@ pub(super) fn is_convex_piece(shape: &dyn Shape) -> bool {
     matches!(outline_of(shape).pieces[..], [Piece::Convex { .. }])
 }
 
-fn outline_of(shape: &dyn Shape) -> Outline {
+/// The outline of a shape.
+pub(super) fn outline_of(shape: &dyn Shape) -> Outline {
     let mut outline = Outline::default();
     add_shape(shape, Pose2::identity(), &mut outline.pieces);
     outline
@@ -136,6 +139,7 @@ fn add_shape(shape: &dyn Shape, pose: Pose2, pieces: &mut Vec<Piece>) {
             pieces.push(Piece::Chain {
                 points: points.collect(),
                 edges: polyline.indices().to_vec(),
+                is_rim: false,
             });
         }
         TypedShape::HeightField(field) => {
@@ -156,14 +160,20 @@ fn add_shape(shape: &dyn Shape, pose: Pose2, pieces: &mut Vec<Piece>) {
                 edges.push([end - 1, end]);
                 goes_on = true;
             }
-            pieces.push(Piece::Chain { points, edges });
+            pieces.push(Piece::Chain {
+                points,
+                edges,
+                is_rim: false,
+            });
         }
         TypedShape::TriMesh(mesh) => {
             let points = mesh.vertices().iter();
             let points = points.map(|&point| pose.transform(from_rapier(point)));
+            let points: Vec<Vec2> = points.collect();
             pieces.push(Piece::Chain {
-                points: points.collect(),
-                edges: rim_of(mesh.indices()),
+                edges: rim_of(&points, mesh.indices()),
+                points,
+                is_rim: true,
             });
         }
         TypedShape::Segment(segment) => pieces.push(Piece::Chain {
@@ -171,6 +181,7 @@ fn add_shape(shape: &dyn Shape, pose: Pose2, pieces: &mut Vec<Piece>) {
                 .map(|point| pose.transform(from_rapier(point)))
                 .to_vec(),
             edges: vec![[0, 1]],
+            is_rim: false,
         }),
         TypedShape::Compound(compound) => {
             for (local, child) in compound.shapes() {
@@ -205,11 +216,14 @@ fn piece_of(part: &ConvexPart, pose: &Pose2) -> Piece {
     }
 }
 
-/// The edges that belong to one triangle only.
-fn rim_of(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+/// The edges that belong to one triangle only, with it on their left.
+fn rim_of(points: &[Vec2], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let mut sides: Vec<([u32; 2], [u32; 2])> = Vec::new();
-    for [a, b, c] in triangles {
-        for [from, to] in [[*a, *b], [*b, *c], [*c, *a]] {
+    for &[a, b, c] in triangles {
+        let [at, one, other] = [a, b, c].map(|name| points[name as usize]);
+        let is_left = cross(one - at, other - at) >= 0.0;
+        let [b, c] = if is_left { [b, c] } else { [c, b] };
+        for [from, to] in [[a, b], [b, c], [c, a]] {
             sides.push(([from.min(to), from.max(to)], [from, to]));
         }
     }
@@ -234,7 +248,7 @@ mod tests {
         let n = 600;
         let mut field = HeightField::new(vec![0.0; n + 1], Vector::new(60.0, 1.0));
         let pieces = |field: &HeightField| match &outline_of(field).pieces[..] {
-            [Piece::Chain { points, edges }] => [points.len(), edges.len()],
+            [Piece::Chain { points, edges, .. }] => [points.len(), edges.len()],
             _ => [0, 0],
         };
         // Seen from both sides, the places of these joints differ by rounding.
@@ -247,8 +261,9 @@ mod tests {
 
     #[test]
     fn the_rim_of_two_triangles_leaves_out_what_they_share() {
-        let rim = rim_of(&[[0, 1, 2], [0, 2, 3]]);
-        assert_eq!(rim.len(), 4);
-        assert!(!rim.contains(&[0, 2]) && !rim.contains(&[2, 0]));
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Vec2::from);
+        let mut rim = rim_of(&square, &[[0, 2, 1], [0, 2, 3]]);
+        rim.sort_unstable();
+        assert_eq!(rim, [[0, 1], [1, 2], [2, 3], [3, 0]]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use crate::body::{FlexBody, FlexBodyHandle, FlexBodySet};
-use crate::coupling::{DEEP, ReadSets, depth_in, is_met, is_out, overlap};
+use crate::coupling::{DEEP, ReadSets, is_met, is_out, overlap, put_in};
 use crate::pipeline::{InsertionNote, Participant};
 use crate::rapier::parry::bounding_volume::{Aabb, BoundingVolume};
 use crate::rapier::prelude::*;
@@ -36,7 +36,7 @@ pub(super) fn examine(
                 && groups[0].solver_groups.test(groups[1].solver_groups)
                 && !groups.iter().any(|settings| settings.is_sensor);
             let depth = edge(body).min(edge(other));
-            if is_near && meets && overlap(body, other, depth, sets) {
+            if is_near && meets && overlap(body, other, depth) {
                 findings.push(overlap_of(handle, Participant::Flex(other_handle)));
             }
         }
@@ -50,7 +50,7 @@ pub(super) fn examine(
                 continue;
             }
             let is_near = box_of(rigid, sets).is_some_and(|beside| beside.intersects(&around));
-            if is_near && depth_in(body, rigid, sets) > edge(body) {
+            if is_near && put_in(body, rigid, sets) > edge(body) {
                 findings.push(overlap_of(handle, with));
             }
             let parent = collider.parent().and_then(|parent| sets.bodies.get(parent));

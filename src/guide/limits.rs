@@ -75,14 +75,12 @@
 //! - **Statics between obstacles.** [`ContactStepper`](crate::large::ContactStepper) keeps nodes out of rigid obstacles, each node out of one. See: `LargeError::Wedged` where one would have to stay out of two, `LargeError::Passed` where an obstacle would go through the surface. What is smaller than a segment of the surface may go into it between two nodes up to its middle. Its bodies do not
 //!   meet themselves or each other. Do: step such bodies in a world, with damping.
 //! - **Nodes of the target.** Between flexible bodies the nodes of one are kept out of the surface of the other, not the other's out of its own. See: a node of a soft target may be inside by a millimetre (1.4 mm at E = 1e5 Pa,
-//!   bodies of half a metre); two that were put into each other corner by corner may stay hooked by 7 to 15 mm (21 of 144), told as solved. Do: give both cells of about one size.
+//!   bodies of half a metre). Do: give both cells of about one size.
 //! - **Load control** may step over a limit load: [`LoadStepper`](crate::large::LoadStepper) and `ContactStepper` then find an equilibrium far away, and say nothing of it. Do: look at how far an increment went, or follow the path with [`PathStepper`](crate::large::PathStepper).
 //! - **Wedged corners.** Where friction wedges a corner against itself no sticking forces hold to the laws, and the contact slips by a thousandth to a tenth of what its force alone would move it. See:
 //!   [`StepReport::slip_violation`].
-//! - **Put into each other**, bodies part by and by; where a surface passes right through another there may be no way out. See: [`StepReport::insertion_notes`] once, `gap_violation` until they are apart. Do: put them apart;
-//!   [`doctor::examine`](crate::doctor::examine) names them. Two that were laid into each other exactly in line may stay so where nothing disturbs them (no gravity, or small strain): `Quality::Unfinished`.
-//!   A body that is put more than a cell deep across a polyline or height field may stay across it. A trimesh is met triangle by triangle: one that is raised into what lies on it may never let it out, at a third of a second a step. Do: move such terrain below what lies on it, in steps of
-//!   less than its offset, or take a height field.
+//! - **Put into each other**, bodies part by and by: what of one lies in or beyond the other is led out, to where the larger part of it is. Polylines and height fields have no inside: a body with more than half of it below one comes out below. What is wholly in something else leaves by one face,
+//!   chosen by its centre. Two things that lead a body in opposite ways never let it out. See: [`StepReport::insertion_notes`] once, `gap_violation` until they are apart, `Quality::Unfinished`. Do: put them apart; [`doctor::examine`](crate::doctor::examine) names them.
 //! - **Platforms that accelerate.** What lies on a kinematic body slips on it by a part of `a dt²` in every step though friction would hold: at 3 m/s² and 1/60 s by up to 34 mm in a second with small strain, 9 mm with
 //!   large, 6 mm in rapier alone. Do: shorten the step. On one that falls away by more than some .3 g (half of g with large strain) it presses in alternate steps only, by the right force in the mean, at any step.
 //! - **A surface that crosses itself** because its pins were put so passes through itself until it is apart. See: [`StepReport::self_crossing`]. Sensors do not meet themselves. Contacts of a body with itself are in [`StepReport::contacts`],

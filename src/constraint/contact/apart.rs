@@ -54,7 +54,7 @@ impl Candidate {
                 let back = vertices_to_part(scene, (blocks[1], other), (blocks[0], one));
                 (there.min(back) - skin).abs()
             }
-            Pair::PointOnFace { .. } | Pair::Near { .. } => 0.0,
+            Pair::PointOnFace { .. } | Pair::Astray { .. } | Pair::Near { .. } => 0.0,
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::law::ContactLaw;
 use super::surface::Cone;
 use crate::math::Vec2;
+use crate::system::Point;
 
 /// What a point or a target belongs to, stable from step to step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -111,6 +112,14 @@ pub enum Pair {
         /// Blocks of the point and of the target.
         blocks: [usize; 2],
     },
+    /// A point of a surface that began the step on the wrong side of another, and where that one was along the way out: along a direction
+    /// of the law, which knows the gap.
+    Astray {
+        /// Block and node or arm.
+        point: (usize, Point),
+        /// What holds the place, with weights that sum to 1.
+        target: [(usize, Point, f64); 2],
+    },
     /// Two polygonal parts whose edges may cross without a vertex of either in the other: what [`Pair::VertexOnPart`]
     /// does not see.
     Crossing {
@@ -130,6 +139,7 @@ impl Pair {
             Self::NodeOnSurface { node, flex, .. } => [node.0, flex],
             Self::PointOnFace { point, face, .. } => [point.0, face],
             Self::VertexOnPart { point, rigid, .. } => [point.0, rigid],
+            Self::Astray { point, target } => [point.0, target[0].0],
             Self::Crossing { blocks, .. } | Self::Near { blocks } => blocks,
         }
     }

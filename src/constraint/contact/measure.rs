@@ -122,6 +122,20 @@ impl Candidate {
             } => point_on_face(scene, point, face, ends, radius),
             Pair::VertexOnPart { .. } => vertex_on_part(scene, &self.pair),
             Pair::Crossing { blocks, parts } => crossing(scene, blocks, parts),
+            Pair::Astray { point, target } => {
+                let place = scene.blocks[point.0].position(point.1);
+                let [one, other] = target.map(|(block, held, weight)| (block, held, -weight));
+                let grips = [(point.0, point.1, 1.0), one, other];
+                let n_held = if other.2 < 0.0 { 3 } else { 2 };
+                // The law knows the direction.
+                Some(Kinematics::new(
+                    scene,
+                    0.0,
+                    Vec2::y(),
+                    place,
+                    &grips[..n_held],
+                ))
+            }
             // The path knows; what it lists no more is not near.
             Pair::Near { .. } => None,
         }

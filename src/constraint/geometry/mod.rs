@@ -21,6 +21,7 @@ mod polygon_pair;
 mod pose;
 mod segment_query;
 mod separation;
+pub(crate) mod tangle;
 
 pub use convex_part::{ConvexPart, Feature};
 pub(crate) use depth::{DEEP, RESTING, RESTING_THIN};
