@@ -1,6 +1,6 @@
 //! What a step takes from a body and leaves on it: its loads, its motion, put back if it is only tried, and notes.
 
-use super::flex_body::{FlexBody, sum_of_nodes};
+use super::flex_body::FlexBody;
 use super::kept_force::KeptForce;
 use super::state::FlexState;
 use super::stillness::{Rest, unbalance};
@@ -124,12 +124,16 @@ impl FlexBody {
             .look([&state.position, &state.velocity], rest);
     }
 
-    /// Acceleration that is at most left of its loads at rest: of gravity, and of the forces on nodes (m/s²).
+    /// Acceleration that is at most left of its loads at rest: of gravity, and of the forces on nodes, which press it though they may cancel (m/s²).
     pub(crate) fn unbalance_at_rest(&self, gravity: Vec2) -> f64 {
         let own = self.gravity_scale * gravity + self.body_force;
-        let at_nodes =
-            sum_of_nodes(&self.contact_force).norm() + sum_of_nodes(&self.nodal_force).norm();
-        unbalance(own.norm() + at_nodes / self.mass())
+        let forces = [&self.contact_force, &self.nodal_force].map(|dofs| {
+            let nodes = dofs.chunks_exact(2);
+            nodes
+                .map(|f| (f[0] * f[0] + f[1] * f[1]).sqrt())
+                .sum::<f64>()
+        });
+        unbalance(own.norm() + forces.iter().sum::<f64>() / self.mass())
     }
 
     /// Counts a step, as finished or not.

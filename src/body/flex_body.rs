@@ -396,7 +396,7 @@ impl FlexBody {
     }
 }
 
-pub(super) fn sum_of_nodes(dofs: &[f64]) -> Vec2 {
+fn sum_of_nodes(dofs: &[f64]) -> Vec2 {
     dofs.chunks_exact(2)
         .map(|value| Vec2::new(value[0], value[1]))
         .sum()

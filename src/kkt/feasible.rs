@@ -17,7 +17,7 @@ use self::members::{BlockBase, Carrier, SurfacePoint};
 use self::own::OwnWay;
 use self::retreat::LastWay;
 use self::straight::straight_part;
-pub(super) use self::turn::turn;
+pub(super) use self::turn::{points_of, turn};
 use crate::constraint::contact::ContactMemory;
 use crate::math::{Vec2, rotation};
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};

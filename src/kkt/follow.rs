@@ -11,6 +11,7 @@ mod fineness;
 mod listing;
 mod parted;
 mod trend;
+mod turning;
 
 pub(super) use self::arrival::return_to_first_stop;
 pub(super) use self::consistent::joint_violation;
@@ -19,6 +20,7 @@ pub(super) use self::parted::{end_losses, list_parted};
 use self::fineness::{enough, n_exact_passes, note_start, still};
 use self::listing::Listing;
 use self::trend::Trend;
+use self::turning::Settling;
 use super::cones;
 use super::island::{Island, SolveSettings};
 use super::joints::put_apart;
@@ -124,6 +126,7 @@ fn try_passes(
     let mut has_left = false;
     let (mut last, mut is_idle) = (f64::INFINITY, false);
     let (n_passes, mut trend) = (PASSES_PER_ITERATION * settings.max_newton, Trend::new());
+    let mut rows: Option<Settling> = None;
     for pass in 0..n_passes {
         summary.n_newton += 1;
         // Under the forces of the last step bodies may be anywhere: that way is gone only if they are nearly right.
@@ -174,8 +177,12 @@ fn try_passes(
             lack <= CLOSE_ENOUGH
         } else {
             let is_near = !island.path.is_empty() && turned.way <= enough;
-            error <= enough && (turned.angle <= ANGLE_TOLERANCE || is_near)
+            let has_settled = || rows.is_none_or(|rows| rows.has_settled(island));
+            error <= enough && (turned.angle <= ANGLE_TOLERANCE || is_near) && has_settled()
         };
+        if is_guess {
+            rows = Some(Settling::of_guess(island, misleads));
+        }
         if arrives && is_close && !has_more {
             end_at_base(island);
             keep_applied_rows(island);

@@ -213,6 +213,8 @@ impl CellGroup {
                     let (eased, flowed) = hourglass.ease(limit, &shape);
                     energy.stored += stored - eased;
                     energy.dissipated += dissipated + eased;
+                    let bent = (dissipated + eased) / *volume;
+                    flow.state.strain += law.bending_strain(state, bent);
                     flow.state.bend = match flow.state.inverse == state.inverse {
                         true => flowed,
                         // The placement of the point has flowed, too; what is elastic stays.

@@ -22,6 +22,21 @@ pub(in crate::kkt) fn turn(path: &FeasiblePath, near: &NearPair, blocks: &[Block
     atan2(cross(before, after), before.dot(&after))
 }
 
+/// Where the points of a near pair are, of the first and of what it is near to (m); none of an edge.
+pub(in crate::kkt) fn points_of(
+    path: &FeasiblePath,
+    near: &NearPair,
+    blocks: &[Block],
+) -> [Option<Vec2>; 2] {
+    let [own, met] = path.blocks_of(near).map(|block| &blocks[block]);
+    let place = |block: &Block, at: usize| block.position(path.points[at].point);
+    let other = match near.target {
+        Target::Vertex(vertex) => Some(place(met, vertex)),
+        Target::Edge(_) => None,
+    };
+    [Some(place(own, near.point)), other]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -33,6 +33,11 @@ impl ContactForces {
         (self.total, self.moment, self.stretch) = (Vec2::zeros(), 0.0, 0.0);
     }
 
+    /// Whether some node feels a force.
+    pub fn presses(&self) -> bool {
+        self.nodal.iter().any(|force| *force != 0.0)
+    }
+
     /// Adds a force at a node (N) that acts at a lever from the centre (m).
     pub fn add(&mut self, node: usize, force: Vec2, lever: Vec2) {
         add_node_vec(&mut self.nodal, node, force);

@@ -180,6 +180,12 @@ impl J2Plasticity {
         (volume * (1.0 - poisson * poisson) / young).sqrt() * yields * state.bendable
     }
 
+    /// The plastic strain of a cell in whose bending so much has been dissipated (J/m³): in the mean that over the yield stress, and 4/3 of it where it counts by
+    /// its lever, as the flow grows towards the edges.
+    pub(crate) fn bending_strain(&self, state: &PlasticState, dissipated: f64) -> f64 {
+        4.0 / 3.0 * dissipated / self.hardening.yield_stress_at(state.strain)
+    }
+
     fn returned(&self, state: &PlasticState, m: f64) -> (f64, super::hardening::Return) {
         let trial = (m / 1.5).sqrt();
         let back = self.hardening.flow(self.stiffness(), state.strain, trial);

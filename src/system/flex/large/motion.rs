@@ -244,7 +244,8 @@ impl LargeStrain {
     /// Shifts and turns a free body so that its centre of mass is where the forces bring it, and its angular momentum what their couple makes
     /// it, beyond the tolerance of the iterations.
     ///
-    /// Inner forces have neither a resultant nor, about the middles `(x + x')/2`, a couple.
+    /// Inner forces have neither a resultant nor, about the middles `(x + x')/2`, a couple. Those of a led body have none about its end, which is where
+    /// contacts hold it: about the middles, what presses it with many times its weight would have one by any turn that it has come back from.
     pub(super) fn balance_momentum(&self, shared: &mut Shared) {
         let factor = self.momentum_factor(shared);
         let shift = self.lacking_shift(shared);
@@ -256,11 +257,12 @@ impl LargeStrain {
         }
         let [centre, started] =
             [first, moment].map(|sum| shared.start.frame.centre + sum / shared.shape.arms.mass);
+        let is_held = self.problem.takes_end && shared.contact.presses();
         let (mut couple, mut polar) = (0.0, 0.0);
         for (node, &mass) in masses() {
             let x = node_vec(&shared.now.position, node);
             let (arm, before) = (x - centre, node_vec(&shared.start.position, node) - started);
-            let middle = 0.5 * (arm + before);
+            let middle = if is_held { arm } else { 0.5 * (arm + before) };
             couple += cross(middle, self.lacking_force(shared, node, x + shift));
             polar += mass * factor * middle.dot(&arm);
         }
