@@ -87,7 +87,9 @@ fn midway_of(island: &Island, index: usize) -> Option<Midway> {
     }
     let pressed = &island.passes.pressed;
     let has_pressed = pressed.binary_search(&contact.candidate).is_ok();
-    if contact.is_hard && (!has_pressed || contact.is_parting()) {
+    // What presses bodies that a joint holds may be of any size, and moves nothing.
+    let is_of_any_size = || contact.is_parting() || island.joints.joins(contact);
+    if contact.is_hard && (!has_pressed || is_of_any_size()) {
         return None;
     }
     let [normal, tangent] = contact.multiplier;

@@ -395,7 +395,10 @@ fn meshes_that_would_take_all_memory_are_refused_and_the_bound_is_the_users() {
         "{complaint}"
     );
     // Bodies count together.
-    let two = BEAM.replace("\"beam\"", "'other'");
+    let two = format!(
+        "{}translation = [0.0, 1.0]\n",
+        BEAM.replace("\"beam\"", "'other'")
+    );
     let beams = format!("[world]\nmost_nodes = 100\n{STEEL}{BEAM}{two}");
     let complaint = complaint_of(&folder, &beams);
     assert!(

@@ -29,9 +29,10 @@ impl Settling {
         }
     }
 
-    /// Whether the rows at hand are those that forces acted along, but for a small share of what they turn by in the step.
+    /// Whether the rows at hand are those that forces acted along, but for a small share of what they turn by in the step, or so that forces are right to
+    /// six digits, as they are of what rests.
     pub fn has_settled(&self, island: &Island) -> bool {
-        largest_turn(island) <= (CLOSE_ENOUGH * self.by_motion).max(rounding::ITERATED)
+        largest_turn(island) <= (CLOSE_ENOUGH * self.by_motion).max(rounding::SINGLE)
     }
 }
 
