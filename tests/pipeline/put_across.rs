@@ -173,7 +173,7 @@ fn corners_of_blocks_do_not_stay_hooked() {
 #[test]
 fn what_is_put_across_the_wall_of_a_tyre_gets_no_energy() {
     let mut dice = Dice(300);
-    for shape in ["block", "disc"] {
+    for shape in ["block", "strip", "disc"] {
         for case in 0..6 {
             let mut scene = Scene::new(1.0 / 60.0);
             scene.ground(0.5);
@@ -189,6 +189,7 @@ fn what_is_put_across_the_wall_of_a_tyre_gets_no_energy() {
             let (at, away) = (dice.between(0.3, 2.8), dice.between(0.12, 0.3));
             let body = match shape {
                 "block" => FlexBodyBuilder::rectangle([0.4, 0.3], [4, 3]),
+                "strip" => FlexBodyBuilder::rectangle([0.8, 0.1], [12, 1]),
                 _ => FlexBodyBuilder::disc(0.15, 0.08),
             };
             let body = scene.flexible(body.material(rubber).translation([5.0, 5.0]));

@@ -102,6 +102,12 @@ impl Loops {
         starts.fold(none, |[low, high], place| [low.inf(place), high.sup(place)])
     }
 
+    /// Length of all edges (m).
+    pub fn length(&self) -> f64 {
+        let edges = (0..self.n_edges()).map(|edge| self.edge(edge));
+        edges.map(|[from, to]| (to - from).norm()).sum()
+    }
+
     /// Whether a point is in what is enclosed.
     pub fn contain(&self, point: Vec2) -> bool {
         let crossed = (0..self.n_edges()).filter(|&edge| {

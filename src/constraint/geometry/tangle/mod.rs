@@ -117,10 +117,9 @@ pub fn tangles(first: &Loops, second: &Loops) -> Option<Vec<Tangle>> {
     let ours = View::of(first, second, &crossings);
     let theirs = View::of(second, first, &crossings.seen_by_second());
     let n_pieces = |view: &Option<View>| view.as_ref().map_or(0, |view| view.n_pieces);
-    let astray = |view: &Option<View>| view.as_ref().map_or(f64::INFINITY, |view| view.astray);
-    // What goes through the other is cut by it.
+    // What goes through the other is cut by it. Where both are, the shorter one leaves: in every step the same, or they would be led to and fro.
     let is_of_first = match [&ours, &theirs].map(|view| n_pieces(view) > 1) {
-        [true, true] => astray(&ours) <= astray(&theirs),
+        [true, true] => first.length() <= second.length(),
         [false, true] => false,
         _ => ours.is_some(),
     };

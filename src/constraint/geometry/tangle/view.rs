@@ -10,8 +10,6 @@ use std::cmp::Ordering;
 pub(super) struct View {
     /// Number of pieces that it is cut into.
     pub n_pieces: usize,
-    /// Length of what is astray (m).
-    pub astray: f64,
     /// What has to be parted.
     pub tangles: Vec<Tangle>,
 }
@@ -92,7 +90,6 @@ impl View {
         }
         let mut view = Self {
             n_pieces,
-            astray: excursions.iter().map(Excursion::length).sum(),
             tangles: Vec::new(),
         };
         // What the second has between crossings of home belongs to the excursions that end there.
