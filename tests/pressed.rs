@@ -205,6 +205,11 @@ fn rigid_bodies_that_straps_press_on_each_other_gain_no_energy() {
                     "{rate} Hz, {spin} rad/s: step {step}"
                 );
                 let gained = energy(&scene) - began;
+                let lost = 0.05 * kinetic + 1e-6 * stored;
+                assert!(
+                    gained > -lost,
+                    "{rate} Hz, {spin} rad/s, wedge {is_wedge}, step {step}: {gained:.3e} J"
+                );
                 assert!(
                     gained < 0.06 * kinetic + 1e-6 * stored,
                     "{rate} Hz, {spin} rad/s, wedge {is_wedge}, step {step}: {gained:.3e} J more than {kinetic:.3e} J of motion"

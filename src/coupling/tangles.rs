@@ -98,7 +98,7 @@ pub(super) fn flex_rigid(
         ];
         add_rows(&sides, law, &mut found);
     }
-    replace(island, first, &own, flex, found);
+    replace(island, first, &[(&own, flex)], found);
 }
 
 /// The same between two flexible blocks.
@@ -123,9 +123,8 @@ pub(super) fn flex_flex(
     });
     let mut found = Vec::new();
     add_rows(&sides, law, &mut found);
-    for (outline, block) in outlines.iter().zip(blocks) {
-        replace(island, first, outline, block, std::mem::take(&mut found));
-    }
+    let own = [(&outlines[0], blocks[0]), (&outlines[1], blocks[1])];
+    replace(island, first, &own, found);
 }
 
 fn outline_at_start(body: &FlexBlock) -> Loops {
@@ -226,8 +225,8 @@ fn depth(first: &Loops, second: &Loops) -> f64 {
     ways.map(|way| way.exit.distance).fold(0.0, f64::max)
 }
 
-/// Puts candidates of points that are astray in the place of those from the `first` on of the same points, and of points that are in the body.
-fn replace(island: &mut Island, first: usize, own: &Loops, flex: usize, found: Vec<Candidate>) {
+/// Puts candidates of points that are astray in the place of those from the `first` on of the same points, and of points that are in one of the bodies.
+fn replace(island: &mut Island, first: usize, own: &[(&Loops, usize)], found: Vec<Candidate>) {
     if found.is_empty() {
         return;
     }
@@ -238,19 +237,27 @@ fn replace(island: &mut Island, first: usize, own: &Loops, flex: usize, found: V
         })
     };
     let blocks = &island.blocks;
+    let is_in = |flex: usize, block: usize, point: Point| {
+        let place = blocks[block].start_position(point);
+        let mut outlines = own.iter().filter(|(_, of)| *of == flex);
+        outlines.any(|(outline, _)| outline.contain(place))
+    };
     let mut slot = 0;
     island.candidates.retain(|candidate| {
         slot += 1;
         slot <= first
             || match candidate.pair {
                 Pair::NodeOnPart { node, .. } => !is_astray(node.0, node.1),
-                Pair::NodeOnSurface { node, flex: to, .. } => {
-                    let place = blocks[node.0].start_position(Point::Node(node.1));
-                    !(is_astray(node.0, node.1) || to == flex && own.contain(place))
+                Pair::NodeOnSurface { node, flex, .. } => {
+                    !(is_astray(node.0, node.1) || is_in(flex, node.0, Point::Node(node.1)))
                 }
                 Pair::VertexOnSurface {
-                    rigid, arm, radius, ..
-                } => radius > 0.0 || !own.contain(blocks[rigid].start_position(Point::Arm(arm))),
+                    rigid,
+                    arm,
+                    radius,
+                    flex,
+                    ..
+                } => radius > 0.0 || !is_in(flex, rigid, Point::Arm(arm)),
                 _ => true,
             }
     });
