@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Dice, Outline, Scene, is_solved, motion_of, real, vec2};
+use common::{Dice, Findings, G, Outline, Scene, is_solved, motion_of, real, vec2};
 use foil2d::prelude::*;
 use foil2d::rapier::prelude::*;
 
@@ -119,22 +119,23 @@ fn what_is_pressed_between_plates_stays_flat_on_them_and_sleeps() {
     }
 }
 
+/// The rigid bodies that are not the carriers of flexible ones.
+fn rigid_bodies(scene: &Scene) -> impl Iterator<Item = &RigidBody> {
+    let is_rigid = |handle: RigidBodyHandle| {
+        let mut flexible = scene.bodies.iter();
+        !flexible.any(|(_, body)| body.rigid_body_handle() == handle)
+    };
+    let bodies = scene.world.bodies.iter();
+    bodies.filter_map(move |(handle, body)| is_rigid(handle).then_some(body))
+}
+
 /// Kinetic and elastic energy of all bodies (J).
 fn energy(scene: &Scene) -> f64 {
     let flexible = scene.bodies.iter().map(|(_, body)| {
         let energy = body.energy();
         energy.kinetic + energy.elastic
     });
-    let is_own = |handle: &RigidBodyHandle| {
-        let mut flexible = scene.bodies.iter();
-        !flexible.any(|(_, body)| body.rigid_body_handle() == *handle)
-    };
-    let rigid = scene
-        .world
-        .bodies
-        .iter()
-        .filter(|(handle, _)| is_own(handle));
-    let rigid = rigid.map(|(_, body)| f64::from(body.kinetic_energy()));
+    let rigid = rigid_bodies(scene).map(|body| f64::from(body.kinetic_energy()));
     flexible.sum::<f64>() + rigid.sum::<f64>()
 }
 
@@ -227,4 +228,84 @@ fn what_is_pressed_is_out_of_what_presses_it() {
     for [x, y] in outline.nodes() {
         assert!(x > -1e-6 && y > -1e-6, "{x:e} m, {y:e} m");
     }
+}
+
+/// A slot that soft bodies and rigid triangles are dropped into, corners first, some of them into notches that friction holds them in: forces that hold each
+/// other there may be of any size, and what their levers leave of them spun triangles up (48 kg from -2 to 36 rad/s within a step), told as solved.
+#[test]
+fn what_is_wedged_is_not_set_in_motion_by_it() {
+    let mut findings = Findings::default();
+    // One in which it was so, of 200, and some others.
+    for case in [70, 27, 39, 1, 2, 3, 4, 5] {
+        let mut dice = Dice(7777 * case + 5);
+        let mut scene = Scene::new(1.0 / 60.0);
+        scene.ground(0.6);
+        let half = dice.between(0.32, 0.6);
+        for side in [-1.0, 1.0] {
+            let wall = ColliderBuilder::cuboid(real(0.3), real(30.0));
+            scene.fixed(wall.translation(vec2(side * (half + 0.3), 29.0)));
+        }
+        let young = 2e4 * 25f64.powf(dice.roll());
+        let fall = vec2(0.0, -dice.between(3.0, 12.0));
+        for place in 0..4 + (6.0 * dice.roll()) as usize {
+            let size = dice.between(0.15, 0.3).min(0.7 * half);
+            let at = [
+                dice.between(size - half, half - size),
+                0.45 + 0.65 * place as f64,
+            ];
+            let angle = dice.between(0.0, std::f64::consts::TAU);
+            if place % 2 == 0 {
+                let foam = LinearElastic::plane_stress(young * dice.between(0.3, 3.0), 0.3)
+                    .density(dice.between(300.0, 1500.0))
+                    .rayleigh(1e-3);
+                let shape = match dice.roll() < 0.7 {
+                    true => FlexBodyBuilder::annulus(0.55 * size, 0.9 * size, 0.4 * size),
+                    false => FlexBodyBuilder::disc(0.8 * size, 0.5 * size),
+                };
+                let body = shape
+                    .material(foam)
+                    .rotation(angle)
+                    .translation(at)
+                    .friction(0.6);
+                scene.flexible(body.linvel([0.0, f64::from(fall.y)]));
+            } else {
+                let size = 0.8 * size;
+                let corners = [[-size, -0.6 * size], [size, -0.6 * size], [0.0, size]];
+                let [a, b, c] = corners.map(|[x, y]| vec2(x, y));
+                let body = RigidBodyBuilder::dynamic()
+                    .translation(vec2(at[0], at[1]))
+                    .rotation(real(angle))
+                    .linvel(fall)
+                    .angvel(real(dice.between(-10.0, 10.0)));
+                let shape = ColliderBuilder::triangle(a, b, c).friction(0.6);
+                scene
+                    .world
+                    .insert(body, shape.density(real(dice.between(300.0, 3000.0))));
+            }
+        }
+        let mut before = energy(&scene) + potential(&scene);
+        for step in 0..90 {
+            scene.try_step().expect("the step can be taken");
+            let after = energy(&scene) + potential(&scene);
+            let most = 0.02 * energy(&scene) + 1.0;
+            findings.check(after - before < most, || {
+                let gained = after - before;
+                format!(
+                    "case {case}, step {step}: {gained:.1} J, {:?}",
+                    scene.report().quality()
+                )
+            });
+            before = after;
+        }
+    }
+    findings.report();
+}
+
+/// Energy of the weight of all that moves (J).
+fn potential(scene: &Scene) -> f64 {
+    let flexible = scene.bodies.iter();
+    let flexible = flexible.map(|(_, body)| body.mass() * body.centre_of_mass()[1]);
+    let rigid = rigid_bodies(scene).filter(|body| body.is_dynamic());
+    let rigid = rigid.map(|body| f64::from(body.mass() * body.center_of_mass().y));
+    G * (flexible.sum::<f64>() + rigid.sum::<f64>())
 }

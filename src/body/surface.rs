@@ -121,7 +121,8 @@ impl FlexBody {
     /// Pressure of contact at a node in the last step (Pa): the normal part of [`FlexBody::contact_force`] over the deformed surface that the
     /// node stands for ([`Boundary::node_shares`](crate::fe::mesh::Boundary::node_shares)), times the thickness. Zero inside.
     ///
-    /// A uniform pressure on a smooth surface is met exactly. At a corner the mean of both sides is told, and what
+    /// A uniform pressure on a smooth surface is met exactly, but for [quadratic surfaces on each other](crate::guide::limits). At a corner what presses
+    /// on one side counts along the mean normal of both, over what the node stands for on both: half of it where they are as long as each other. What
     /// is attached to the node counts as contact.
     ///
     /// # Panics

@@ -3,6 +3,7 @@
 //! Positions stay on the feasible path. Velocities are those of the motion without contact, projected so that nothing that touches
 //! approaches: a projection in the metric of the masses takes energy and never gives any, and its impulses come in pairs.
 
+use super::active_contact::ActiveContact;
 use super::follow;
 use super::island::{Island, KktError, SolveSettings};
 use super::summary::IslandSummary;
@@ -45,6 +46,24 @@ pub(super) fn is_thrown(island: &Island, summary: &IslandSummary) -> bool {
     let most = (1.0 + DOUBLED.get()) * summary.brought() + parting_energy(island);
     let may_touch = !island.path.is_empty() || !island.contacts.is_empty();
     may_touch && summary.end_energy[0] > most
+}
+
+/// Whether contact has set more in motion than it had taken before and what could be taken from the velocities again: forces that hold each
+/// other, as those on a corner that friction wedges into a notch, may be of any size, and what is left of them where levers turn drives.
+///
+/// What parts overlaps may store and lift as much as they are deep, but moves nothing faster than it is asked to part. Joints bring what they
+/// close.
+///
+/// - `had`: what contact had taken before and may give back (J).
+pub(super) fn is_fed(island: &Island, summary: &IslandSummary, had: f64) -> bool {
+    let is_pressed = island.contacts.iter().any(ActiveContact::is_closed);
+    if !is_pressed || summary.is_unsolved() || !island.joints.ties.is_empty() {
+        return false;
+    }
+    let [kinetic, elastic] =
+        [0, 1].map(|kind| summary.end_energy[kind] - summary.start_energy[kind]);
+    let given = (-elastic).max(0.0) + summary.work.max(0.0) + had.max(0.0);
+    kinetic - given > GAINED * summary.brought() + parting_energy(island)
 }
 
 /// Kinetic energy of bodies that part from the deepest overlap at twice the pace asked for, or from the margin where that is more (J).

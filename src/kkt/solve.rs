@@ -93,11 +93,21 @@ fn solve_stages(
         together::measure_ended(island, settings, &mut summary);
     }
     if treatment.limits_energy() {
-        let stored = reserve.max(0.0);
-        energy::limit_energy(island, settings, reserve, &mut summary);
-        if summary.is_unsolved() {
-            // What such a step has lost is lost.
-            *reserve = reserve.min(stored);
+        let had = *reserve;
+        limit_energy(island, settings, reserve, &mut summary);
+        if has_path && gentle::is_fed(island, &summary, had) {
+            if settings.may_be_cut {
+                summary.is_stopped = true;
+                return Ok(summary);
+            }
+            *reserve = had;
+            (summary.limited, summary.calmed) = (0.0, 0.0);
+            gentle::end_gently(island, settings, memory, &mut summary)?;
+            if gentle::has_gained(island, settings, &summary) {
+                together::end_together(island, (settings.dt, settings.length_unit), &mut summary);
+                together::measure_ended(island, settings, &mut summary);
+            }
+            limit_energy(island, settings, reserve, &mut summary);
         }
     }
     if summary.is_unsolved() && !island.joints.ties.is_empty() {
@@ -107,6 +117,20 @@ fn solve_stages(
     momentum::count_late_forces(island, settings);
     momentum::publish_forces(island, settings.dt);
     Ok(summary)
+}
+
+/// Takes what contact would add; what a step that is unsolved has lost is lost.
+fn limit_energy(
+    island: &mut Island,
+    settings: &SolveSettings,
+    reserve: &mut f64,
+    summary: &mut IslandSummary,
+) {
+    let stored = reserve.max(0.0);
+    energy::limit_energy(island, settings, reserve, summary);
+    if summary.is_unsolved() {
+        *reserve = reserve.min(stored);
+    }
 }
 
 /// Whether the step is too long for one of its blocks, and may be cut.

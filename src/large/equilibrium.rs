@@ -100,7 +100,7 @@ impl Equilibrator for Free {
         } else {
             f64::INFINITY
         });
-        if increment.is_first && flows {
+        if increment.is_first {
             self.newton.follow_held(&equation, end);
         }
         self.newton.solve(&equation, self.limits, 0.0, end)

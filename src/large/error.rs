@@ -81,7 +81,7 @@ pub enum LargeError {
         /// Node of the largest residual seen last.
         node: usize,
     },
-    /// The tangent of a path has no factor.
+    /// The tangent of a path, or of a body at rest, has no factor.
     #[error(
         "the tangent is singular at the load factor {factor}: hold the rigid motions of the body, let it begin where it touches what is to hold it, and \
          where two paths cross disturb its shape or its load a little"

@@ -185,7 +185,11 @@ impl Ramp {
                 }
                 Err(error) => {
                     if !increments.halve() {
-                        return Err(error);
+                        // Without inertia it is what nothing holds that has no factor.
+                        return Err(match error {
+                            LargeError::Factor(_) => LargeError::Singular { factor: share },
+                            other => other,
+                        });
                     }
                     report.n_cutbacks += 1;
                 }

@@ -117,8 +117,12 @@ impl Newton {
     }
 
     /// Moves what is free by what the body answers to the way of the held dofs where it is, so that the iterations begin without the strains of ends
-    /// that have moved alone: those would flow.
+    /// that have moved alone: those would flow, and turn thin cells over.
     pub(super) fn follow_held(&mut self, equation: &Equation<'_>, end: &mut [f64]) {
+        let mut ways = end.iter().zip(equation.start).zip(equation.is_held);
+        if ways.all(|((end, start), &is_held)| !is_held || end == start) {
+            return;
+        }
         if self.evaluate(equation, equation.start).is_err() {
             return;
         }

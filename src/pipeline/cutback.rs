@@ -9,7 +9,7 @@
 use super::accounts::Books;
 use super::checks::SHORTEST;
 use super::error::StepError;
-use super::islands::{Part, Progress, Solver, Task};
+use super::islands::{Part, Progress, Solver, Task, Tried};
 use super::names::Names;
 use super::quality::Quality;
 use super::settings::FlexParameters;
@@ -84,7 +84,11 @@ impl Solver {
             sets,
             ..
         } = task;
-        let (summary, [before, reserve]) = self.solve_part(part, task, flex_bodies, books)?;
+        let Tried {
+            summary,
+            reserve: [before, reserve],
+            may_be_cut,
+        } = self.solve_part(part, task, flex_bodies, books)?;
         // What contact adds and cannot take back is the error of a step that is longer than the impact; what is parted costs energy at any pace, but not
         // more than there is. What joints leave in stored accelerations swings, and a change of the step's length makes it swing more: with joints it must
         // be as much as there was, on a path.
@@ -97,7 +101,6 @@ impl Solver {
         };
         let is_coarse = summary.calmed - reserve > most + (-before).max(0.0);
         let is_good = !is_coarse && !summary.is_unsolved();
-        let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters, flex_bodies);
         let goes_on = !may_be_cut && summary.quality() == Quality::Unfinished && {
             let n_cuts = part.n_cuts.saturating_sub(FURTHER);
             self.may_be_cut(step, n_cuts, parameters, flex_bodies) && entry.may_go_further()

@@ -60,6 +60,17 @@ pub(super) struct Solver {
     components: Vec<(usize, bool)>,
 }
 
+/// A part of a step as it was tried.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tried {
+    pub summary: IslandSummary,
+    /// Energy that contact may return before and after it (J).
+    pub reserve: [f64; 2],
+    /// Whether it might be cut: then what is not solved was left where it stood, and does not count. Pivots that it has used up since are for its halves
+    /// to know.
+    pub may_be_cut: bool,
+}
+
 impl Solver {
     /// Drops what belongs to removed bodies and colliders.
     pub fn retain(&mut self, sets: &RapierSets<'_>, flex_bodies: &FlexBodySet) {
@@ -142,15 +153,14 @@ impl Solver {
         });
     }
 
-    /// Gathers and solves a part of an island's step, as if it were a step; returns its summary and the energy that contact may
-    /// return before and after it (J).
+    /// Gathers and solves a part of an island's step, as if it were a step.
     pub(super) fn solve_part(
         &mut self,
         part: Part,
         task: Task<'_, '_>,
         flex_bodies: &mut FlexBodySet,
         books: &mut Books<'_>,
-    ) -> Result<(IslandSummary, [f64; 2]), StepError> {
+    ) -> Result<Tried, StepError> {
         let Task {
             parameters,
             step,
@@ -179,7 +189,11 @@ impl Solver {
         let settings = settings_of(task, [may_be_cut, self.is_spent(parameters)]);
         let before = self.reserve(flex_bodies);
         if may_be_cut && self.known_cuts.has(self.first_body(), part.span) {
-            return Ok((IslandSummary::stopped(), [before; 2]));
+            return Ok(Tried {
+                summary: IslandSummary::stopped(),
+                reserve: [before; 2],
+                may_be_cut,
+            });
         }
         let mut reserve = before;
         books.report.n_tried += 1;
@@ -204,7 +218,11 @@ impl Solver {
         }
         self.under_way.note_pivots(summary.n_pivots);
         books.clock.lap(&mut books.report.times.solve);
-        Ok((summary, [before, reserve]))
+        Ok(Tried {
+            summary,
+            reserve: [before, reserve],
+            may_be_cut,
+        })
     }
 
     /// Enters a part that counts, and goes on from its end.

@@ -69,8 +69,8 @@ use crate::fe::material::hyperelastic::Hyperelastic;
 /// A cell where the law has no energy.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "cell {cell} has det F = {jacobian:e}, where the {law} law has no energy: shorten the step, or take a law that admits it, \
-     such as the stable neo-Hookean one"
+    "cell {cell} has det F = {jacobian:e}, where the {law} law has no energy: shorten the step or take more increments, or take a law that \
+     admits it, such as the stable neo-Hookean one"
 )]
 pub struct Inadmissible {
     /// The cell.

@@ -7,7 +7,7 @@ use crate::kkt::working_set;
 use crate::linalg::cone::SETTLING;
 use crate::math::REAL_EPSILON;
 
-/// Share of the margin within which the laws hold where bodies of large strain find their equilibrium to a residual (-).
+/// Share of the margin within which the laws need not hold any better where bodies of large strain find their equilibrium to a residual (-).
 const CURVED_TOLERANCE: f64 = 1e-6;
 
 /// Whether the contacts at hand are so many that they are solved as a sparse problem.
@@ -48,10 +48,19 @@ fn next_to_nothing(island: &Island, tolerance: f64) -> f64 {
 /// How far the laws may be from holding at the end of a pass (m).
 pub(super) fn enough(island: &Island, is_eased: bool, tolerance: f64) -> f64 {
     let margin = island.passes.margin;
-    // Of what large strain or joints hold errors are forces of what is stiff.
+    // Of what large strain or joints hold errors are forces of what is stiff: they may be as large as is small beside how far what touches has moved
+    // on each other, which what is at rest, or pressed and still, has not, and as rapier's numbers do not see. What joints hold may be held by forces of
+    // any size.
     let curved = || {
-        let settled = (SETTLING.get() * island.passes.guessed).max(island.passes.rounding);
-        tolerance.max((CURVED_TOLERANCE * margin).min(settled))
+        let share = SETTLING.get();
+        let rounding = island.passes.rounding;
+        let settled = (share * island.passes.guessed).max(rounding);
+        let beside = match island.joints.ties.is_empty() {
+            true => (share * moved_on_each_other(island)).min(rounding),
+            false => 0.0,
+        };
+        let most = beside.clamp(CURVED_TOLERANCE * margin, LARGE_TOLERANCE * margin);
+        tolerance.max(most.min(settled))
     };
     if is_eased {
         CLOSE_ENOUGH * margin
@@ -70,4 +79,11 @@ pub(super) fn enough(island: &Island, is_eased: bool, tolerance: f64) -> f64 {
     } else {
         curved()
     }
+}
+
+/// How far bodies that press on each other have moved against each other since the step began, at most (m).
+fn moved_on_each_other(island: &Island) -> f64 {
+    let closed = island.contacts.iter().filter(|contact| contact.is_closed());
+    let moved = closed.filter_map(|contact| contact.base.map(|base| base.moved.norm()));
+    moved.fold(0.0, f64::max)
 }

@@ -163,11 +163,16 @@ impl Touch {
         let next = match self.hold {
             Hold::Open if closes && self.is_kept_out(held.beside.normal) => match slides {
                 true => Hold::Slides(0.0),
+                // What has come along slides on: held back to where it came from it would pull, let go and close again for ever.
+                false if no_force.is_finite() && held.slip.abs() > no_way => {
+                    Hold::Slides(-held.slip.signum())
+                }
                 false => Hold::Sticks,
             },
             Hold::Open => Hold::Open,
-            _ if held.force < -no_force => Hold::Open,
+            // What sticks pulls as long as it is held where it came from: whether it would press where it could slide to is seen there.
             Hold::Sticks if held.friction.abs() > most => Hold::Slides(held.friction.signum()),
+            _ if held.force < -no_force => Hold::Open,
             Hold::Slides(sign) if sign * held.slip > no_way => Hold::Sticks,
             other => other,
         };
