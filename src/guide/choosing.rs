@@ -7,7 +7,7 @@
 //! | bodies that bend or stretch far | the default; for another law [`HyperelasticSolid`](crate::fe::material::hyperelastic::HyperelasticSolid), see [`large_or_small`](super::large_or_small) |
 //! | stiff bodies at the least cost, linear beam theory | [`small_strain`](crate::body::FlexBodyBuilder::small_strain): one factorization for ever, strains of a few percent |
 //! | several materials in a body | [`region_material`](crate::body::FlexBodyBuilder::region_material), with regions by [`regions_by`](crate::body::FlexBodyBuilder::regions_by) or [`Mesh::with_regions`](crate::fe::mesh::Mesh::with_regions) |
-//! | tyres, balloons, cushions | a mesh with holes and an [`inner_pressure`](crate::body::FlexBodyBuilder::inner_pressure): isothermal, adiabatic or constant; [`FlexBody::set_inner_pressure`](crate::body::FlexBody::set_inner_pressure) pumps |
+//! | tyres, balloons, cushions | a mesh with holes and an [`inner_pressure`](crate::body::FlexBodyBuilder::inner_pressure): isothermal, adiabatic or constant; [`FlexBody::set_inner_pressure`](crate::body::FlexBody::set_inner_pressure) pumps; fast tyres are braked as they roll ([limits](crate::guide::limits), *Rolling*), less in shorter steps |
 //! | metals that yield | [`J2Plasticity`](crate::fe::material::hyperelastic::J2Plasticity) |
 //! | a bar one cell thick that bounces right | `small_strain` and [`ContactInertia::RedistributedAt`](crate::body::ContactInertia::RedistributedAt) |
 //! | an element or a law of your own | an `impl` of [`Element`](crate::fe::element::Element), [`Material`](crate::fe::material::Material) or [`Hyperelastic`](crate::fe::material::hyperelastic::Hyperelastic); suites named `conformance` test it |
