@@ -231,4 +231,49 @@ mod tests {
             assert_eq!(is_thrown(&island, &summary), expected, "{more} J");
         }
     }
+
+    /// What is set in motion is fed, but for what was released, done and taken before, a hundredth of what there was and what parting brings; what is stored
+    /// or lifted is not, nor is anything without contact.
+    #[test]
+    fn motion_that_nothing_explains_is_fed() {
+        let mut island = balls(true);
+        island.passes.margin = MARGIN;
+        let grips = [0, 1].map(|block| {
+            let way = 1.0 - 2.0 * block as f64;
+            (block, Point::Arm(Vec2::zeros()), way, Vec2::zeros())
+        });
+        let row = Kinematics::with_levers(0.0, Vec2::new(1.0, 0.0), Vec2::zeros(), &grips);
+        let mut contact = ActiveContact::new(0, row, Remembered::default(), 0.0, &island.blocks);
+        contact.multiplier[0] = 1.0;
+        assert!(contact.is_closed());
+        island.contacts.push(contact);
+        let mut summary = IslandSummary {
+            start_energy: [10.0, 5.0],
+            load_energy: 1.0,
+            ..IslandSummary::default()
+        };
+        // 4 kg at twice the pace at which the margin parts.
+        let parting = 0.5 * 4.0 * (2.0 * PARTING_RATE.get() * MARGIN).powi(2);
+        // Work, energy released and energy that contact had taken before; how much motion that explains.
+        for (work, elastic, had, explained) in [
+            (0.0, 5.0, -3.0, 0.16),
+            (2.0, 5.0, 0.0, 2.18),
+            (-2.0, 5.0, 0.0, 0.18),
+            (0.0, 1.0, 0.0, 4.16),
+            (0.0, 9.0, 0.0, 0.16),
+            (0.0, 5.0, 7.0, 7.16),
+        ] {
+            summary.work = work;
+            for (more, expected) in [(-0.01, false), (0.01, true)] {
+                summary.end_energy = [10.0 + explained + parting + more, elastic];
+                let found = is_fed(&island, &summary, had);
+                assert_eq!(found, expected, "{work} {elastic} {had}: {more}");
+            }
+        }
+        summary.is_cut = true;
+        assert!(!is_fed(&island, &summary, 0.0));
+        summary.is_cut = false;
+        island.contacts.clear();
+        assert!(!is_fed(&island, &summary, 0.0));
+    }
 }
