@@ -267,6 +267,16 @@ fn what_slides_off_an_end_within_a_step_takes_the_whole_of_it() {
 /// against each other.
 #[test]
 fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
+    let mut slipped = 0.0f64;
+    for k in 0..8 {
+        slipped = slipped.max(wedge_a_tip(4e-5 * f64::from(k)));
+    }
+    // What gives way is told, and is little beside cells of a fifth of a metre.
+    assert!(slipped > 0.0 && slipped < 5e-3, "{slipped:e} m of slip");
+}
+
+/// Wedges it, with the strip so far aside (m); returns the slip that is told (m).
+fn wedge_a_tip(aside: f64) -> f64 {
     let mut scene = Scene::new(1.0 / 60.0);
     scene.fixed(ColliderBuilder::new(SharedShape::halfspace(vec2(0.0, 1.0))).friction(real(0.015)));
     let size = [3.667_563_545_812_243, 0.193_634_638_281_032_05_f64];
@@ -274,7 +284,7 @@ fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
     let (sin, cos) = angle.sin_cos();
     let half = [-0.5 * size[0], -0.5 * size[1]];
     let at = [
-        0.209_510_902_708_788_03 + cos * half[0] - sin * half[1],
+        aside + 0.209_510_902_708_788_03 + cos * half[0] - sin * half[1],
         4.932_537_732_753_614 + sin * half[0] + cos * half[1],
     ];
     scene.flexible(
@@ -307,8 +317,7 @@ fn a_tip_that_is_wedged_in_a_fold_is_held_by_forces_that_are_bounded() {
         assert!(quality != Quality::Unfinished, "step {step}: unfinished");
         slipped = slipped.max(report.slip_violation());
     }
-    // What gives way is told, and is little.
-    assert!(slipped > 0.0 && slipped < 1e-3, "{slipped:e} m of slip");
+    slipped
 }
 
 /// A turning paddle crushes a soft block against a wall, between its own end and the ground: what is tried there for an answer has an end. Without one

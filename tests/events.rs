@@ -12,6 +12,8 @@ mod filters;
 mod forces;
 #[path = "events/hooks.rs"]
 mod hooks;
+#[path = "events/led_hooks.rs"]
+mod led_hooks;
 #[path = "events/refused_hooks.rs"]
 mod refused_hooks;
 #[path = "events/support.rs"]

@@ -1,5 +1,7 @@
 //! The step as its user sees it: time, bodies that come and go, rapier's events and queries, pins and loads.
 
+#[path = "pipeline/beside.rs"]
+mod beside;
 #[path = "pipeline/coming_and_going.rs"]
 mod coming_and_going;
 mod common;

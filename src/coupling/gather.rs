@@ -17,7 +17,7 @@ use super::seats::{OpenIsland, Seats};
 use super::sets::RapierSets;
 use super::under_way::UnderWay;
 use crate::body::FlexBodySet;
-use crate::kkt::Island;
+use crate::kkt::{Island, KeptOn};
 use crate::math::{Vec2, from_rapier};
 use crate::rapier::prelude::*;
 use crate::system::{FlexLoad, RigidBlock};
@@ -110,8 +110,10 @@ impl Gatherer {
         for flex in flexible {
             let body = flex_bodies.at_index(claims.flex[flex].index);
             for kept in body.map_or(&[][..], |(_, body)| body.kept_forces()) {
-                if let Some(block) = joints.open.block_of(kept.on) {
-                    joints.open.island.kept_on.push((block, kept.wrench));
+                let by = joints.open.seats.flex_block(flex);
+                if let Some((by, on)) = by.zip(joints.open.block_of(kept.on)) {
+                    let wrench = kept.wrench;
+                    joints.open.island.kept_on.push(KeptOn { by, on, wrench });
                 }
             }
         }
@@ -141,10 +143,6 @@ impl Gatherer {
         let own: Vec2 = body.body_force().into();
         let gravity = body.gravity_scale() * from_rapier(sets.gravity) + own;
         let mut outcome = Ok(());
-        if has_changed && is_touched {
-            let force = body.nodal_forces().to_vec();
-            outcome = block.lose_surface_mass(settings.step, body.state_mut(), &force);
-        }
         if !body.is_started() {
             body.start_with(|state, force, prescribed, reaction| {
                 outcome = block.start(
@@ -159,6 +157,9 @@ impl Gatherer {
                 );
                 outcome.is_ok()
             });
+        } else if has_changed && is_touched {
+            let force = body.nodal_forces().to_vec();
+            outcome = block.lose_surface_mass(settings.step, body.state_mut(), &force);
         }
         let rest = body.model().placed_positions();
         let pins = sources
@@ -172,7 +173,8 @@ impl Gatherer {
             reaction: body.reactions(),
         };
         let outcome = outcome.and_then(|()| block.predict(settings.step, body.state(), &load));
-        self.seats.add_flex((flex, index), block, island);
+        let reserve = body.energy_reserve();
+        self.seats.add_flex((flex, index), (block, reserve), island);
         outcome.map_err(|source| GatherError::Factorization {
             body: handle,
             source,

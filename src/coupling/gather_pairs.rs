@@ -19,6 +19,7 @@ use super::walk::ClaimedPair;
 use super::ways::{self, Draft, RigidSurface};
 use crate::constraint::contact::{ContactLaw, Owner};
 use crate::constraint::geometry::Pose2;
+use crate::kkt::Island;
 use crate::math::{HashMap, rounding};
 use crate::rapier::prelude::*;
 use crate::system::{Block, RigidBlock};
@@ -85,8 +86,8 @@ impl PairGatherer {
                     other: owner_of(collider),
                 };
                 let mut law = law_of(sets.colliders, own.collider, collider)?;
-                let is_across =
-                    settings.uses_path && !HookBook::asks([own.collider, collider], sets);
+                let asks = HookBook::asks([own.collider, collider], sets);
+                let is_across = settings.uses_path && !asks;
                 if is_across {
                     let led =
                         self.lead(collider, block, (&placed, own.reach()), (names, law), open);
@@ -109,13 +110,21 @@ impl PairGatherer {
                 if is_across {
                     self.part(collider, block, (&placed, first), (names, law), open);
                 }
-                hook(
-                    [own.collider, collider],
-                    names,
-                    first,
-                    &mut memory.hooks,
-                    open,
-                )?;
+                let colliders = [own.collider, collider];
+                let is_plain = hook(colliders, names, first, &mut memory.hooks, open)?;
+                let way = open.island.path.n_ways();
+                if settings.uses_path && is_plain {
+                    let led =
+                        self.lead(collider, block, (&placed, own.reach()), (names, law), open);
+                    if let Err(gap) = led {
+                        law.skin += gap;
+                        widen(open.island, first, gap);
+                        self.part(collider, block, (&placed, first), (names, law), open);
+                    } else {
+                        open.island.candidates.truncate(first);
+                        open.island.path.place_laws(way, &memory.hooks.laws);
+                    }
+                }
             }
             ClaimedPair::FlexFlex(one, other) if claims.component_of_flex(one) == component => {
                 // The finer surface is the contactor; the first by place if they are equal.
@@ -154,7 +163,20 @@ impl PairGatherer {
                 if is_across {
                     tangles::flex_flex(island, first, [points, surface], names, law);
                 }
-                hook(colliders, names, first, &mut memory.hooks, open)?;
+                let is_plain = hook(colliders, names, first, &mut memory.hooks, open)?;
+                let way = open.island.path.n_ways();
+                if settings.uses_path && is_plain {
+                    let (island, blocks) = (&mut *open.island, [points, surface]);
+                    let led = ways::flex_flex(island, blocks, names, law, &mut self.flex_cores);
+                    if let Err(gap) = led {
+                        law.skin += gap;
+                        widen(island, first, gap);
+                        tangles::flex_flex(island, first, blocks, names, law);
+                    } else {
+                        island.candidates.truncate(first);
+                        island.path.place_laws(way, &memory.hooks.laws);
+                    }
+                }
             }
             ClaimedPair::RigidRigid(one, other) => {
                 if component_of_pair([one, other], sets, claims) != Some(component) {
@@ -357,13 +379,21 @@ impl PairGatherer {
 }
 
 /// Shows the candidates from the `first` on to the user's hook.
+/// Lets the candidates from the `first` on close farther off by so much (m).
+fn widen(island: &mut Island, first: usize, gap: f64) {
+    for candidate in &mut island.candidates[first..] {
+        candidate.law.skin += gap;
+    }
+}
+
+/// Asks the hooks about the candidates from the `first` on; returns whether they leave all of them where they are.
 fn hook(
     colliders: [ColliderHandle; 2],
     names: Names,
     first: usize,
     book: &mut HookBook,
     open: &mut OpenIsland<'_, '_>,
-) -> Result<(), GatherError> {
+) -> Result<bool, GatherError> {
     let owners = [names.one, names.other];
     let pair = HookedPair { colliders, owners };
     book.modify(pair, first, (open.sets, open.settings.step.dt), open.island)

@@ -17,7 +17,7 @@ use crate::constraint::contact::{
     Candidate, ContactKey, ContactLaw, Direction, Kinematics, Owner, Remembered, Scene,
 };
 use crate::kkt::Island;
-use crate::math::{HashMap, from_rapier, to_rapier};
+use crate::math::{HashMap, Vec2, from_rapier, to_rapier};
 use crate::rapier::math::Real;
 use crate::rapier::prelude::*;
 use crate::system::Block;
@@ -32,6 +32,12 @@ pub(crate) struct HookBook {
     pub(super) left: HashMap<PairName, bool>,
     seen: Vec<Seen>,
     unseen: Vec<Candidate>,
+    /// How near the point of a candidate gets to any part (m).
+    nearest: HashMap<(Owner, u32), f64>,
+    /// The laws of a pair of which the hooks left every contact where it was, each with its place (m), for points of the first of the pair.
+    pub(super) laws: Vec<(Vec2, ContactLaw)>,
+    /// Whether the hooks have moved a contact of the pair, or turned it.
+    moves: bool,
 }
 
 /// A candidate with what is shown of it.
@@ -73,7 +79,8 @@ impl HookBook {
         hooks.into_iter().flatten().any(wants)
     }
 
-    /// Asks the user's hook about the candidates of a pair, those from the `first` on, if a collider wants it.
+    /// Asks the user's hook about the candidates of a pair, those from the `first` on, if a collider wants it. Returns whether it has kept, where they were, all
+    /// that may be met in the step: then [`laws`](Self::laws) says all that it has changed.
     ///
     /// # Errors
     /// If the hook leaves numbers that are not finite.
@@ -83,59 +90,74 @@ impl HookBook {
         first: usize,
         (sets, dt): (&RapierSets<'_>, f64),
         island: &mut Island,
-    ) -> Result<(), GatherError> {
-        let [one, other] = pair.colliders.map(|handle| sets.colliders.get(handle));
-        let (Some(one), Some(other)) = (one, other) else {
-            return Ok(());
-        };
-        let hooks = one.active_hooks() | other.active_hooks();
-        if !hooks.contains(ActiveHooks::MODIFY_SOLVER_CONTACTS) {
-            return Ok(());
+    ) -> Result<bool, GatherError> {
+        if !Self::asks(pair.colliders, sets) {
+            return Ok(false);
         }
-        self.look_at(first, island);
-        let seen = std::mem::take(&mut self.seen);
         let is_flexible = |owner: &Owner| matches!(owner, Owner::Flex(_));
         let inherits = pair.owners.iter().any(is_flexible);
+        self.look_at((first, inherits), island);
+        let seen = std::mem::take(&mut self.seen);
+        self.laws.clear();
+        self.moves = false;
         let of_pair = self.of_pair(pair);
-        let (mut removes, mut fault) = (false, None);
-        let mut nearest: Option<(f64, ContactLaw)> = None;
+        let (mut opens, mut fault) = (false, None);
+        let mut nearest: Option<(f64, Option<ContactLaw>)> = None;
         for one in &seen {
             let known = match inherits {
                 true => self.known(one, &seen).unwrap_or(of_pair),
                 false => self.last.get(&one.candidate.key).copied().unwrap_or(0),
             };
-            match self.ask(pair, one, known, (sets, dt)) {
-                Ok(Some(law)) => {
-                    island.candidates.push(Candidate {
-                        law,
-                        ..one.candidate
-                    });
-                    if nearest.is_none_or(|(least, _)| one.gap < least) {
-                        nearest = Some((one.gap, law));
-                    }
-                }
-                Ok(None) => removes = true,
+            let law = match self.ask(pair, one, known, (sets, dt)) {
+                Ok(law) => law,
                 Err(error) => {
                     fault = Some(error);
                     break;
                 }
+            };
+            if nearest.is_none_or(|(least, _)| one.gap < least) {
+                nearest = Some((one.gap, law));
+            }
+            if let Some(law) = law {
+                self.note_law(pair, one, law);
+                let candidate = one.candidate;
+                island.candidates.push(Candidate { law, ..candidate });
+            } else {
+                // What would not be met in this step may be held off in it as well.
+                opens |= one.gap.min(one.kinematics.gap) <= 0.0;
             }
         }
         self.seen = seen;
         if let Some(error) = fault {
             return Err(error);
         }
-        if !removes {
-            self.keep_unseen(nearest.map(|(_, law)| law), island);
+        // What the nearest one is let through, the others are that were not shown.
+        let is_open = nearest.is_some_and(|(_, law)| law.is_none());
+        if !is_open {
+            self.keep_unseen(nearest.and_then(|(_, law)| law), island);
         }
         let [one, other] = pair.colliders;
         let is_left = island.candidates.len() > first;
         self.left.insert(pair_name(one, other), is_left);
-        Ok(())
+        Ok(!self.laws.is_empty() && !opens && !self.moves)
     }
 
-    /// Takes the candidates of a pair, those from the `first` on, out of the island, with what can be shown of them.
-    fn look_at(&mut self, first: usize, island: &mut Island) {
+    /// Notes the law of a contact by its place.
+    fn note_law(&mut self, pair: HookedPair, seen: &Seen, law: ContactLaw) {
+        self.moves |= law.direction.is_some() || law.skin != seen.candidate.law.skin;
+        let owns_first = seen.candidate.key.contactor == pair.owners[0];
+        let carried = if owns_first {
+            law.carried
+        } else {
+            -law.carried
+        };
+        let law = ContactLaw { carried, ..law };
+        self.laws.push((seen.kinematics.position, law));
+    }
+
+    /// Takes the candidates of a pair, those from the `first` on, out of the island, with what can be shown of them: of every point the nearest part alone, if
+    /// a body of the pair is flexible. The others would be met at their ends, which lie within the surface, from any side.
+    fn look_at(&mut self, (first, by_point): (usize, bool), island: &mut Island) {
         self.seen.clear();
         self.unseen.clear();
         let scene = Scene {
@@ -157,6 +179,23 @@ impl HookBook {
             });
         }
         island.candidates.truncate(first);
+        if !by_point {
+            return;
+        }
+        self.nearest.clear();
+        let point = |seen: &Seen| (seen.candidate.key.contactor, seen.candidate.key.point);
+        for seen in &self.seen {
+            let least = self.nearest.entry(point(seen)).or_insert(f64::INFINITY);
+            *least = least.min(seen.gap);
+        }
+        let (nearest, unseen) = (&self.nearest, &mut self.unseen);
+        self.seen.retain(|seen| {
+            let is_nearest = nearest.get(&point(seen)) == Some(&seen.gap);
+            if !is_nearest {
+                unseen.push(seen.candidate);
+            }
+            is_nearest
+        });
     }
 
     /// The user data that the first candidate of a pair had in the last step, or zero.

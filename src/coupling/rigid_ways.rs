@@ -130,6 +130,7 @@ impl RigidCores {
             members,
             owners: [way.names.one, way.names.other],
             law: way.law,
+            places: (0, 0),
             closing: core.closing + met.closing + way.law.skin,
             margin: core.margin + met.margin,
             reach: REACH_OF_WIDTH * core.width.min(met.width),

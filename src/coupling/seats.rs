@@ -76,15 +76,16 @@ impl Seats {
         self.flex.get(&flex).copied()
     }
 
-    /// Adds a flexible body: by its slot in the roster and its index in the set.
+    /// Adds a flexible body, with the energy that contact may give back to it (J): by its slot in the roster and its index in the set.
     pub fn add_flex(
         &mut self,
         (flex, index): (usize, u32),
-        block: Box<FlexBlock>,
+        (block, reserve): (Box<FlexBlock>, f64),
         island: &mut Island,
     ) {
         island.blocks.push(Block::Flex(block));
         island.flex_index.push(Some(index));
+        island.reserves.push(reserve);
         self.flex.insert(flex, island.blocks.len() - 1);
     }
 
@@ -103,6 +104,7 @@ impl Seats {
     ) -> usize {
         island.blocks.push(Block::Rigid(block));
         island.flex_index.push(None);
+        island.reserves.push(0.0);
         let index = island.blocks.len() - 1;
         if let Some(handle) = handle {
             self.rigid.insert(handle, index);

@@ -155,24 +155,22 @@ impl UnderWay {
     ///
     /// - `bodies`: claimed ones, by their blocks.
     /// - `kept`: forces that flexible bodies keep, by their indices.
-    /// - `reserve`: energy that contact may return (J).
     pub fn go_on(
         &mut self,
         island: &Island,
         (bodies, kept): (&[(usize, RigidBodyHandle)], &KeptForces),
-        reserve: f64,
         span: Span,
         flex_bodies: &mut FlexBodySet,
     ) {
-        let share = reserve / self.flex.len().max(1) as f64;
-        for (block, index) in island.blocks.iter().zip(&island.flex_index) {
+        let members = island.blocks.iter().zip(&island.flex_index);
+        for ((block, index), reserve) in members.zip(&island.reserves) {
             if let (Block::Flex(block), Some(index)) = (block, index)
                 && let Some(body) = flex_bodies.at_index_mut(*index)
             {
                 block.commit(body.state_mut());
                 block.write_contact_force(body.contact_force_mut());
                 block.write_reactions(body.reaction_mut());
-                body.set_energy_reserve(share);
+                body.set_energy_reserve(*reserve);
                 body.keep_forces(*index, kept);
                 self.add_impulse(*index, span.share(), body);
             }

@@ -74,7 +74,8 @@
 //!
 //! # Events
 //!
-//! [`step_with_events`](crate::pipeline::FlexPipeline::step_with_events) takes rapier's hooks and event handler. A body that is to make events asks for them by
+//! [`step_with_events`](crate::pipeline::FlexPipeline::step_with_events) takes rapier's hooks and event handler. Hooks may set friction, restitution and the velocity of belts, and let contacts
+//! through; what else they do costs guarantees, see [limits](super::limits). A body that is to make events asks for them by
 //! [`active_events`](crate::body::FlexBodyBuilder::active_events), as colliders do:
 //!
 //! ```

@@ -73,9 +73,13 @@
 //!   themselves. Each other, and rigid bodies with an inside, they touch; what has been folded or crushed keeps the offset from other flexible bodies too.
 //! - **Overlap.** Gaps of a solved step hold to rounding, and to some 1e-6 m where bodies press on edges that they slide to and fro over. See: [`StepReport::gap_violation`]. A step that is not solved may leave centimetres where bodies are
 //!   not led along a path (next entry). It also counts what rapier has left between rigid bodies far from anything flexible, once these are taken over: such pairs part within some steps.
-//! - **Who is led.** Surfaces are stopped before they meet, whatever forces do ([`FlexParameters::feasible_path`]). Not led, and solved by signed gaps, are: pairs shown to hooks;
+//! - **Who is led.** Surfaces are stopped before they meet, whatever forces do ([`FlexParameters::feasible_path`]). Not led, and solved by signed gaps, are: pairs whose contacts hooks take away or move, and rigid ones shown to hooks;
 //!   flexible bodies that are inserted with an overlap of more than a twelfth of a cell, rigid ones of more than a sixth of their width; explicit steps; constraint functions. See: of 1,000 random scenes of small strain
 //!   one had a body by over 1 % of its size in another, one a rigid body that passed through the ground, one gained over 1 % of energy; 12 of 2,000 later ones had an unfinished step.
+//! - **Contacts that hooks take away or move.** A flexible body is led against what is shown to hooks as long as these keep all contacts that are met in the step where they are, with whatever friction, restitution and
+//!   `tangent_velocity`. Where some of them are let through, or a normal or a distance is changed, each point is held by itself for that step. See: on polylines and height fields surfaces may then get into the ground between or beside their
+//!   points, told as solved. Hooks see of every node, and of every corner of what it meets, the nearest part of a collider. Do: let hooks decide by what a body is, not by where its contacts are; make platforms that are open from below of boxes or
+//!   single segments where bodies are wider than they are.
 //! - **Statics between obstacles.** [`ContactStepper`](crate::large::ContactStepper) keeps nodes out of rigid obstacles, each node out of one. See: `LargeError::Wedged` where one would have to stay out of two, `LargeError::Passed` where an obstacle would go through the surface. What is smaller than a segment of the surface may go into it between two nodes up to its middle. Its bodies do not
 //!   meet themselves or each other. Do: step such bodies in a world, with damping.
 //! - **Nodes of the target.** Between flexible bodies the nodes of one are kept out of the surface of the other, not the other's out of its own. See: a node of a soft target may be inside by a millimetre (1.4 mm at E = 1e5 Pa,

@@ -84,6 +84,8 @@ pub(super) struct AtBase {
     /// Motion of the material points against each other since the beginning of the step (m); of vertices that are held together, from
     /// where they are.
     pub moved: Vec2,
+    /// How far the target carries the point along within the step, as a belt does (m).
+    pub carried: Vec2,
     /// The near pair.
     pub near: NearPair,
     /// Whether it stands for two vertices that are held together.

@@ -15,28 +15,103 @@ use super::calm::remove_relative_motion;
 use super::delassus::RowDirection;
 use super::island::{Island, SolveSettings};
 use super::joints::Among;
+use super::ledgers::Ledger;
 use super::summary::IslandSummary;
-use super::work::{kinetic_energy, momentum_at_most, work_of_driven};
+use super::work::{
+    end_energy, kinetic_energy, load_energy, momentum_at_most, start_energy, work_of_driven,
+};
 use super::{gathered, momentum, together};
 use crate::math::{Vec2, judged::Judged, rounding};
 use crate::system::{Block, Response};
 
-/// Keeps contact, and turning frames, from adding energy.
+/// Keeps contact, and turning frames, from adding energy, to what presses each other by itself: what flies beside it lends it none. Where there are
+/// joints, all of the island has one account.
 ///
-/// `reserve` is what contact has taken since it began and may give back (J); a debt is kept until it is paid.
+/// What contact has taken and may give back is kept in [`Island::reserves`], by the flexible blocks of a ledger alike; a debt is kept until it
+/// is paid.
 pub(super) fn limit_energy(
     island: &mut Island,
     settings: &SolveSettings,
-    reserve: &mut f64,
     summary: &mut IslandSummary,
 ) {
-    let touches = island
-        .contacts
-        .iter()
+    let mut ledgers = std::mem::take(&mut island.ledgers);
+    let (blocks, contacts) = (&island.blocks[..], &island.contacts[..]);
+    match island.joints.ties.is_empty() {
+        true => ledgers.part(blocks, contacts, &island.pressed_before),
+        false => ledgers.pool(blocks, contacts),
+    }
+    for block in 0..island.blocks.len() {
+        let members = (&island.blocks[..], &island.contacts[..]);
+        if let Some(ledger) = ledgers.led_by(block, members) {
+            limit_ledger(island, ledger, settings, summary);
+        }
+    }
+    island.ledgers = ledgers;
+}
+
+/// Energies of a ledger (J).
+struct Balance {
+    start: [f64; 2],
+    end: [f64; 2],
+    work: f64,
+}
+
+impl Balance {
+    fn of(
+        island: &Island,
+        ledger: Ledger<'_>,
+        settings: &SolveSettings,
+        summary: &IslandSummary,
+    ) -> Self {
+        // What is known of the whole, joints included, need not be found again.
+        if ledger.blocks.len() == island.blocks.len() {
+            return Self {
+                start: summary.start_energy,
+                end: summary.end_energy,
+                work: summary.work,
+            };
+        }
+        Self {
+            start: start_energy(members(island, ledger)),
+            end: end_energy(members(island, ledger)),
+            work: island.own_work(
+                settings,
+                (members(island, ledger), |block| ledger.has(block)),
+                contacts_of(island, ledger),
+            ),
+        }
+    }
+}
+
+/// The blocks of a ledger.
+fn members<'a>(island: &'a Island, ledger: Ledger<'a>) -> impl Iterator<Item = &'a Block> {
+    ledger.blocks.iter().map(|&block| &island.blocks[block])
+}
+
+/// The contacts of a ledger.
+fn contacts_of<'a>(
+    island: &'a Island,
+    ledger: Ledger<'a>,
+) -> impl Iterator<Item = &'a ActiveContact> {
+    let own = ledger.contacts.iter();
+    own.map(|&contact| &island.contacts[contact])
+}
+
+fn limit_ledger(
+    island: &mut Island,
+    ledger: Ledger<'_>,
+    settings: &SolveSettings,
+    summary: &mut IslandSummary,
+) {
+    let Balance { start, end, work } = Balance::of(island, ledger, settings, summary);
+    let reserves = ledger.blocks.iter().map(|&block| island.reserves[block]);
+    let before: f64 = reserves.sum();
+    let mut reserve = before;
+    let touches = contacts_of(island, ledger)
         .any(|contact| contact.multiplier[0] > 0.0 || contact.remembered.normal > 0.0);
-    let [kinetic, elastic] = summary.end_energy;
+    let [kinetic, elastic] = end;
     // By how much energy may swing does not depend on how fast all of it moves.
-    let seen = seen_energy(island, settings.dt, kinetic) + elastic;
+    let seen = seen_energy(island, ledger, settings.dt, kinetic) + elastic;
     let swings = island.has_swinging_joints(settings.is_within);
     let kept = match (touches, swings) {
         (false, false) => 0.0,
@@ -44,14 +119,13 @@ pub(super) fn limit_energy(
         (true, false) => SWING * seen,
         (true, true) => f64::INFINITY,
     };
-    *reserve = reserve.min(kept);
-    let allowance = summary.work;
-    let gain = kinetic + elastic - summary.start_energy[0] - summary.start_energy[1] - allowance;
-    *reserve -= gain;
+    reserve = reserve.min(kept);
+    let gain = kinetic + elastic - start[0] - start[1] - work;
+    reserve -= gain;
     let band = if touches { ROUND_OFF } else { SWING.get() };
     // What is there by mistake is no measure of it.
-    let had = summary.start_energy[0] + summary.start_energy[1] + allowance.abs();
-    let owed = -*reserve - band * seen.min(had);
+    let had = start[0] + start[1] + work.abs();
+    let owed = -reserve - band * seen.min(had);
     // Older debts are paid by what later steps lose. Taken out of these, they are impulses that no contact of theirs has asked for: a soft disc
     // that rolled with one was driven by them. What swings in joints comes back in the steps after, and what parts overlaps is brought by several.
     let is_brought_back = swings || summary.is_parting;
@@ -62,25 +136,51 @@ pub(super) fn limit_energy(
     };
     // At rest under load there are only rounding errors to take.
     let is_still = kinetic <= ROUND_OFF * elastic;
-    if debt <= 0.0 || is_still {
-        return;
+    let calmed_before = summary.calmed;
+    if debt > 0.0 && !is_still {
+        reserve += take(island, ledger, (debt, swings), settings, summary);
     }
+    let left = summary.calmed - calmed_before - reserve - (-before).max(0.0);
+    if left > 0.0 {
+        let brought = had + load_energy(members(island, ledger));
+        summary.added = summary.added.max(left / brought);
+    }
+    let is_flexible = |block: &Block| matches!(block, Block::Flex(_));
+    let flexible = members(island, ledger).filter(|block| is_flexible(block));
+    let n_sharing = flexible.count();
+    for &block in ledger.blocks {
+        if is_flexible(&island.blocks[block]) {
+            island.reserves[block] = reserve / n_sharing as f64;
+        }
+    }
+}
+
+/// Takes a debt (J) out of the velocities of a ledger, as far as they have it; returns what was taken.
+fn take(
+    island: &mut Island,
+    ledger: Ledger<'_>,
+    (debt, swings): (f64, bool),
+    settings: &SolveSettings,
+    summary: &mut IslandSummary,
+) -> f64 {
     let mut taken = 0.0;
     let mut take_along = |island: &mut Island, axis: usize, excess: f64| {
-        let [removed, driven] = remove_along_contacts(island, axis, excess, settings);
+        let [removed, driven] = remove_along_contacts(island, (ledger, axis), excess, settings);
         summary.work += driven;
         summary.end_energy[0] += driven;
         removed
     };
+    let touches = contacts_of(island, ledger)
+        .any(|contact| contact.multiplier[0] > 0.0 || contact.remembered.normal > 0.0);
     if touches {
         taken = take_along(island, 0, debt);
     }
     if taken < debt {
-        taken += remove_vibration(island, debt - taken);
+        taken += remove_vibration(island, ledger, debt - taken);
     }
     if taken < debt {
         // By what sliding contacts may have pushed along.
-        let pushed = island.contacts.iter().map(ActiveContact::pushed_along);
+        let pushed = contacts_of(island, ledger).map(|contact| contact.pushed_along());
         let most = pushed.sum::<f64>() / settings.dt;
         if most > 0.0 {
             taken += take_along(island, 1, most.min(debt - taken));
@@ -90,19 +190,18 @@ pub(super) fn limit_energy(
         let leaders = together::groups_of(island, |block| !block.is_prescribed());
         let joints = (&island.joints.ties[..], &island.joints.grips[..]);
         let excess = debt - taken;
-        summary.calmed = remove_relative_motion(&mut island.blocks, joints, &leaders, excess);
-        taken += summary.calmed;
+        let calmed = remove_relative_motion(&mut island.blocks, joints, &leaders, excess);
+        summary.calmed += calmed;
+        taken += calmed;
     }
-    summary.limited = taken;
+    summary.limited += taken;
     summary.end_energy[0] -= taken;
-    *reserve += taken;
+    taken
 }
 
-/// Kinetic energy as it is seen from the slowest of the driven bodies that touch or hold something (J).
-fn seen_energy(island: &Island, dt: f64, kinetic: f64) -> f64 {
-    let of_contacts = island
-        .contacts
-        .iter()
+/// Kinetic energy of a ledger as it is seen from the slowest of the driven bodies that touch or hold something of it (J).
+fn seen_energy(island: &Island, ledger: Ledger<'_>, dt: f64, kinetic: f64) -> f64 {
+    let of_contacts = contacts_of(island, ledger)
         .filter(|contact| contact.is_closed() || contact.remembered.normal > 0.0)
         .flat_map(|contact| contact.kinematics.attachments().iter().map(|a| a.block));
     let grips = island.joints.grips.iter().map(|grip| grip.block);
@@ -119,7 +218,7 @@ fn seen_energy(island: &Island, dt: f64, kinetic: f64) -> f64 {
     let Some(velocity) = slowest.filter(|velocity| *velocity != Vec2::zeros()) else {
         return kinetic;
     };
-    let moving = island.blocks.iter().filter(|block| !block.is_prescribed());
+    let moving = members(island, ledger).filter(|block| !block.is_prescribed());
     let seen = moving.map(|block| {
         let moments = block.end_moments();
         moments.mass * velocity.dot(&(0.5 * velocity - moments.velocity))
@@ -133,13 +232,14 @@ fn seen_energy(island: &Island, dt: f64, kinetic: f64) -> f64 {
 /// - `axis`: along the normals (0), or against what slides, as friction would (1): what lies taut around something has no normal motion.
 fn remove_along_contacts(
     island: &mut Island,
-    axis: usize,
+    (ledger, axis): (Ledger<'_>, usize),
     excess: f64,
     settings: &SolveSettings,
 ) -> [f64; 2] {
     island.problem.rows.clear();
     island.problem.multipliers.clear();
-    for (index, contact) in island.contacts.iter().enumerate() {
+    for &index in ledger.contacts {
+        let contact = &island.contacts[index];
         let force = contact.multiplier[0].max(contact.remembered.normal);
         let counts = axis == 0 || contact.pushed_along() > 0.0;
         if force > 0.0 && !contact.is_hard && counts {
@@ -190,7 +290,7 @@ fn remove_along_contacts(
         .iter()
         .map(|impulse| impulse.abs())
         .sum();
-    let most = 1.0 + momentum_at_most(&island.blocks) / pressed;
+    let most = 1.0 + momentum_at_most(members(island, ledger)) / pressed;
     let step = step_of_parabola(curvature, slope, excess)
         .min(most)
         .max(-most);
@@ -215,11 +315,11 @@ fn add_responses(island: &mut Island, scale: f64) -> f64 {
     kinetic_energy(&island.blocks)
 }
 
-/// Scales down the vibration of the flexible blocks until `excess` (J) is gone; returns what was removed.
-fn remove_vibration(island: &mut Island, excess: f64) -> f64 {
+/// Scales down the vibration of the flexible blocks of a ledger until `excess` (J) is gone; returns what was removed.
+fn remove_vibration(island: &mut Island, ledger: Ledger<'_>, excess: f64) -> f64 {
     let mut vibration = 0.0;
-    for block in &mut island.blocks {
-        if let Block::Flex(block) = block {
+    for &block in ledger.blocks {
+        if let Block::Flex(block) = &mut island.blocks[block] {
             vibration += block.vibration_energy();
         }
     }
@@ -228,8 +328,8 @@ fn remove_vibration(island: &mut Island, excess: f64) -> f64 {
     }
     let before = kinetic_energy(&island.blocks);
     let factor = (1.0 - excess / vibration).max(0.0).sqrt();
-    for block in &mut island.blocks {
-        if let Block::Flex(block) = block {
+    for &block in ledger.blocks {
+        if let Block::Flex(block) = &mut island.blocks[block] {
             block.scale_vibration(factor);
         }
     }

@@ -18,7 +18,7 @@ use self::own::OwnWay;
 use self::retreat::LastWay;
 use self::straight::straight_part;
 pub(super) use self::turn::{points_of, turn};
-use crate::constraint::contact::ContactMemory;
+use crate::constraint::contact::{ContactLaw, ContactMemory};
 use crate::math::{Vec2, rotation};
 use crate::path::{Hit, MemberPair, Motion, MotionKind, NearPair, Path, Surfaces};
 use crate::system::{Block, FlexBlock, Point};
@@ -34,6 +34,8 @@ pub struct FeasiblePath {
     search: Path,
     pairs: Vec<MemberPair>,
     ways: Vec<Way>,
+    /// Laws by the places about which they hold (m).
+    laws: Vec<(Vec2, ContactLaw)>,
     carriers: Vec<Carrier>,
     points: Vec<SurfacePoint>,
     near: Vec<NearPair>,
@@ -62,6 +64,7 @@ impl FeasiblePath {
         self.surfaces.truncate(0);
         self.pairs.clear();
         self.ways.clear();
+        self.laws.clear();
         self.carriers.clear();
         self.points.clear();
         self.near.clear();
@@ -82,6 +85,15 @@ impl FeasiblePath {
     /// Number of ways so far.
     pub(crate) fn n_ways(&self) -> usize {
         self.ways.len()
+    }
+
+    /// Lets the ways from the `first` on have the nearest of these laws.
+    pub(crate) fn place_laws(&mut self, first: usize, laws: &[(Vec2, ContactLaw)]) {
+        let begin = self.laws.len() as u32;
+        self.laws.extend_from_slice(laws);
+        for way in &mut self.ways[first..] {
+            way.places = (begin, self.laws.len() as u32);
+        }
     }
 
     /// Forgets all ways from the `first` on.

@@ -187,6 +187,7 @@ mod tests {
             members,
             owners: [Owner::Collider(0), Owner::Collider(1)],
             law: ContactLaw::default(),
+            places: (0, 0),
             closing: 0.2,
             margin: MARGIN,
             reach: 0.1,

@@ -5,13 +5,15 @@ pub(super) use super::active_contact::AtBase;
 use super::constraint_function::Newton;
 use super::feasible::FeasiblePath;
 use super::joints::Joints;
+use super::ledgers::Ledgers;
 use super::passes::Passes;
 use super::problem::RowProblem;
 pub use super::settings::{KktError, SolveSettings};
 #[cfg(feature = "serde-serialize")]
 use super::sparse::KeptRecord;
 use super::sparse::Sparse;
-use super::work::{self, JointWork, WorkGrips};
+
+use super::work::{self, JointWork, KeptOn, WorkGrips};
 use crate::constraint::contact::{Candidate, ContactKey, PlacedPart, Scene};
 #[cfg(feature = "serde-serialize")]
 use crate::fe::model::Model;
@@ -50,8 +52,12 @@ pub struct Island {
     pub(super) sparse: Sparse,
     /// Wrenches gathered on rigid blocks, by block (N, N, N m, or their impulses).
     pub(super) wrenches: Vec<[f64; 3]>,
+    /// For each block the energy that contact has taken from it and may give back (J); debts are negative, and those of rigid ones zero.
+    pub reserves: Vec<f64>,
+    /// What whose energy is told by itself, and reserves as they were.
+    pub(super) ledgers: Ledgers,
     /// What flexible bodies have kept of their forces on driven blocks from the step before, by block (N, N, N m): it acts on in the first part of the step.
-    pub kept_on: Vec<(usize, [f64; 3])>,
+    pub kept_on: Vec<KeptOn>,
     /// For each block the first of those that touch it, directly or by others.
     pub(super) groups: Vec<usize>,
     /// Blocks with contacts of their own surface.
@@ -67,6 +73,7 @@ impl Island {
     pub fn clear(&mut self) {
         self.blocks.clear();
         self.flex_index.clear();
+        self.reserves.clear();
         self.parts.clear();
         self.segments.clear();
         self.candidates.clear();
@@ -101,8 +108,24 @@ impl Island {
 
     /// Work of applied forces and of the contact forces of driven bodies (J).
     pub(super) fn actual_work(&self, settings: &SolveSettings) -> f64 {
-        let contacts = (&self.contacts[..], &self.candidates[..]);
-        work::actual_work(&self.blocks, contacts, &self.kept_on, settings)
+        let blocks = (self.blocks.iter(), |_| true);
+        self.own_work(settings, blocks, self.contacts.iter())
+    }
+
+    /// The same of some blocks, which count, and contacts.
+    pub(super) fn own_work<'a>(
+        &'a self,
+        settings: &SolveSettings,
+        own: (impl Iterator<Item = &'a Block>, impl Fn(usize) -> bool),
+        contacts: impl Iterator<Item = &'a ActiveContact>,
+    ) -> f64 {
+        let contacts = contacts.map(|contact| (contact, &self.candidates[contact.candidate]));
+        work::actual_work(&self.blocks, own, contacts, &self.kept_on, settings)
+    }
+
+    /// Energy that contact has taken from the blocks and may give back (J).
+    pub fn reserve(&self) -> f64 {
+        self.reserves.iter().sum()
     }
 
     /// Work of the joints on what is not driven from outside.

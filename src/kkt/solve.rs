@@ -13,19 +13,16 @@ use crate::system::Block;
 impl Island {
     /// Solves the step for predicted blocks: positions, velocities and contact forces at its end.
     ///
-    /// `reserve` is the energy that contact has taken from this island and may give back (J).
-    ///
     /// # Errors
     /// If a number is not finite.
     pub fn solve(
         &mut self,
         settings: &SolveSettings,
         memory: &ContactMemory,
-        reserve: &mut f64,
     ) -> Result<IslandSummary, KktError> {
         self.problem.n_pivots = 0;
         self.problem.impulse_give = 0.0;
-        let summary = solve_stages(self, settings, memory, reserve)?;
+        let summary = solve_stages(self, settings, memory)?;
         Ok(IslandSummary {
             n_pivots: self.problem.n_pivots,
             is_jammed: self.problem.impulse_give > 0.0,
@@ -38,7 +35,6 @@ fn solve_stages(
     island: &mut Island,
     settings: &SolveSettings,
     memory: &ContactMemory,
-    reserve: &mut f64,
 ) -> Result<IslandSummary, KktError> {
     let mut summary = IslandSummary::default();
     island.problem.solver.set_first(settings.solver);
@@ -93,21 +89,21 @@ fn solve_stages(
         together::measure_ended(island, settings, &mut summary);
     }
     if treatment.limits_energy() {
-        let had = *reserve;
-        limit_energy(island, settings, reserve, &mut summary);
+        let had = island.reserve();
+        limit_energy(island, settings, &mut summary);
         if has_path && gentle::is_fed(island, &summary, had) {
             if settings.may_be_cut {
                 summary.is_stopped = true;
                 return Ok(summary);
             }
-            *reserve = had;
-            (summary.limited, summary.calmed) = (0.0, 0.0);
+            island.reserves.clone_from(&island.ledgers.had);
+            (summary.limited, summary.calmed, summary.added) = (0.0, 0.0, 0.0);
             gentle::end_gently(island, settings, memory, &mut summary)?;
             if gentle::has_gained(island, settings, &summary) {
                 together::end_together(island, (settings.dt, settings.length_unit), &mut summary);
                 together::measure_ended(island, settings, &mut summary);
             }
-            limit_energy(island, settings, reserve, &mut summary);
+            limit_energy(island, settings, &mut summary);
         }
     }
     if summary.is_unsolved() && !island.joints.ties.is_empty() {
@@ -120,16 +116,13 @@ fn solve_stages(
 }
 
 /// Takes what contact would add; what a step that is unsolved has lost is lost.
-fn limit_energy(
-    island: &mut Island,
-    settings: &SolveSettings,
-    reserve: &mut f64,
-    summary: &mut IslandSummary,
-) {
-    let stored = reserve.max(0.0);
-    energy::limit_energy(island, settings, reserve, summary);
+fn limit_energy(island: &mut Island, settings: &SolveSettings, summary: &mut IslandSummary) {
+    island.ledgers.had.clone_from(&island.reserves);
+    energy::limit_energy(island, settings, summary);
     if summary.is_unsolved() {
-        *reserve = reserve.min(stored);
+        for (reserve, had) in island.reserves.iter_mut().zip(&island.ledgers.had) {
+            *reserve = reserve.min(had.max(0.0));
+        }
     }
 }
 

@@ -45,6 +45,8 @@ pub struct IslandSummary {
     pub limited: f64,
     /// What of it was taken from all joined motion, as a step far too long leaves no other place to take it from (J).
     pub calmed: f64,
+    /// What contact has added and could not take back of the energy that what presses each other had and was brought, of the one that has gained most (-).
+    pub added: f64,
     /// `dt²/8 a·M a` at the end of an explicit step (J).
     pub swing: f64,
     /// Kinetic energy of the half step of forward contacts that belongs to this instant and is not in the velocities (J).

@@ -8,6 +8,17 @@ use crate::constraint::joint::{JointGrip, JointLaw, When, unit_wrench};
 use crate::math::{Vec2, perp};
 use crate::system::{Balance, Block, FlexBlock, RigidBlock, RigidMotion};
 
+/// What a flexible body has kept of its forces on a driven block from the step before.
+#[derive(Clone, Copy, Debug)]
+pub struct KeptOn {
+    /// Its block.
+    pub by: usize,
+    /// The block that it acts on.
+    pub on: usize,
+    /// Force and torque (N, N, N m).
+    pub wrench: [f64; 3],
+}
+
 /// Grips of joints as the last iterate was found, and at the end of the step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WorkGrips<'a> {
@@ -16,18 +27,17 @@ pub(super) struct WorkGrips<'a> {
 }
 
 /// Kinetic and elastic energy at the beginning of the step (J).
-pub(super) fn start_energy(blocks: &[Block]) -> [f64; 2] {
+pub(super) fn start_energy<'a>(blocks: impl IntoIterator<Item = &'a Block>) -> [f64; 2] {
     sum_energy(blocks, FlexBlock::start_balance, RigidBlock::start)
 }
 
 /// Kinetic and elastic energy at its end (J).
-pub(super) fn end_energy(blocks: &[Block]) -> [f64; 2] {
+pub(super) fn end_energy<'a>(blocks: impl IntoIterator<Item = &'a Block>) -> [f64; 2] {
     sum_energy(blocks, FlexBlock::end_balance, RigidBlock::current)
 }
 
-/// Kinetic and elastic energy of all blocks (J).
-fn sum_energy(
-    blocks: &[Block],
+fn sum_energy<'a>(
+    blocks: impl IntoIterator<Item = &'a Block>,
     balance: impl Fn(&FlexBlock) -> Balance,
     motion: impl Fn(&RigidBlock) -> &RigidMotion,
 ) -> [f64; 2] {
@@ -55,8 +65,8 @@ pub(super) fn flow_energy(blocks: &[Block]) -> f64 {
 }
 
 /// Work of applied forces (J).
-pub(super) fn applied_work(blocks: &[Block]) -> f64 {
-    let works = blocks.iter().map(|block| match block {
+pub(super) fn applied_work<'a>(blocks: impl IntoIterator<Item = &'a Block>) -> f64 {
+    let works = blocks.into_iter().map(|block| match block {
         Block::Flex(block) => block.applied_work(),
         Block::Rigid(block) => block.applied_work(),
     });
@@ -64,34 +74,35 @@ pub(super) fn applied_work(blocks: &[Block]) -> f64 {
 }
 
 /// Kinetic energy that the loads would give to the blocks at rest if nothing held them, and what energies are not known by (J).
-pub(super) fn load_energy(blocks: &[Block]) -> f64 {
-    let energies = blocks.iter().map(|block| match block {
+pub(super) fn load_energy<'a>(blocks: impl IntoIterator<Item = &'a Block>) -> f64 {
+    let energies = blocks.into_iter().map(|block| match block {
         Block::Flex(block) => block.load_energy() + block.rounding_energy(),
         Block::Rigid(block) => block.load_energy(),
     });
     energies.sum()
 }
 
-/// Work of applied forces and of the contact forces of driven bodies, prescribed ones and belts (J).
+/// Work of applied forces on the blocks that count, and of the forces of driven bodies, prescribed ones and belts, at the contacts that count (J).
 ///
 /// Impulses count that the step has given, times the mean velocity of the driven bodies. Seen from a body that moves evenly that is what the
 /// kinetic energy changes by, so that all that is said of the rest is the same from there.
-pub(super) fn actual_work(
+pub(super) fn actual_work<'a>(
     blocks: &[Block],
-    (contacts, candidates): (&[ActiveContact], &[Candidate]),
-    kept_on: &[(usize, [f64; 3])],
+    (own, counts): (impl Iterator<Item = &'a Block>, impl Fn(usize) -> bool),
+    contacts: impl Iterator<Item = (&'a ActiveContact, &'a Candidate)>,
+    kept_on: &[KeptOn],
     settings: &SolveSettings,
 ) -> f64 {
-    let mut work = applied_work(blocks);
+    let mut work = applied_work(own);
     // What the step before has left acts on, also of contacts that have opened or are elsewhere now.
-    for &(block, wrench) in kept_on {
-        if let Block::Rigid(block) = &blocks[block] {
+    for &KeptOn { on, wrench, .. } in kept_on.iter().filter(|kept| counts(kept.by)) {
+        if let Block::Rigid(block) = &blocks[on] {
             let along = wrench.iter().zip(block.led());
             let power: f64 = along.map(|(w, x)| w * x).sum();
             work -= settings.late() / settings.dt * power;
         }
     }
-    for contact in contacts {
+    for (contact, candidate) in contacts {
         let kinematics = &contact.kinematics;
         let along = |[n, t]: [f64; 2]| n * kinematics.normal + t * kinematics.tangent();
         let (impulse, at_end) = (along(contact.given(settings)), along(contact.impulse));
@@ -101,7 +112,7 @@ pub(super) fn actual_work(
             false => settings.late() * contact.remembered.lasting[1],
         };
         let tangent = kinematics.tangent();
-        let carried = candidates[contact.candidate].law.carried.dot(&tangent);
+        let carried = candidate.law.carried.dot(&tangent);
         work += (impulse.dot(&tangent) + kept) * carried / settings.dt;
         for a in kinematics.attachments() {
             if let Block::Rigid(block) = &blocks[a.block]
@@ -253,9 +264,9 @@ pub(super) fn work_of_driven(blocks: &[Block], wrenches: &[[f64; 3]], dt: f64) -
     -works.sum::<f64>() / dt
 }
 
-/// The momentum of all blocks if each moved along one line with its kinetic energy (N s).
-pub(super) fn momentum_at_most(blocks: &[Block]) -> f64 {
-    let momenta = blocks.iter().map(|block| {
+/// The momentum of these blocks if each moved along one line with its kinetic energy (N s).
+pub(super) fn momentum_at_most<'a>(blocks: impl Iterator<Item = &'a Block>) -> f64 {
+    let momenta = blocks.map(|block| {
         let (mass, energy) = mass_and_energy(block);
         (2.0 * mass * energy).sqrt()
     });

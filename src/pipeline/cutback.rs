@@ -93,13 +93,14 @@ impl Solver {
         // more than there is. What joints leave in stored accelerations swings, and a change of the step's length makes it swing more: with joints it must
         // be as much as there was, on a path.
         let swings = self.island.has_swinging_joints(step.is_within());
-        let most = match (summary.is_parting, swings, parameters.leads(step)) {
-            (true, _, true) => summary.most_of_parting(),
-            (false, false, _) => GAINED * summary.brought(),
-            (false, true, true) => DOUBLED * summary.brought(),
-            (_, _, false) => f64::INFINITY,
+        let is_coarse = match (summary.is_parting, swings, parameters.leads(step)) {
+            (true, _, true) => {
+                summary.calmed - reserve > summary.most_of_parting() + (-before).max(0.0)
+            }
+            (false, false, _) => summary.added > GAINED.get(),
+            (false, true, true) => summary.added > DOUBLED.get(),
+            (_, _, false) => false,
         };
-        let is_coarse = summary.calmed - reserve > most + (-before).max(0.0);
         let is_good = !is_coarse && !summary.is_unsolved();
         let goes_on = !may_be_cut && summary.quality() == Quality::Unfinished && {
             let n_cuts = part.n_cuts.saturating_sub(FURTHER);
@@ -134,14 +135,14 @@ impl Solver {
         let is_finished = summary.quality() != Quality::Unfinished;
         self.under_way.note_end(is_finished);
         let names = Names { sets, flex_bodies };
-        self.enter_part((part, step), (&summary, reserve), (names, entry), books);
+        self.enter_part((part, step), &summary, (names, entry), books);
         if !part.span.is_last() {
             let seats = &self.gatherer.seats;
             let mut kept = Vec::new();
             seats.add_kept_forces(&self.island, &mut kept);
             let left = (seats.claimed(), &kept[..]);
             self.under_way
-                .go_on(&self.island, left, reserve, part.span, flex_bodies);
+                .go_on(&self.island, left, part.span, flex_bodies);
         }
         Ok(Progress::Done)
     }

@@ -102,7 +102,7 @@ impl FlexPipeline {
     /// [`ContactForceEvent::total_force`](crate::rapier::geometry::ContactForceEvent), as in rapier).
     ///
     /// `modify_solver_contacts` is shown every such contact as a manifold: its point, and after it that of the flexible body which is farthest
-    /// behind the same face, if another one is. It may change friction, restitution, and normal and distance of the first, give it a tangent velocity,
+    /// behind the same face, if another one is. Of a collider of several parts each point shows the nearest. It may change friction, restitution, and normal and distance of the first, give it a tangent velocity,
     /// or clear it. `user_data` lasts as long as the contact, and begins with that of a neighbour. Pairs of two rigid bodies it sees in rapier's manifolds
     /// as well, and the carrier of a flexible body is a rigid body with all axes locked.
     ///

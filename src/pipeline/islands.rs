@@ -187,7 +187,7 @@ impl Solver {
         books.clock.lap(&mut books.report.times.gather);
         let may_be_cut = self.may_be_cut(step, part.n_cuts, parameters, flex_bodies);
         let settings = settings_of(task, [may_be_cut, self.is_spent(parameters)]);
-        let before = self.reserve(flex_bodies);
+        let before = self.island.reserve();
         if may_be_cut && self.known_cuts.has(self.first_body(), part.span) {
             return Ok(Tried {
                 summary: IslandSummary::stopped(),
@@ -195,7 +195,6 @@ impl Solver {
                 may_be_cut,
             });
         }
-        let mut reserve = before;
         books.report.n_tried += 1;
         let memory = if part.span.is_first() {
             &books.memory.contacts
@@ -203,7 +202,7 @@ impl Solver {
             &self.under_way.contacts
         };
         let seats = &self.gatherer.seats;
-        let solved = self.island.solve(&settings, memory, &mut reserve);
+        let solved = self.island.solve(&settings, memory);
         let summary = match solved {
             Ok(summary) => summary,
             Err(error) => {
@@ -220,7 +219,7 @@ impl Solver {
         books.clock.lap(&mut books.report.times.solve);
         Ok(Tried {
             summary,
-            reserve: [before, reserve],
+            reserve: [before, self.island.reserve()],
             may_be_cut,
         })
     }
@@ -229,7 +228,7 @@ impl Solver {
     pub(super) fn enter_part(
         &mut self,
         (part, step): (Part, Step),
-        (summary, reserve): (&IslandSummary, f64),
+        summary: &IslandSummary,
         (names, entry): (Names<'_, '_>, &mut Entry),
         books: &mut Books<'_>,
     ) {
@@ -239,7 +238,6 @@ impl Solver {
             summary,
             step,
             span: part.span,
-            reserve,
         };
         if part.span.is_last() {
             solved.remember(&mut books.memory.contacts, &mut books.memory.joints);
@@ -253,12 +251,6 @@ impl Solver {
     pub(super) fn first_body(&self) -> u32 {
         let indices = self.island.flex_index.iter().flatten();
         indices.copied().min().unwrap_or(u32::MAX)
-    }
-
-    /// Energy that contact has taken from the island's bodies and may return (J).
-    fn reserve(&self, flex_bodies: &FlexBodySet) -> f64 {
-        let bodies = self.flexible(flex_bodies);
-        bodies.map(FlexBody::energy_reserve).sum()
     }
 
     /// Steps on end that were not finished for any of the island's bodies.

@@ -61,13 +61,13 @@ impl Outcome {
             }
         }
         part.seats.add_kept_forces(island, &mut self.kept_forces);
-        let n_flex = island.flex_index.iter().flatten().count().max(1);
-        for &index in island.flex_index.iter().flatten() {
-            self.flexible.push(FlexEnd {
+        for (index, reserve) in island.flex_index.iter().zip(&island.reserves) {
+            let end = index.map(|index| FlexEnd {
                 index,
-                reserve: part.reserve / n_flex as f64,
+                reserve: *reserve,
                 is_unfinished: entry.is_unfinished,
             });
+            self.flexible.extend(end);
         }
     }
 

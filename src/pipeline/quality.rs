@@ -18,7 +18,7 @@ pub enum Quality {
     /// attachments contradict each other, and were left open.
     Cut,
     /// Its budget ran out, in the smallest parts that it may be cut into. Surfaces on a feasible path are apart where it was stopped, velocities
-    /// come from the last forces; what lies on no path (pairs shown to hooks, what was put into each other) may overlap. Or rapier's own step has
+    /// come from the last forces; what lies on no path (pairs whose contacts hooks take away or move, what was put into each other) may overlap. Or rapier's own step has
     /// left in a flexible body what nothing foretold would reach it, as a body that a motor flings: it is solved for from the next step on.
     Unfinished,
 }

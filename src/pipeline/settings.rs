@@ -54,7 +54,7 @@ pub struct FlexParameters {
     ///
     /// A step goes from placement to placement and stops where surfaces would meet, whatever the forces are. What is not solved within the
     /// budget ends there, and [`StepReport::quality`](super::StepReport::quality) tells of it. Flexible bodies rest
-    /// [`FlexBody::contact_offset`](crate::body::FlexBody::contact_offset) from themselves and from terrain without thickness, and touch all else. Pairs shown to hooks and what overlaps to begin with are not led.
+    /// [`FlexBody::contact_offset`](crate::body::FlexBody::contact_offset) from themselves and from terrain without thickness, and touch all else. Pairs whose contacts hooks take away or move, and what overlaps to begin with, are not led.
     pub feasible_path: bool,
     /// Whether steps longer than the critical one are taken all the same; no by default. See [`FlexPipeline::insisting`](super::FlexPipeline::insisting).
     pub insists: bool,

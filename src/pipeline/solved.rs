@@ -17,8 +17,6 @@ pub(super) struct SolvedPart<'a> {
     pub summary: &'a IslandSummary,
     pub step: Step,
     pub span: Span,
-    /// Energy that contact may return after it (J).
-    pub reserve: f64,
 }
 
 impl SolvedPart<'_> {

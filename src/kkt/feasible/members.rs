@@ -11,8 +11,10 @@ pub(crate) struct Way {
     pub members: [usize; 2],
     /// Their names in contact keys.
     pub owners: [Owner; 2],
-    /// Friction and restitution.
+    /// Friction and restitution, for points of the first member.
     pub law: ContactLaw,
+    /// The laws that hold in its place, each about a place of its own, among those of the path; none if it is the same everywhere.
+    pub places: (u32, u32),
     /// Distance of cores at which contact closes (m).
     pub closing: f64,
     /// The part of it that the path may use up (m).

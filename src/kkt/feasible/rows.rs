@@ -83,7 +83,20 @@ impl FeasiblePath {
 
     /// The law of a near pair.
     pub(in crate::kkt) fn law(&self, near: &NearPair) -> ContactLaw {
-        self.ways[near.pair].law
+        let way = &self.ways[near.pair];
+        let place = self.surfaces.points()[near.point];
+        let (begin, end) = way.places;
+        let placed = self.laws[begin as usize..end as usize].iter();
+        let away = |(other, _): &(Vec2, ContactLaw)| (other - place).norm_squared();
+        let nearest = placed.min_by(|one, other| away(one).total_cmp(&away(other)));
+        let law = nearest.map_or(way.law, |(_, law)| *law);
+        if law.carried != Vec2::zeros() && self.members_of(near)[0] != way.members[0] {
+            return ContactLaw {
+                carried: -law.carried,
+                ..law
+            };
+        }
+        law
     }
 
     /// Members of the point and of the target.

@@ -76,6 +76,7 @@ mod tests {
             members: [centre, rod],
             owners: [Owner::Collider(0), Owner::Collider(1)],
             law: ContactLaw::default(),
+            places: (0, 0),
             closing: ROUND,
             margin: ROUND,
             reach: 0.1,

@@ -64,13 +64,15 @@ pub(super) fn list_near(island: &mut Island, listing: &Listing<'_>) {
             continue;
         }
         let kinematics = island.path.kinematics(&near);
+        let law = island.path.law(&near);
         let listed = Listed {
             near,
             key: island.path.key(&near),
-            law: island.path.law(&near),
+            law,
             kinematics,
             base: AtBase {
                 gap: kinematics.gap,
+                carried: law.carried,
                 moved: island.path.moved(&kinematics, &island.blocks),
                 near,
                 is_meeting: false,
@@ -82,6 +84,7 @@ pub(super) fn list_near(island: &mut Island, listing: &Listing<'_>) {
         if let Some((near, kinematics, moved, law, key)) = island.path.held(index) {
             let base = AtBase {
                 gap: kinematics.gap,
+                carried: law.carried,
                 moved,
                 near,
                 is_meeting: true,

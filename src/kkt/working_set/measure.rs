@@ -116,7 +116,10 @@ impl ActiveContact {
         let Kinematics { normal, .. } = self.kinematics;
         let gap = base.gap + normal.dot(&onward) - self.allowance;
         self.kinematics.gap = gap;
-        let moved = self.kinematics.tangent().dot(&(base.moved + onward));
+        let moved = self
+            .kinematics
+            .tangent()
+            .dot(&(base.moved + onward - base.carried));
         self.slip = moved + self.slip_before - self.aside;
         self.violation(friction)
     }
@@ -255,6 +258,7 @@ mod tests {
         contact.base = Some(AtBase {
             gap: -0.1,
             moved: Vec2::zeros(),
+            carried: Vec2::zeros(),
             near: NearPair {
                 pair: 0,
                 point: 0,

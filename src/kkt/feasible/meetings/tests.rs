@@ -59,6 +59,7 @@ impl Ridge {
             },
             owners: [Owner::Collider(0), Owner::Collider(1)],
             law: ContactLaw::default(),
+            places: (0, 0),
             closing: CLOSING,
             margin: CLOSING,
             reach: 0.1,

@@ -52,6 +52,7 @@ fn scene(body: &FlexBody, place: impl Fn([f64; 2]) -> Vec2) -> (FeasiblePath, bo
         members: [member; 2],
         owners: [Owner::Flex(0); 2],
         law: ContactLaw::default(),
+        places: (0, 0),
         closing: 0.01,
         margin: 0.01,
         reach: 0.1,

@@ -33,6 +33,7 @@ fn over_valley(tip: Vec2, corner: Vec2, slopes: [f64; 2]) -> Option<FeasiblePath
         members: [one, other],
         owners: [Owner::Collider(0), Owner::Collider(1)],
         law: ContactLaw::default(),
+        places: (0, 0),
         closing: CLOSING,
         margin: CLOSING,
         reach: 0.1,

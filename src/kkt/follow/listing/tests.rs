@@ -55,6 +55,7 @@ fn wedge_on_roof(is_wedge_first: bool) -> Island {
             friction: 0.5,
             ..ContactLaw::default()
         },
+        places: (0, 0),
         closing: CLOSING,
         margin: CLOSING,
         reach: 0.1,
