@@ -150,6 +150,7 @@
 //!   that moves, too little reaches it), a link's locked axes are passed over, one that weighs nothing weighs a millionth of all, and a coupling of two coordinates is solved where both are angles of joints; other couplings are refused ([`StepError::Coupling`](crate::pipeline::StepError::Coupling)). Joints of
 //!   multibodies tell no impulses of motors and limits. Rapier alone does not move a multibody's kinematic root, and moves what
 //!   hangs on it twice as far as its velocities say; solved here, it swings as on a fixed one. Rope and spring joints of multibodies hold here, in rapier alone they do not.
+//! - **Put to sleep by hand** on a kinematic body, a rigid one that was woken before falls through it while it sleeps, in rapier 0.36.1 alone as well, and into what is flexible below. Do: leave sleep to rapier.
 //! - **Contact pairs** of what is solved here tell no impulses: rapier lets nobody else write what `contact_pair(..)` has of them. Do: take [`StepReport::contacts`], or contact force events.
 //! - **Dominance.** A rigid body of positive dominance is met as one that is moved: it goes through what is pinned, and squeezes what lies on something else flat, with energy as from nowhere (a box on a free block of 5e6 Pa: 8 MJ). See: unfinished steps. Do: leave dominance out.
 //! - **Fast bodies.** Rapier holds rigid bodies to 400 times the `length_unit` a second; flexible ones go on as they are. See: a ball shot at 500 m/s arrives with 400. Do: choose the `length_unit` of your world (pixels to a metre).
