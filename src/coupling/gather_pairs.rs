@@ -378,7 +378,6 @@ impl PairGatherer {
     }
 }
 
-/// Shows the candidates from the `first` on to the user's hook.
 /// Lets the candidates from the `first` on close farther off by so much (m).
 fn widen(island: &mut Island, first: usize, gap: f64) {
     for candidate in &mut island.candidates[first..] {
@@ -386,7 +385,7 @@ fn widen(island: &mut Island, first: usize, gap: f64) {
     }
 }
 
-/// Asks the hooks about the candidates from the `first` on; returns whether they leave all of them where they are.
+/// Shows the candidates from the `first` on to the user's hook; returns whether it leaves where they are all that may be met in the step.
 fn hook(
     colliders: [ColliderHandle; 2],
     names: Names,

@@ -12,7 +12,6 @@ pub use super::settings::{KktError, SolveSettings};
 #[cfg(feature = "serde-serialize")]
 use super::sparse::KeptRecord;
 use super::sparse::Sparse;
-
 use super::work::{self, JointWork, KeptOn, WorkGrips};
 use crate::constraint::contact::{Candidate, ContactKey, PlacedPart, Scene};
 #[cfg(feature = "serde-serialize")]
@@ -54,9 +53,9 @@ pub struct Island {
     pub(super) wrenches: Vec<[f64; 3]>,
     /// For each block the energy that contact has taken from it and may give back (J); debts are negative, and those of rigid ones zero.
     pub reserves: Vec<f64>,
-    /// What whose energy is told by itself, and reserves as they were.
+    /// Whose energy is told together, and reserves as they were.
     pub(super) ledgers: Ledgers,
-    /// What flexible bodies have kept of their forces on driven blocks from the step before, by block (N, N, N m): it acts on in the first part of the step.
+    /// What flexible bodies have kept of their forces on driven blocks from the step before: it acts on in the first part of the step.
     pub kept_on: Vec<KeptOn>,
     /// For each block the first of those that touch it, directly or by others.
     pub(super) groups: Vec<usize>,

@@ -31,8 +31,8 @@ impl Ledgers {
         self.list(blocks, contacts);
     }
 
-    /// Puts blocks into one ledger that press each other, or did so in the step before, in which they are `pressed`: what is stored of those forces
-    /// still acts. Driven ones hold none together.
+    /// Puts blocks into one ledger that press each other, and the pairs that did so in the step before, `pressed`: what is stored of their forces still
+    /// acts. Driven ones hold none together.
     pub(super) fn part(
         &mut self,
         blocks: &[Block],

@@ -196,3 +196,45 @@ fn a_belt_of_segments_carries_with_coulombs_friction() {
         assert!((speed - 1.0).abs() < 1e-3, "{speed} m/s");
     }
 }
+
+/// A belt to the left of the middle, ice to the right of it.
+struct HalfBelt(ColliderHandle);
+
+impl PhysicsHooks for HalfBelt {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        let is_first = context.collider1 == self.0;
+        if let Some(rigid) = context.rigid_mut() {
+            let along = if is_first { 1.0 } else { -1.0 };
+            for contact in rigid.solver_contacts.iter_mut() {
+                contact.tangent_velocity = vec2(along, 0.0);
+                if contact.anchor1.x > 0.0 {
+                    *rigid.friction = 0.0;
+                }
+            }
+        }
+    }
+}
+
+/// Half of the weight rubs: `v = μ g t / 2`. Whatever is said of a pair holds where it was said.
+#[test]
+fn what_hooks_say_holds_where_they_say_it() {
+    let mut scene = Scene::new(DT);
+    let line = [-4.0, -1.3, 0.7, 4.0].map(|x| vec2(x, 0.0)).to_vec();
+    let belt = ColliderBuilder::polyline(line, None).friction(0.2);
+    let belt = scene.fixed(belt.active_hooks(MODIFY));
+    let plank = FlexBodyBuilder::rectangle([4.0, 0.1], [40, 2])
+        .material(elastic(1e8, 1000.0, 1e-3))
+        .friction(0.2)
+        .translation([-2.0, 0.0]);
+    let plank = scene.flexible(plank);
+    let listener = Listener::default();
+    for step in 1..=18 {
+        scene.hear_with(&HalfBelt(belt), &listener);
+        let expected = 0.1 * G * f64::from(step) * DT;
+        let [speed, _] = scene.body(plank).linvel();
+        assert!(
+            (speed - expected).abs() < 0.1 * expected + 0.01,
+            "step {step}: {speed} m/s, not {expected}"
+        );
+    }
+}
