@@ -5,6 +5,7 @@
 //! are met at the offset.
 
 use super::shapes::{convert, pose_of};
+use crate::constraint::geometry::tangle::Loops;
 use crate::constraint::geometry::{ConvexPart, Pose2};
 use crate::math::{HashMap, Vec2, atan2, cross, from_rapier};
 use crate::rapier::parry::shape::{Shape, TypedShape};
@@ -45,6 +46,9 @@ impl Piece {
     fn n_points(&self) -> u32 {
         match self {
             Self::HalfSpace { .. } => 2,
+            Self::Convex {
+                vertices, radius, ..
+            } if *radius > 0.0 => Loops::n_rounded(vertices.len()) as u32,
             Self::Convex { vertices, .. } => vertices.len() as u32,
             Self::Chain { points, .. } => points.len() as u32,
         }

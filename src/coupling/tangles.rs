@@ -141,13 +141,16 @@ fn outline_of(boundary: &Boundary, place: impl Fn(usize) -> Vec2) -> Loops {
     Loops::new(starts.collect(), next.collect(), names.collect())
 }
 
-/// The outline of a piece in the world; `None` of half-spaces, and of what is round, which any side of it leads out of.
+/// The outline of a piece in the world; `None` of half-spaces, and of segments that are not rounded.
 fn loops_of(piece: &Piece, in_world: impl Fn(Vec2) -> Vec2) -> Option<Loops> {
     let places = |points: &[Vec2]| -> Vec<Vec2> { points.iter().map(|p| in_world(*p)).collect() };
     match piece {
         Piece::Convex {
             vertices, radius, ..
-        } => (*radius == 0.0 && vertices.len() > 2).then(|| Loops::polygon(&places(vertices))),
+        } => match *radius > 0.0 {
+            true => Some(Loops::rounded(&places(vertices), *radius)),
+            false => (vertices.len() > 2).then(|| Loops::polygon(&places(vertices))),
+        },
         Piece::Chain {
             points,
             edges,
@@ -252,12 +255,8 @@ fn replace(island: &mut Island, first: usize, own: &[(&Loops, usize)], found: Ve
                     !(is_astray(node.0, node.1) || is_in(flex, node.0, Point::Node(node.1)))
                 }
                 Pair::VertexOnSurface {
-                    rigid,
-                    arm,
-                    radius,
-                    flex,
-                    ..
-                } => radius > 0.0 || !is_in(flex, rigid, Point::Arm(arm)),
+                    rigid, arm, flex, ..
+                } => !is_in(flex, rigid, Point::Arm(arm)),
                 _ => true,
             }
     });

@@ -11,7 +11,7 @@ use super::gathered;
 use super::island::{Island, SolveSettings};
 use super::joints::add_wrench;
 use crate::constraint::contact::ContactKey;
-use crate::math::{Mat2, Vec2, atan2, cross, rotation, rounding};
+use crate::math::{Mat2, Vec2, angle_between, cross, rotation, rounding};
 use crate::path::NearPair;
 use crate::system::{Block, Grip, Point, Response};
 use std::f64::consts::FRAC_PI_2;
@@ -175,7 +175,7 @@ fn turn_of_met(island: &Island, contact: &ActiveContact) -> f64 {
         }
     });
     let (before, now) = (normals.sum::<Vec2>(), contact.kinematics.normal);
-    atan2(cross(before, now), before.dot(&now))
+    angle_between(before, now)
 }
 
 /// By how much the lever at the rigid body of a contact differs from that midway (m): where a point of the flexible body slides along it, by half of that way;

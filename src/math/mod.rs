@@ -20,6 +20,12 @@ pub fn cross(a: Vec2, b: Vec2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
+/// The angle from one vector to another, counter-clockwise, in (-π, π] (rad).
+#[inline]
+pub fn angle_between(from: Vec2, to: Vec2) -> f64 {
+    atan2(cross(from, to), from.dot(&to))
+}
+
 /// The rotation matrix of an angle (rad).
 #[inline]
 pub fn rotation(angle: f64) -> Mat2 {

@@ -276,3 +276,39 @@ fn blocks_that_overlap_in_line_are_told() {
         assert_eq!(n_told, usize::from(is_told), "{overlap} m");
     }
 }
+
+/// A fixed capsule put onto a ring, or through its wall, and the ring come apart. Nodes in it that face away from its nearest side were held by
+/// nothing: the ring fell asleep around it.
+#[test]
+fn a_rounded_shape_put_through_a_wall_is_led_out_of_it() {
+    for aside in [-0.34, -0.22, -0.13, 0.04, 0.19, 0.31] {
+        for height in [0.02, 0.18, 0.29] {
+            let mut scene = Scene::new(1.0 / 60.0);
+            scene.ground(0.5);
+            let material = LinearElastic::plane_strain(1e6, 0.3).density(1000.0);
+            let ring = scene.flexible(
+                FlexBodyBuilder::annulus(0.25, 0.4, 0.1)
+                    .material(material.rayleigh(5e-3))
+                    .translation([0.0, 0.9]),
+            );
+            scene.steps(60);
+            let [x, y] = scene.body(ring).centre_of_mass();
+            let middle = [x + aside, y + height];
+            let capsule = ColliderBuilder::capsule_x(real(0.2), real(0.1));
+            let place = vec2(middle[0], middle[1]);
+            scene
+                .world
+                .insert_collider(capsule.translation(place), None);
+            for _ in 0..240 {
+                scene.try_step().expect("a step");
+            }
+            assert_eq!(scene.report().quality(), Quality::Solved);
+            let body = scene.body(ring);
+            for share in [-1.0, -0.5, 0.0, 0.5, 1.0] {
+                let place = [middle[0] + 0.2 * share, middle[1]];
+                let away = from_outline(body, place);
+                assert!(away > 0.099, "{aside}, {height}: {away} m from {share}");
+            }
+        }
+    }
+}

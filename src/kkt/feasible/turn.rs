@@ -1,7 +1,7 @@
 //! How normals turn within a step.
 
 use super::FeasiblePath;
-use crate::math::{Vec2, atan2, cross};
+use crate::math::{Vec2, angle_between};
 use crate::path::{NearPair, Target};
 use crate::system::Block;
 
@@ -19,7 +19,7 @@ pub(in crate::kkt) fn turn(path: &FeasiblePath, near: &NearPair, blocks: &[Block
         Target::Edge(edge) => line(path.surfaces.edges()[edge].map(|end| (met, end as usize))),
         Target::Vertex(vertex) => line([(met, vertex), (own, near.point)]),
     };
-    atan2(cross(before, after), before.dot(&after))
+    angle_between(before, after)
 }
 
 /// Where the points of a near pair are, of the first and of what it is near to (m); none of an edge.
