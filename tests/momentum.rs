@@ -429,3 +429,44 @@ fn forces_told_over_a_blow_sum_up_to_momentum() {
         }
     }
 }
+
+/// A row of three bars: waves open and close its contacts in steps that are taken in parts, with rows that come to them in later passes. What they have left
+/// from the part before was not known then, and forces were told up to five times as large.
+#[test]
+fn forces_told_in_parts_of_steps_sum_up_to_momentum() {
+    for n_cells in [14, 24] {
+        let (length, young) = (1.0, 1e7);
+        let (cell, wave) = (length / f64::from(n_cells), (young / 1000.0f64).sqrt());
+        let (dt, speed) = (1.2 * cell / wave, 1e-3 * wave);
+        let pitch = length + 2.0 * speed * dt;
+        let mut scene = Scene::in_free_space(dt);
+        let bars = [0, 1, 2].map(|k| {
+            let bar = FlexBodyBuilder::rectangle([length, 4.0 * cell], [n_cells as usize, 4])
+                .small_strain()
+                .material(LinearElastic::plane_stress(young, 0.0).density(1000.0))
+                .friction(0.0)
+                .translation([f64::from(k) * pitch, 0.0])
+                .linvel([if k == 0 { speed } else { 0.0 }, 0.0]);
+            scene.flexible(bar)
+        });
+        let mass = scene.body(bars[0]).mass();
+        let (mut told, mut n_parts) = ([0.0; 3], 0);
+        // Until the last bar has left: waves run through all of them three times.
+        for _ in 0..(9.0 * length / wave / dt) as usize {
+            scene.step();
+            n_parts = n_parts.max(scene.report().n_parts());
+            for (told, &bar) in told.iter_mut().zip(&bars) {
+                *told += dt * scene.report().force_on(Participant::Flex(bar))[0];
+            }
+        }
+        assert!(n_parts > 1, "{n_cells} cells: no step was cut");
+        for ((k, bar), told) in bars.into_iter().enumerate().zip(told) {
+            let began = if k == 0 { speed } else { 0.0 };
+            let got = mass * (scene.body(bar).linvel()[0] - began);
+            assert!(
+                (told - got).abs() < 1e-3 * mass * speed,
+                "{n_cells} cells, bar {k}: {told} N s told of {got}"
+            );
+        }
+    }
+}

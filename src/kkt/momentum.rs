@@ -8,6 +8,7 @@
 use super::gathered;
 use super::island::{Island, SolveSettings};
 use super::joints::add_wrench;
+use crate::constraint::contact::ContactMemory;
 use crate::constraint::joint::unit_wrench;
 use crate::math::{Vec2, cross, perp};
 use crate::system::{Block, Moments, Point, Step};
@@ -39,11 +40,18 @@ impl LateForce {
 /// Counts what lasting forces do beyond their time in a part of a step. `1 - β1` of a force acts in the part that follows, as long as that
 /// is, and is counted where it is found, as if that were as long as the step: sums over any parts balance momentum then, and what rests
 /// carries its weight in each of them.
-pub(super) fn count_late_forces(island: &mut Island, settings: &SolveSettings) {
+///
+/// What a contact has left before is asked for here: a row that comes to the step in one of its later passes begins without.
+pub(super) fn count_late_forces(
+    island: &mut Island,
+    settings: &SolveSettings,
+    memory: &ContactMemory,
+) {
     let late = (1.0 - settings.b1 / settings.dt) * (settings.whole - settings.dt);
     for contact in &mut island.contacts {
         if !contact.is_hard {
-            let (now, before) = (contact.lasting(), contact.remembered.lasting);
+            let key = &island.candidates[contact.candidate].key;
+            let (now, before) = (contact.lasting(), memory.recall(key).lasting);
             contact.late = [0, 1].map(|axis| late * (now[axis] - before[axis]));
         }
     }

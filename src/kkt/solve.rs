@@ -110,7 +110,7 @@ fn solve_stages(
         island.joints.measure(&island.blocks);
         summary.joint_violation = joint_violation(island, settings.length_unit, true);
     }
-    momentum::count_late_forces(island, settings);
+    momentum::count_late_forces(island, settings, memory);
     momentum::publish_forces(island, settings.dt);
     Ok(summary)
 }
